@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 import traceback
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -106,13 +106,13 @@ def differenced(
     # Laws from teeth or pair files are inputs as well: they are part of the case as it is solved.
     case = loaded(case)
     train = build_train(case)
-    cycle = train.mesh_positions(position)
+    cycle = train.flank_positions(position)
     value = item.value
 
     def laid(number: float) -> Array | None:
         try:
             changed = case.replace({item.key: value.at(number).text})
-            return figures(held(build_train(changed), cycle), position, fine)
+            return figures(replace(build_train(changed), held_at=cycle), position, fine)
         except (ls.CaseError, ls.Refused, NoReference, ValueError):
             return None
 
@@ -165,15 +165,6 @@ def _best(limits: list[tuple[Array, Array]]) -> tuple[Array, Array]:
 def _relative_error(error: Array, value: Array) -> float:
     size = float(np.abs(value).max(initial=0.0))
     return float(error.max(initial=0.0)) / size if size else math.inf
-
-
-def held(train: Train, cycle: Mapping[str, int]) -> Train:
-    """Return a train that stands still in its mesh cycle."""
-    meshes = {
-        n: replace(m, laws=(m.law(cycle[n]),), gaps=(m.gap(cycle[n], True),))
-        for n, m in train.meshes.items()
-    }
-    return replace(train, meshes=meshes)
 
 
 def figures(train: Train, position: int, fine: bool) -> Array:

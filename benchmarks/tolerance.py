@@ -23,7 +23,7 @@ from benchmarks.machine_facts import facts
 from benchmarks.peers import PEERS
 from benchmarks.peers.form import form_of
 from benchmarks.peers.loop import Failure
-from loadshare.results.share import largest, stage_shares
+from loadshare.results.share import coefficients, flank_torques, largest, largest_of
 from loadshare.scene import assemble
 from loadshare.study.tolerance.result import Tolerance
 from loadshare.train import build_train
@@ -145,15 +145,10 @@ def peer_way(case: ls.Case, found: Tolerance, count: int, ours: float) -> list[t
             finally:
                 spent += time.perf_counter() - start
             equilibrium = form.equilibrium(claim.x, claim.forces, claim.pulls)
-            torque = {
-                name: mesh.radii[0]
-                * sum(
-                    (1.0 if drive else -1.0) * equilibrium.flank_force[mesh.flank_name(drive)]
-                    for drive in mesh.flanks
-                )
-                for name, mesh in train.meshes.items()
-            }
-            shares.append(stage_shares(torque, train.stages))
+            flanks = flank_torques(train, equilibrium.flank_force)
+            torque = {name: sum(both) for name, both in flanks.items()}
+            stages = [stage.meshes for stage in train.stages]
+            shares.append(coefficients(torque, stages, largest_of(flanks)))
         top = largest(shares, train.stages)["system"]
         if len(shares) == len(positions) and top is not None:
             apart = max(apart, abs(float(np.subtract(top, omega[sample]))))

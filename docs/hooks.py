@@ -65,7 +65,7 @@ ALLOWED = (
     ("elements of a section", "{elements}"),
     ("entries of a table, and of a list of keys", "{entries}"),
     ("problems that are reported", "{problems}"),
-    ("a name", "1 to {name} printable characters"),
+    ("a name", "1 to {name} printable characters, no blank at either end"),
     ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),
     ("a coefficient of friction", "0 to {friction:g}"),
     ("a unit", "{unit} characters, exponents of up to {power:g}"),
@@ -191,7 +191,8 @@ def case_reference(schema: Schema) -> str:
     parts = ["## Physical values\n", _kind_table(), ""]
     for heading, name, place in TABLES:
         table = definitions.pop(name) if name else schema
-        required = table.get("required", schema["then"]["required"] if not name else ())
+        whole = table.get("$defs", {}).get("whole", table) if name else schema["then"]
+        required = whole.get("required", ())
         parts.append(f"## {heading}\n")
         if place:
             parts.append(f"`{place}`\n")

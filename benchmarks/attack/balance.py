@@ -126,10 +126,10 @@ class Balance:
         return tuple(made), np.array(parts).T.reshape(len(self.lever), len(made))
 
     def _flanks(self, add) -> None:  # type: ignore[no-untyped-def]
-        positions = self.train.mesh_positions(self.claim.index)
+        positions = self.train.flank_positions(self.claim.index)
         for mesh in self.train.meshes.values():
-            law = mesh.law(positions[mesh.name])
             for drive in mesh.flanks:
+                law = mesh.law(positions[mesh.flank_name(drive)])
                 force = self.claim.flank_force[mesh.flank_name(drive)]
                 push = mesh.drive_normal if drive else mesh.coast_normal
                 along = 1.0 if drive else -1.0

@@ -48,11 +48,11 @@ def is_far(train: Train, index: int, exact: Reference) -> bool:
 
 def compressions(train: Train, index: int, exact: Reference) -> list[float]:
     """Compression of every flank [m]."""
-    at = train.mesh_positions(index)
+    at = train.flank_positions(index)
     return [
-        mesh.law(at[name]).compression(max(exact.force[mesh.flank_name(drive)], 0.0))
-        for name, mesh in train.meshes.items()
-        for drive in mesh.flanks
+        mesh.law(at[name]).compression(max(exact.force[name], 0.0))
+        for mesh in train.meshes.values()
+        for name in map(mesh.flank_name, mesh.flanks)
     ]
 
 
@@ -81,9 +81,9 @@ def neglected(train: Train, index: int, exact: Reference) -> float:
     The deflection is the largest compression, gap taken up, or error. Face gears are left out.
     """
     lengths = np.linalg.norm(situation_of(train, index).offset[0], axis=1).tolist()
-    positions = train.mesh_positions(index)
+    positions = train.flank_positions(index)
     for mesh, drive, force in _pressed(train, exact):
-        at = positions[mesh.name]
+        at = positions[mesh.flank_name(drive)]
         lengths += [mesh.law(at).compression(force), abs(mesh.gap(at, drive))]
     missed = max((string.missed for string in _strings(train, index, exact)), default=0.0)
     return missed / (max(lengths, default=0.0) or math.inf)

@@ -92,7 +92,7 @@ class _Writer:
         self.names = tuple(names)
         pushes = [abs(t) / train.gears[g].base_radius for g, t in situation.torques.items()]
         self.force = max(*pushes, float(np.abs(situation.push).max())) or 1.0
-        self.positions = train.mesh_positions(situation.position)
+        self.positions = train.flank_positions(situation.position)
         yields = [
             m.law(self.positions[m.name]).compression(self.force) for m in train.meshes.values()
         ]
@@ -200,9 +200,9 @@ class _Writer:
     def _flanks(self) -> list[Contact]:
         rows: list[Contact] = []
         for mesh in self.train.meshes.values():
-            position = self.positions[mesh.name]
-            law = self._law(mesh.law(position))
             for drive in mesh.flanks:
+                position = self.positions[mesh.flank_name(drive)]
+                law = self._law(mesh.law(position))
                 to = self.train.approaches[mesh.flank_name(drive)]
                 gradient: dict[int, Any] = {}
                 for gear, arm in to.turning.items():

@@ -162,7 +162,12 @@ def _held(folder: Path, alone: bool = False) -> Iterator[bool]:
 
 
 def csv_of(frame: pd.DataFrame) -> str:
-    """Return a table as CSV in which no text is a formula of a spreadsheet.
+    """Return a table as CSV in which no text is a formula of a spreadsheet."""
+    return str(without_formulas(frame).to_csv(index=False, lineterminator="\n"))
+
+
+def without_formulas(frame: pd.DataFrame) -> pd.DataFrame:
+    """Return a table in which no text is a formula of a spreadsheet.
 
     Texts and heads that begin with =, +, -, @, a tab or a line end, and are no quantity, have an
     apostrophe before them: names are their user's to choose.
@@ -171,22 +176,38 @@ def csv_of(frame: pd.DataFrame) -> str:
     for name in safe.columns:
         if safe[name].dtype.kind not in "biuf":
             safe[name] = safe[name].map(_plain)
-    return str(safe.to_csv(index=False, lineterminator="\n"))
+    return safe
 
 
 def netcdf_of(arrays: xr.Dataset) -> bytes:
     """Return labelled arrays as the content of a netCDF file.
 
     It is made in memory: where a disk is full, HDF5 leaves a file that it cannot close, and takes
-    the process with it.
+    the process with it. As a slash in a name means a group there, a variable or dimension with one
+    has "|" in its place, and its own name as ``long_name``.
     """
     import h5netcdf
     from xarray.backends import H5NetCDFStore
 
     held = BytesIO()
     with h5netcdf.File(held, "w") as file:
-        arrays.dump_to_store(H5NetCDFStore(file))
+        _without_slashes(arrays).dump_to_store(H5NetCDFStore(file))
     return held.getvalue()
+
+
+def _without_slashes(arrays: xr.Dataset) -> xr.Dataset:
+    taken = {*map(str, arrays.variables), *map(str, arrays.dims)}
+    found = arrays
+    for name in sorted(name for name in taken if "/" in name):
+        other = name.replace("/", "|")
+        while other in taken:
+            other += "|"
+        taken.add(other)
+        found = found.rename({name: other})
+        if other in found.variables:
+            about = found[other].attrs
+            found[other] = found[other].assign_attrs({"long_name": name, **about})
+    return found
 
 
 FORMULA = re.compile(r"[=@\t\r\n]|[+-](?![\d.])")

@@ -65,6 +65,7 @@ def test_the_pair_itself_is_a_case(tmp_path):
         (("", '[stages.""]\nmeshes = ["a-b"]\n'), 'stages.""'),
         (("", '[splines.""]\nbending_stiffness = "1 N/m"\nclearance = "1 um"\n'), 'splines.""'),
         (("", '[march]\ngear = ""\nrevolutions = 1\nsteps = 3\n'), "march.gear"),
+        (("", '[stages." a"]\nmeshes = ["a-b"]\n'), 'stages." a": cannot be a name'),
         (("", '[stages."a\\u0000"]\nmeshes = ["a-b"]\n'), "stages"),
         (("", f'[stages.{"s" * 5000}]\nmeshes = ["a-b"]\n'), "stages"),
         (("", '[march]\ngear = "a"\nrevolutions = 1e308\nsteps = 3\n'), "march.revolutions"),

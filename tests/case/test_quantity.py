@@ -46,6 +46,9 @@ def read(kind, given):
         (q.HertzCompliance, "1e-6 rad/(N*m)^(2/3)", 1e-6),
         (q.HertzCompliance, "1e-6 rad/(N*m)**(2/3)", 1e-6),
         (q.HertzCompliance, "1 urad/(kN·m)^(2/3)", 1e-8),
+        (q.Expansion, "11.5e-6 /K", 11.5e-6),
+        (q.Expansion, "11.5e-6 1/K", 11.5e-6),
+        (q.Expansion, "1e-31/K", 1e-31),
     ],
 )
 def test_units_that_engineers_write(kind, text, si):
@@ -111,6 +114,17 @@ def test_units_that_engineers_write(kind, text, si):
         (
             q.Length,
             True,
+            'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
+        ),
+        (
+            q.Expansion,
+            "11.5e-6 2/K",
+            "is not a number followed by a unit. "
+            'Allowed: a thermal expansion such as "11.5e-6 /K". ',
+        ),
+        (
+            q.Length,
+            "2e5 3 mm",
             'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
         ),
         (

@@ -2,6 +2,7 @@ from pathlib import Path
 
 import pytest
 
+import loadshare as ls
 from loadshare.case import load_case
 from loadshare.errors import CaseError
 
@@ -151,6 +152,13 @@ def test_another_file_says_what_it_is(tmp_path, cases, name, message):
 def test_a_file_that_is_not_there_is_reported(tmp_path):
     missing = message_of(tmp_path / "missing.toml", tmp_path)
     assert missing == "missing.toml: no such file or directory."
+
+
+def test_what_is_no_path_is_reported_with_what_is_wanted():
+    for value in ({"gears": {}}, b"case.toml", None, 3):
+        kind = type(value).__name__
+        with pytest.raises(TypeError, match=f"path of a case file is wanted.* not {kind}"):
+            ls.solve(value)
 
 
 def test_a_file_that_is_not_text_is_reported(tmp_path):

@@ -1,3 +1,5 @@
+import tomllib
+
 import jsonschema
 import pytest
 
@@ -15,9 +17,38 @@ def validator():
 
 
 def test_every_shipped_case_fits_the_schema(case_files, validator):
+    """As it is written, with what it inherits left out, and as a whole."""
     assert case_files
     for path in case_files:
+        validator.validate(tomllib.loads(path.read_text(encoding="utf-8")))
         validator.validate(load_case(path).to_dict())
+
+
+@pytest.mark.parametrize(
+    ("section", "lacking"),
+    [
+        ("operating", {"input": "a"}),
+        ("gears", {"a": {"base_radius": "30 mm"}}),
+        ("gears", {"a": {"centre": {"distance": "60 mm"}}}),
+        ("splines", {"b": {"clearance": "5 um"}}),
+        ("errors", {"b": {"installation": {"amount": "5 um"}}}),
+        ("rings", {"b": {"float": {"up": "5 um"}}}),
+        ("rings", {"b": {"float": {"upward": ["a-b"]}}}),
+    ],
+)
+def test_only_a_file_that_inherits_may_leave_out_keys(drive, validator, section, lacking):
+    """A file that extends another, or a single copy of an element that others are copies of."""
+    case = drive.to_dict()
+    given = {**case, section: {**case.get(section, {}), **lacking}}
+    if section == "operating":
+        given[section] = lacking
+    assert validator.is_valid({"extends": "base.toml", section: lacking})
+    assert not validator.is_valid(given)
+    gear = {"centre": ["0 mm", "0 mm"], "copies": 3}
+    assert validator.is_valid({**given, "gears": {**given["gears"], "z": gear}})
+    # What is in a list is given whole.
+    study = {"kind": "tolerance", "groups": [{"correlation": 0.5}]}
+    assert not validator.is_valid({"extends": "base.toml", "study": {"one": study}})
 
 
 @pytest.mark.parametrize(
@@ -26,7 +57,7 @@ def test_every_shipped_case_fits_the_schema(case_files, validator):
         {"gears": {"a": {"centre": ["0 mm", "0 mm"], "base_radius": 3}}},
         {"gears": {"a": {"centre": ["0 mm", "0 mm"], "base_radius": "3"}}},
         {"gears": {"a": {"centre": ["0 mm", "0 mm"], "bas_radius": "3 mm"}}},
-        {"rings": {"a": {"float": {"up": "1 mm"}}}},
+        {"rings": {"a": {"float": {"up": "1 mm", "upward": ["a-b"]}}}},
         {"tittle": "x"},
     ],
 )

@@ -1,4 +1,4 @@
-"""A case that is known does not change."""
+"""A case that is known does not change, and neither does its result."""
 
 import copy
 import pickle
@@ -23,6 +23,20 @@ def test_tables_of_a_case_refuse_to_be_changed(case: ls.Case) -> None:
         case.rings.pop("4")
     with pytest.raises(TypeError, match=r"Case\.replace"):
         del case.rings["4"]
+
+
+def test_tables_of_a_result_refuse_to_be_changed(case: ls.Case) -> None:
+    result = ls.solve(case, positions=[1])
+    position = result.positions[0]
+    tables = (
+        *(result.omega, result.pair_omega, result.stages, result.frames),
+        *(position.torque, position.share, position.displacement, position.claim.flank_force),
+    )
+    for table in (*tables, position.floats):
+        with pytest.raises(TypeError, match=r"do not change|item assignment"):
+            table["4"] = None  # type: ignore[index]
+    for copied in (copy.copy(result), copy.deepcopy(result)):
+        assert copied == result
 
 
 def test_copies_are_cases_too(case: ls.Case) -> None:

@@ -19,11 +19,12 @@ from loadshare.contact.arc import Arc
 from loadshare.contact.law import RIGID, Law, PowerLaw
 from loadshare.contact.radial import RadialLaw, round_ring_law
 from loadshare.settings import CERTIFY
+from loadshare.train.elements import Spline
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.situations import Situations, situation_of
-from loadshare.train.train import Spline, Train
+from loadshare.train.train import Train
 
 EPS = float(np.finfo(float).eps)
 """Round-off of a length, relative to it."""
@@ -133,15 +134,15 @@ class ClaimedState:
 
     def _flanks(self) -> Iterator[Push]:
         phi = self.answer.rotation
-        positions = self.train.mesh_positions(self.answer.index)
+        positions = self.train.flank_positions(self.answer.index)
         for mesh in self.train.meshes.values():
             errors = self.error(mesh.driver) - self.error(mesh.driven)
             pins = self.pin(mesh.driver)[0] - self.pin(mesh.driven)[0]
             relative = self.moved(mesh.driver) - self.moved(mesh.driven) + errors + pins
             turned = (phi[mesh.driver], phi[mesh.driven])
-            position = positions[mesh.name]
             for drive in mesh.flanks:
                 name = mesh.flank_name(drive)
+                position = positions[name]
                 yield Push(
                     name=name,
                     gear=None,
@@ -381,9 +382,9 @@ class ClaimedState:
         gears, here = self.train.gears, self.situation
         moved = [abs(f) * gears[g].base_radius for g, f in self.answer.rotation.items()]
         moved += [float(np.abs(self.moved(g)).max()) for g in gears]
-        positions, still = self.train.mesh_positions(self.answer.index), np.zeros(3)
+        positions, still = self.train.flank_positions(self.answer.index), np.zeros(3)
         gaps = [
-            abs(mesh.approach(drive, positions[mesh.name], (0.0, 0.0), still))
+            abs(mesh.approach(drive, positions[mesh.flank_name(drive)], (0.0, 0.0), still))
             for mesh in self.train.meshes.values()
             for drive in mesh.flanks
         ]

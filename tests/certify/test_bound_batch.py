@@ -166,6 +166,8 @@ def test_nothing_is_proved_where_a_situation_is_not_a_number(field):
             continue
         if field == "torque" and k == columns.order[train.output]:
             continue  # the output is held: its torque is a reaction
+        if field in ("bending", "hertz") and found.flank_force.reshape(-1)[k] == 0.0:
+            continue  # of a flank that is open, only the gap matters
         values.reshape(-1)[k] = np.nan
         given = relative_bounds(columns, replace(situations, **{field: values}), found)
         assert np.isinf(given).all(), (field, k)

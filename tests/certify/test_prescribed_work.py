@@ -69,8 +69,8 @@ def flank_work(flank: str, part: str) -> Work:
         mesh = next(m for m in train.meshes.values() for d in m.flanks if m.flank_name(d) == flank)
         drive = flank == mesh.flank_name(True)
         lengths = {
-            "gap": mesh.gap(train.mesh_positions(found.index)[mesh.name], True),
-            "backlash": mesh.backlash,
+            "gap": mesh.gap(train.flank_positions(found.index)[flank], drive),
+            "backlash": mesh.gap(train.flank_positions(found.index)[flank], drive),
             "error": mesh.direction(drive)[2]
             @ (here.offset_of(mesh.driver) - here.offset_of(mesh.driven)),
         }

@@ -12,6 +12,7 @@ import pytest
 from tests.support import CASES
 from typer.testing import CliRunner, Result
 
+import loadshare as ls
 from loadshare import output
 from loadshare.cli.main import app
 from loadshare.output import STANDARD, NotWritten, clear, csv_of, make_folder, write_whole
@@ -237,3 +238,57 @@ def test_no_cell_of_a_table_is_a_formula():
     cells = [row.split(",")[0].strip('"') for row in rows[1:-1]]
     assert cells == ["'=1+1", "'+a", "'-a", "'@a", "'\t=1", "a", "-0.5 um", "+.5", ""]
     assert all(row.endswith(",-1.5") for row in rows[1:-1])
+
+
+def test_a_column_of_parquet_has_one_type_whatever_is_in_it(tmp_path):
+    """Files of one study are read together; figures may happen to be whole, or to be missing."""
+    import numpy as np
+    import pandas as pd
+    from pyarrow import parquet
+
+    from loadshare.cli.forms import tables_of
+
+    def schema(figures: list[object], number: object) -> list[str]:
+        frame = pd.DataFrame({"swept": [1.0, 2.0], "load": pd.Series(figures), "at": [1, number]})
+        (tmp_path / "one.parquet").write_bytes(tables_of("one", lambda: frame)["parquet"]())
+        return [str(column.type) for column in parquet.read_schema(tmp_path / "one.parquet")]
+
+    assert schema([0.5, 1.5], 2) == ["double", "double", "int64"]
+    assert schema([0.0, 0.0], pd.NA) == ["double", "double", "int64"]
+    assert schema([np.nan, None], 2) == ["double", "double", "int64"]
+    assert schema([3.0, None], pd.NA) == ["double", "double", "int64"]
+
+
+def test_a_slash_in_a_name_is_written_to_netcdf(tmp_path):
+    """There, it would mean a group; names of elements are their user's to choose."""
+    import xarray as xr
+
+    keys = ('gears."a/b".x', 'gears."a|b".x')
+    grid = {key: ("um", [1.0 + k, 2.0]) for k, key in enumerate(keys)}
+    coords = {key: (key, values, {"units": unit}) for key, (unit, values) in grid.items()}
+    arrays = xr.Dataset({"load/max": (keys, [[1.0, 2.0], [3.0, 4.0]])}, coords=coords)
+    (tmp_path / "one.nc").write_bytes(output.netcdf_of(arrays))
+    found = xr.load_dataset(tmp_path / "one.nc", engine="h5netcdf")
+    names = {found[name].attrs.get("long_name", name): name for name in map(str, found.variables)}
+    assert set(names) == {"load/max", *keys}
+    assert names[keys[1]] == keys[1]
+    for name in names:
+        assert found[names[name]].values.tolist() == arrays[name].values.tolist()
+    assert found[names[keys[0]]].attrs["units"] == "um"
+    # What was given is left as it was.
+    assert set(arrays.variables) == {"load/max", *keys}
+
+
+def test_a_sweep_over_a_name_with_a_slash_is_written(tmp_path):
+    import xarray as xr
+
+    text = json.dumps(ls.load_case(CASE).to_dict()).replace("planet1", "planet/1")
+    file = tmp_path / "case.toml"
+    file.write_text(ls.Case(json.loads(text)).to_toml(), encoding="utf-8")
+    key = 'meshes."sun-planet/1".gap'
+    over = f"{key}=0 urad:50 urad:2"
+    assert call("sweep", file, "--over", over, "-o", tmp_path / "one.nc").exit_code == 0
+    found = xr.load_dataset(tmp_path / "one.nc", engine="h5netcdf")
+    assert found["torque"].dims[0] == key.replace("/", "|")
+    assert found[found["torque"].dims[0]].attrs["long_name"] == key
+    assert "sun-planet/1" in found["mesh"].values

@@ -20,18 +20,6 @@ from loadshare.exchange.rexs.reading import read_model
 from loadshare.study.parameter import read_value
 
 
-@pytest.fixture
-def written(tmp_path):
-    """Return how a file is written."""
-
-    def write(content: bytes, name: str = "unit.rexs") -> Path:
-        path = tmp_path / name
-        path.write_bytes(content)
-        return path
-
-    return write
-
-
 def test_a_planetary_set_is_the_set_that_it_says(written) -> None:
     """Torques by Willis; planets ride on the carrier, the ring is held, a pin bearing is off."""
     found = import_rexs(written(xml(*planetary())))
@@ -42,7 +30,8 @@ def test_a_planetary_set_is_the_set_that_it_says(written) -> None:
     assert case.operating.input == "gear_53"
     assert case.operating.output == "carrier_3"
     assert case.gears["gear_53"].support == "free"
-    assert [v.si for v in case.errors["gear_248"].installation] == pytest.approx([0.0, 15e-6, 0.0])
+    # The outer ring is off by 15 um in the planet: this settles by as much the other way.
+    assert [v.si for v in case.errors["gear_248"].installation] == pytest.approx([0.0, -15e-6, 0.0])
     assert any("lubricant" in line for line in found.left_out)
     assert any("iso" in line for line in found.assumed)
     result = ls.solve(case)

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import csv
+import math
 import sys
 import zipfile
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from tests.cli.conftest import on_a_screen_of
 from tests.support import CASES, SHIPPED, shipped
 
 import loadshare as ls
 from loadshare.errors import CaseError
-from loadshare.exchange.spreadsheet import export_tables, import_tables, workbook_of
+from loadshare.exchange.spreadsheet import (
+    export_frames,
+    export_tables,
+    import_tables,
+    workbook_of,
+)
 from loadshare.exchange.spreadsheet.exporting import case_tables
 
 OPERATING = "key,value\ninput,a\noutput,b\ntorque [N*m],100\n"
@@ -141,6 +148,12 @@ def test_what_is_wrong_is_reported_with_its_cell(box, tables, message) -> None:
     assert message in str(caught.value)
 
 
+def test_a_unit_may_be_a_reciprocal(box) -> None:
+    gears = GEARS.replace("teeth,", "teeth,expansion [1/K],").replace(",20,", ",20,11.5e-6,")
+    found = import_tables(box(gears=gears.replace(",40,", ",40,,"))).data
+    assert found["gears"]["a"]["expansion"] == "11.5e-6 1/K"
+
+
 def test_a_folder_without_tables_and_none_at_all_are_reported(tmp_path) -> None:
     for path, message in ((tmp_path, "holds no CSV file"), (tmp_path / "x", "no such file")):
         with pytest.raises(CaseError, match=message):
@@ -222,7 +235,7 @@ def test_a_case_and_its_result_go_into_a_workbook_and_back(tmp_path) -> None:
     openpyxl = pytest.importorskip("openpyxl")
     case = shipped("star/floating_sun_3")
     title = '=HYPERLINK("x")'
-    tables = export_tables(ls.solve(case.replace({"title": title})))
+    tables = export_frames(ls.solve(case.replace({"title": title})))
     (tmp_path / "star.xlsx").write_bytes(workbook_of(tables))
     assert import_tables(tmp_path / "star.xlsx").data == {**case.to_dict(), "title": title}
     book = openpyxl.load_workbook(tmp_path / "star.xlsx")
@@ -231,6 +244,117 @@ def test_a_case_and_its_result_go_into_a_workbook_and_back(tmp_path) -> None:
     assert "f" not in kinds
     figures = [c.value for row in book["result_meshes"].iter_rows(min_row=2) for c in row]
     assert any(isinstance(value, float) for value in figures)
+
+
+def test_names_of_a_result_stay_texts_in_a_workbook(box, tmp_path) -> None:
+    """A column is numbers because it holds numbers, not because its texts look like some."""
+    openpyxl = pytest.importorskip("openpyxl")
+    gears = GEARS.replace("\na,", "\n1_1,").replace("\nb,", "\nnan,")
+    operating = OPERATING.replace("input,a", "input,1_1").replace("output,b", "output,nan")
+    folder = box(gears=gears, operating=operating, meshes=MESHES.replace("a-b", "1_1-nan"))
+    result = ls.solve(import_tables(folder).case())
+    (tmp_path / "box.xlsx").write_bytes(workbook_of(export_frames(result)))
+    book = openpyxl.load_workbook(tmp_path / "box.xlsx")
+    head, *rows = book["result_gears"].iter_rows(values_only=True)
+    assert [row[head.index("gear")] for row in rows] == ["1_1", "nan"]
+    assert [row[head.index("position")] for row in rows] == [1, 1]
+    rotation = result.dataset["rotation"].sel(position=1).values.tolist()
+    assert [row[head.index("rotation [rad]")] for row in rows] == rotation
+    table = pd.DataFrame({"gear": ["inf", "007"], "load": [math.inf, math.nan]})
+    (tmp_path / "box.xlsx").write_bytes(workbook_of({"one": table}))
+    sheet = openpyxl.load_workbook(tmp_path / "box.xlsx")["one"]
+    found = list(sheet.iter_rows(min_row=2, values_only=True))
+    assert found == [("inf", "inf"), ("007", None)]
+
+
+@pytest.fixture
+def book(tmp_path):
+    """Return a workbook with the tables of a case, and how it is read as it now stands."""
+    openpyxl = pytest.importorskip("openpyxl")
+    book, path = openpyxl.Workbook(), tmp_path / "box.xlsx"
+    book.remove(book.active)
+    for name, text in {"operating": OPERATING, "gears": GEARS, "meshes": MESHES}.items():
+        sheet = book.create_sheet(name)
+        for row in csv.reader(text.splitlines()):
+            sheet.append([float(cell) if cell.isdigit() else cell for cell in row])
+
+    def read(*changes: tuple[bytes, bytes]) -> dict:
+        book.save(path)
+        with zipfile.ZipFile(path) as archive:
+            parts = {name: archive.read(name) for name in archive.namelist()}
+        for old, new in changes:
+            assert any(old in content for content in parts.values())
+            parts = {name: content.replace(old, new) for name, content in parts.items()}
+        with zipfile.ZipFile(path, "w") as archive:
+            for name, content in parts.items():
+                archive.writestr(name, content)
+        return import_tables(path).data
+
+    return book, read
+
+
+def test_a_formula_without_a_saved_value_is_no_empty_cell(book) -> None:
+    """Programs that write formulas calculate none; a spreadsheet program saves values."""
+    sheets, read = book
+    whole = read()
+    sheets["gears"]["B2"] = "=4*5"
+    sheets.create_sheet("result_gears")["A1"] = "=1+1"
+    message = "box.xlsx: sheet gears: row 2, column B: is a formula whose value was not saved"
+    calculated = (b'fullCalcOnLoad="1"', b"")
+    value = (b"<f>4*5</f><v />", b"<f>4*5</f><v>20</v>")
+    # What stands there as long as nobody has calculated is no value either.
+    for changes in ((), (calculated,), (value,)):
+        with pytest.raises(CaseError, match="save it, or write the value") as caught:
+            read(*changes)
+        assert message in str(caught.value)
+        assert len(caught.value.problems) == 1
+    assert read(calculated, value) == whole
+    sheets["gears"]["F2"] = '=""'
+    empty = (b'<c r="F2"><f>', b'<c r="F2" t="str"><f>')
+    assert read(calculated, value, empty) == whole
+
+
+def test_merged_cells_have_their_value_in_every_row(book) -> None:
+    sheets, read = book
+    sheets["gears"]["E3"] = None
+    sheets["gears"].merge_cells("E2:E3")
+    # A head that takes two rows is one head.
+    sheets["operating"].insert_rows(2)
+    sheets["operating"].merge_cells("A1:A2")
+    found = read()
+    assert [gear["face_width"] for gear in found["gears"].values()] == ["10 mm", "10 mm"]
+    assert found["operating"] == {"input": "a", "output": "b", "torque": "100 N*m"}
+    sheets["gears"].merge_cells("B2:C2")
+    with pytest.raises(CaseError, match=r"box.xlsx: sheet gears: B2:C2: is merged across columns"):
+        read()
+    sheets["gears"].unmerge_cells("B2:C2")
+    with pytest.raises(CaseError, match="has merged cells that overlap"):
+        read(
+            (
+                b'<mergeCell ref="E2:E3"',
+                b'<mergeCell ref="E2:E3"/>' * 99 + b'<mergeCell ref="E2:E3"',
+            )
+        )
+
+
+def test_rows_of_a_sheet_are_counted_and_those_of_a_result_are_not(book) -> None:
+    import openpyxl
+
+    sheets, read = book
+    whole = read()
+    sheets.create_sheet("result_gears")["A20000"] = 1.0
+    sheets["gears"]["A20000"].font = openpyxl.styles.Font(bold=True)
+    assert read() == whole
+    sheets["gears"]["A20000"] = "c"
+    with pytest.raises(CaseError, match="has more than 10000 rows in sheet gears"):
+        read()
+
+
+@pytest.mark.parametrize("stated", [b"A1", b"A1:D2"])
+def test_the_stated_size_of_a_sheet_is_not_believed(book, stated) -> None:
+    _, read = book
+    whole = read()
+    assert read((b'ref="A1:E3"', b'ref="' + stated + b'"')) == whole
 
 
 def test_run_writes_a_workbook_if_it_can(tmp_path, monkeypatch) -> None:

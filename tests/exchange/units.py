@@ -250,3 +250,88 @@ def two_stages() -> tuple[list[Component], list[Relation]]:
         )
         relations.append(("side", {"assembly": id_, "inner_part": shaft, "outer_part": 2}))
     return components, relations
+
+
+def changed(
+    parts: tuple[list[Component], list[Relation]], **attributes: Mapping[str, Any]
+) -> tuple[list[Component], list[Relation]]:
+    """Return a unit in which some components, ``_12`` for 12, have other attributes.
+
+    None takes an attribute away.
+    """
+    components, relations = parts
+    made = []
+    for id_, kind, name, known in components:
+        both = {**known, **attributes.get(f"_{id_}", {})}
+        made.append((id_, kind, name, {k: v for k, v in both.items() if v is not None}))
+    return made, relations
+
+
+def bearing(stiffness: float, along: float | None = None, **more: Any) -> dict[str, Any]:
+    """Attributes of a bearing: its stiffness [N/m], its place along both shafts [mm]."""
+    places = {} if along is None else along_both(along)
+    return {"radial_stiffness": (stiffness, "N / m"), **places, **more}
+
+
+def along_both(along: float) -> dict[str, Any]:
+    """Attributes of a bearing or coupling at a place along both its shafts [mm]."""
+    return {f"u_coordinate_on_shaft_{side}_side": (along, MM) for side in ("inner", "outer")}
+
+
+def joint(id_: int, inner: int, outer: int) -> Relation:
+    """A bearing or coupling between two components."""
+    return ("side", {"assembly": id_, "inner_part": inner, "outer_part": outer})
+
+
+def section(length: float, diameter: float) -> dict[str, Any]:
+    """Attributes of a solid section from the start of a shaft [mm]."""
+    return {
+        "u_coordinate_on_shaft": (0.0, MM),
+        "length": (length, MM),
+        **{f"outer_diameter_{end}": (diameter, MM) for end in ("begin", "end")},
+        **{f"inner_diameter_{end}": (0.0, MM) for end in ("begin", "end")},
+    }
+
+
+def two_pinions() -> tuple[list[Component], list[Relation]]:
+    """A shaft with two pinions, 150 mm apart, driven by a flange coupling at the end near one.
+
+    Gear 20 drives gear 21; coupling 70 joins the shaft of 21 to that of the pinions 24 and 25.
+    They drive the gears 26 and 27 of one shaft that does not twist.
+    """
+    components: list[Component] = [
+        (1, "gear_unit", "", at(0.0, 0.0, 0.0)),
+        (2, "gear_casing", "", {}),
+        (10, "shaft", "in", at(0.0, 0.0, 0.0)),
+        (11, "shaft", "first wheel", at(0.0, 60.0, 0.0)),
+        (14, "shaft", "pinions", at(-250.0, 60.0, 0.0)),
+        (15, "shaft", "out", at(-250.0, 140.0, 0.0)),
+        (20, "cylindrical_gear", "", teeth(20, 2.0) | at(25.0, 0.0, 0.0)),
+        (21, "cylindrical_gear", "", teeth(40, 2.0) | at(25.0, 60.0, 0.0)),
+        (24, "cylindrical_gear", "far", teeth(20, 2.0) | at(-225.0, 60.0, 0.0)),
+        (25, "cylindrical_gear", "near", teeth(20, 2.0) | at(-75.0, 60.0, 0.0)),
+        (26, "cylindrical_gear", "", teeth(60, 2.0) | at(-225.0, 140.0, 0.0)),
+        (27, "cylindrical_gear", "", teeth(60, 2.0) | at(-75.0, 140.0, 0.0)),
+        (30, "external_load", "", {"torque_around_u_axis": (100.0, "N m")}),
+        (31, "external_load", "", {}),
+        *((k, "cylindrical_stage", "", {}) for k in (40, 41, 42)),
+        (50, "shaft_section", "", section(250.0, 30.0)),
+        (
+            70,
+            "coupling",
+            "flange",
+            {
+                "rotational_stiffness": (1e9, "N mm / rad"),
+                "u_coordinate_on_shaft_inner_side": (0.0, MM),
+                "u_coordinate_on_shaft_outer_side": (250.0, MM),
+            },
+        ),
+    ]
+    placed = ((10, 20), (11, 21), (14, 24), (14, 25), (15, 26), (15, 27), (10, 30), (15, 31))
+    relations: list[Relation] = [
+        ("assembly", {"assembly": whole, "part": part}) for whole, part in (*placed, (14, 50))
+    ]
+    for stage, one, other in ((40, 20, 21), (41, 24, 26), (42, 25, 27)):
+        relations.append(("stage", {"stage": stage, "gear_1": one, "gear_2": other}))
+    relations.append(joint(70, 11, 14))
+    return components, relations

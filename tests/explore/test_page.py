@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from urllib.parse import quote
 
 import pytest
 from selenium.webdriver.common.action_chains import ActionChains
@@ -12,7 +13,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 from tests.chromium import CONTRAST, NAMES, badly_set, on_screen, too_wide
 from tests.explore.conftest import SEED
-from tests.explore.test_server import tables_of
+from tests.explore.test_server import partly_refused, tables_of
 from tests.explore.walks import contradicted, opened, settled, walked
 from tests.report.pages import EVIL_CASE
 from tests.support import mostly_slow, shipped
@@ -51,6 +52,17 @@ def test_the_page_opens_without_a_complaint(browser, seed, inputs):
     assert all(name.startswith(seed) for name in loaded)
 
 
+def test_a_planetary_set_opens_with_what_may_vary(browser, served):
+    """With the error of its pin, and with no number of teeth."""
+    with served(shipped("planetary/four_planets")) as address:
+        opened(browser, address, names=[])
+        WebDriverWait(browser, 10).until(lambda b: len(settled(b)["fields"]) == 6)
+        names = set(settled(browser)["fields"])
+        browser.get("about:blank")
+    supports = {f"gears.planet{k}.support" for k in (1, 2, 3, 4)}
+    assert names == supports | {"operating.torque", "errors.planet2.pin.tangential"}
+
+
 def test_a_slider_moves_the_answer(browser, seed, inputs):
     opened(browser, seed)
     slider = browser.find_element(By.CSS_SELECTOR, "[data-name='rings.5.float'] [type=range]")
@@ -59,6 +71,12 @@ def test_a_slider_moves_the_answer(browser, seed, inputs):
         says = settled(browser)
         assert contradicted(says, inputs, tables_of) == ""
     assert says["fields"]["rings.5.float"] == "5.5 um"
+    text = browser.execute_async_script(
+        """const [done] = arguments;
+        import("/page/controls.js").then(({ written }) =>
+          done(["um", ""].map((unit) => written({ unit, step: 1e-15 }, 1.6e-12))));"""
+    )
+    assert text == ["1.6e-12 um", 1.6e-12]
 
 
 @pytest.mark.parametrize("seed_number", mostly_slow((1, 2), (1,)))
@@ -126,6 +144,12 @@ def test_what_is_typed(browser, seed, inputs, text, outcome, why):
     assert says["outcome"] == outcome
     assert why in " ".join(says["messages"])
     assert contradicted(says, inputs, tables_of) == ""
+    slider = browser.find_element(By.CSS_SELECTOR, "[data-name='rings.5.float'] [type=range]")
+    assert slider.is_enabled()
+    if outcome == "certified":
+        assert slider.get_attribute("value") == "4"
+        slider.send_keys(Keys.ARROW_RIGHT)
+        assert 4.0 < float(settled(browser)["fields"]["rings.5.float"].split()[0]) < 4.1
     if outcome == "invalid":
         assert browser.find_elements(By.CSS_SELECTOR, "#floats svg, #bars svg, #tables table") == []
 
@@ -150,7 +174,10 @@ def test_inputs_are_found_by_search(browser, seed):
 
 def test_tied_inputs_move_together(browser, seed, inputs):
     opened(browser, seed, names=["rings.*.float", "rings.4.float", "rings.5.float"])
+    differ = "return document.querySelector(\"[data-name='rings.*.float'] .apart\").textContent"
+    assert "rings.4.float = 8.24 um, rings.5.float = 2.74 um" in browser.execute_script(differ)
     says = types(browser, "rings.*.float", "2.5 um")
+    assert browser.execute_script(differ) == ""
     assert set(says["fields"].values()) == {"2.5 um"}
     del says["fields"]["rings.*.float"]
     assert contradicted(says, inputs, tables_of) == ""
@@ -192,11 +219,20 @@ def test_pinned_settings_are_compared(browser, seed):
     browser.find_element(By.CSS_SELECTOR, "[aria-label='unpin A']").click()
     heads = browser.find_elements(By.CSS_SELECTOR, "#compared th")
     assert [head.text for head in heads] == ["figure", "B", "now", "change, B to now"]
+    # A pin that is cut off by the edge of a picture is reported below it.
+    types(browser, "rings.5.float", "90 um")
+    browser.find_element(By.ID, "pin").click()
+    types(browser, "rings.5.float", "1 um")
+    below = browser.find_element(By.CSS_SELECTOR, "#floats [data-gear='5'] figcaption").text
+    assert "outside the picture: pinned A at (" in below
 
 
 def test_a_link_opens_the_view_again(browser, seed, inputs):
     opened(browser, seed)
     types(browser, "rings.5.float", "3.21 um")
+    slider = browser.find_element(By.ID, "position-slider")
+    slider.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
+    settled(browser)
     browser.find_element(By.ID, "link").click()
     address = browser.current_url
     before = settled(browser)
@@ -205,6 +241,46 @@ def test_a_link_opens_the_view_again(browser, seed, inputs):
     after = settled(browser)
     assert (after["tables"], after["fields"]) == (before["tables"], before["fields"])
     assert contradicted(after, inputs, tables_of) == ""
+    assert _position(browser) == ("3", "3 of 5")
+    view = {"changes": {"rings.4.float": "2 um"}, "names": ["rings.4.float"], "position": 2}
+    number = after["number"]
+    browser.execute_script("location.hash = arguments[0]", quote(json.dumps(view)))
+    WebDriverWait(browser, 10).until(lambda b: settled(b)["number"] != number)
+    assert settled(browser)["fields"] == {"rings.4.float": "2 um"}
+    assert _position(browser) == ("2", "2 of 5")
+
+
+def _position(browser):
+    """Where the slider of the position stands, and what stands beside it."""
+    slider = browser.find_element(By.ID, "position-slider").get_attribute("value")
+    text = browser.find_element(By.ID, "position-text").text
+    assert browser.find_element(By.ID, "of").text.startswith(f"Pictures at position {slider}.")
+    return slider, text.partition(",")[0]
+
+
+def test_all_positions_replace_the_figures_of_one(browser, served):
+    """Until then nothing is called K_γ; a position without an answer is reported."""
+    case = partly_refused()
+    with served(case) as address:
+        opened(browser, address, names=["rings.4.float"])
+        assert "Ω at position 1: I = " in browser.find_element(By.ID, "summary").text
+        assert "1 of 15 positions" in browser.find_element(By.ID, "note").text
+        browser.find_element(By.ID, "pin").click()
+        WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        says = settled(browser)
+        compared, note, summary, bars = (
+            browser.find_element(By.CSS_SELECTOR, place).text
+            for place in ("#compared", "#note", "#summary", "#bars svg")
+        )
+        browser.get("about:blank")
+    assert says["outcome"] == "partly refused"
+    assert "position 9" in says["messages"][0]
+    assert "14 of 15 positions certified" in note
+    assert "Ω at 14 of 15" in bars
+    assert "Kγ" not in summary
+    # The pin is of the same setting, and follows.
+    assert "Ω at 14 of 15" in compared
+    assert "Ω at position 1" not in compared
 
 
 def test_a_bad_link_does_no_harm(browser, seed, inputs):
@@ -318,7 +394,14 @@ def test_on_a_phone_the_answer_is_in_sight_of_the_slider(browser, seed):
 
 def test_flank_forces_have_heads(browser, seed):
     """Each an outline: wider at its head than along its shaft, however large the force."""
-    opened(browser, seed, names=[])
+    opened(browser, seed, names=["operating.power"])
+    _arrows(browser)
+    # However small all of them are, the largest is wide.
+    types(browser, "operating.power", "2 kW")
+    assert max(shaft for shaft, _ in _arrows(browser)) > 5.0
+
+
+def _arrows(browser):
     widths = browser.execute_script(
         """return [...document.querySelectorAll("#train .forces [data-mesh]")].map((arrow) => {
           const [a, , wing, , other, , b] = arrow.getAttribute("d").match(/-?[\\d.]+ -?[\\d.]+/g)
@@ -329,6 +412,7 @@ def test_flank_forces_have_heads(browser, seed):
     )
     assert len(widths) > 3
     assert all(head > shaft + 5.0 for shaft, head in widths)
+    return widths
 
 
 def test_contrast_of_an_answer_that_is_not_there_yet(browser, seed):

@@ -9,6 +9,7 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from urllib.parse import urlsplit
 
+import numpy as np
 import pytest
 from tests.explore.asking import answer, ask
 from tests.explore.conftest import SEED
@@ -17,7 +18,7 @@ from tests.support import CASES, shipped
 
 import loadshare as ls
 from loadshare.case import Case, load_case
-from loadshare.explore.answer import answer_of, plain
+from loadshare.explore.answer import answer_of, plain, whole_of
 from loadshare.explore.guard import hosts_of
 from loadshare.explore.inputs import Inputs
 from loadshare.report.page.verdict import largest_forces, resting, sharing
@@ -74,7 +75,16 @@ def test_many_positions_are_solved_one_by_one(served):
     with served(shipped("fgfbstts/all_elements")) as address:
         found = answer(address, position=7)
         beyond = answer(address, position=5000)
+        whole = ask(address, "/whole", {"position": 7})[2]
+        first = answer(address)
     assert (found["count"], found["solved"], found["position"]) == (20, 1, 7)
+    assert (found["measure"], whole["measure"]) == ("Ω at position 7", "Kγ")
+    # What comes later takes the place of every figure of the one position.
+    assert set(found) - set(whole) == set()
+    assert shown(whole) == tables_of(shipped("fgfbstts/all_elements"))
+    most = ls.solve(shipped("fgfbstts/all_elements")).omega["II"]
+    assert max(b["most"] for b in whole["bars"] if b["stage"] == "II") == most
+    assert max(b["most"] for b in first["bars"] if b["stage"] == "II") < 0.95 * most
     result = ls.solve(shipped("fgfbstts/all_elements"), positions=[7])
     assert shown(found)[0] == plain(sharing(result))["rows"]
     assert beyond["position"] == 20
@@ -105,6 +115,66 @@ def test_a_setting_that_makes_no_case_is_reported(seed, changes, why):
     assert found["status"] == "invalid"
     assert re.search(why, " ".join(found["messages"]))
     assert "tables" not in found
+
+
+def partly_refused():
+    """More positions than are solved at once; at position 9 two meshes are far too soft."""
+    soft = ["4.275e6 N*m/rad"] * 8 + ["1e3 N*m/rad"] + ["4.275e6 N*m/rad"] * 6
+    stiffness = {f'meshes."{mesh}".stiffness': soft for mesh in ("4-6", "4-7")}
+    return load_case(SEED).replace({"operating.positions": 15, **stiffness})
+
+
+def test_a_position_without_an_answer_is_reported():
+    inputs = Inputs(partly_refused())
+    assert answer_of(inputs, {}, 1)["status"] == "certified"
+    whole = whole_of(inputs, {}, 1)
+    assert (whole["status"], whole["measure"]) == ("partly refused", "Ω at 14 of 15")
+    assert "14 of 15 positions certified" in whole["bound"]
+    assert "position 9" in whole["messages"][0]
+    refused = answer_of(inputs, {}, 9)
+    assert (refused["status"], refused["solved"], refused["count"]) == ("refused", 1, 15)
+    whole = whole_of(inputs, {}, 9)
+    assert "tables" in whole
+    assert "forces" not in whole
+
+
+@pytest.mark.parametrize(
+    ("name", "power"),
+    [
+        ("limit_ring", "2000 kW"),
+        ("limit_ring", "-2000 kW"),
+        ("all_elements", "2000 kW"),
+        ("all_elements", "-2000 kW"),
+        ("all_elements", "0 kW"),
+    ],
+)
+def test_the_arrows_turn_no_idler(name, power):
+    """About the centre of an idler, the moments of all its drawn forces cancel."""
+    inputs = Inputs(shipped(f"fgfbstts/{name}"))
+    found = answer_of(inputs, {"operating.power": power}, 1)
+    view = found["train"]["views"][0]
+    places = {mesh["name"]: np.array(mesh["at"]) for mesh in view["meshes"]}
+    gears = {gear["name"]: gear for gear in view["gears"]}
+    for idler in "6789":
+        moments = []
+        for force in found["forces"]:
+            if idler not in force["mesh"].split("-"):
+                continue
+            u, v = np.array(view["frame"]) @ force["push"] * force["force"]
+            side = 1.0 if f"on gear {idler}:" in force["text"] else -1.0
+            x, y = places[force["mesh"]] - gears[idler]["centre"]
+            moments.append(side * (x * v - y * u))
+        assert sum(moments) == pytest.approx(0.0, abs=1e-3 * max(map(abs, moments), default=0.0))
+    rows = [row for row in found["states"]["rows"] if row[0] == "mesh 8-10"]
+    flanks = [force for force in found["forces"] if force["mesh"] == "8-10"]
+    assert len(flanks) == (2 if power == "0 kW" else 1)
+    assert [float(row[2]) for row in rows] == pytest.approx([f["force"] for f in flanks], rel=1e-4)
+    assert all(row[1].endswith(" flank closed") for row in rows)
+
+
+def test_a_value_is_returned_in_the_unit_of_the_slider(seed):
+    given = {FLOAT: "0.002 mm", "operating.power": "-2 MW"}
+    assert answer(seed, given)["numbers"] == {FLOAT: 2.0, "operating.power": -2000.0}
 
 
 def test_a_refused_setting_is_reported(seed):

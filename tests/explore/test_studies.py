@@ -22,8 +22,10 @@ from tests.support import shipped
 
 import loadshare as ls
 from loadshare.explore.answer import plain
+from loadshare.explore.inputs import Inputs
 from loadshare.explore.questions import Along
-from loadshare.explore.samples import omega_table
+from loadshare.explore.request import RequestError
+from loadshare.explore.samples import omega_table, scatter
 from loadshare.job.engines import at_hand
 from loadshare.settings import EXPLORE, JOB
 
@@ -131,6 +133,18 @@ def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
     assert sum(parts[-1]["histogram"]["counts"]) == found.of("system", "stage").summary.count
     early = ls.tolerance(case, samples=parts[0]["done"], indices=0, worst=False)
     assert parts[0]["table"]["rows"] == figures(early, 1.003)
+
+
+def test_counts_and_geometry_do_not_scatter():
+    """They are left out, and named; alone they are no study."""
+    inputs = Inputs(shipped("planetary/four_planets"))
+    ranges = {"gears.sun.teeth": [0.0, 36.0], "gears.sun.centre[0]": [-0.1, 0.1]}
+    varying = {"errors.planet2.pin.tangential": [0.0, 40.0]}
+    found = scatter(inputs, {"ranges": ranges | varying})
+    assert list(found.table["inputs"]) == list(varying)
+    assert found.left == tuple(ranges)
+    with pytest.raises(RequestError, match="only counts and geometry"):
+        scatter(inputs, {"ranges": ranges})
 
 
 @pytest.mark.slow

@@ -124,12 +124,13 @@ def test_it_is_reported_in_every_form(name, tmp_path):
 @pytest.mark.parametrize("name", FILES)
 def test_samples_say_so_too(name):
     """Of three samples the last has its pinion loaded: its wheel's mesh is brought nearer."""
-    case = case_of(name)
-    samples = {'meshes."a-w2".law.a [rad]': [0.6e-3, 0.5e-3, -0.02]}
+    # A gap of the drive flank alone: that of a law would close the coast flank as well.
+    case = case_of(name).replace({"meshes.a-w2.law.a": None, "meshes.a-w2.gap": "0.6e-3 rad"})
+    samples = {'meshes."a-w2".gap [rad]': [0.6e-3, 0.5e-3, -0.02]}
     found = ls.solve_many(case, samples, least_norm=True)
     assert found.certified.all()
     assert found.determined.values[:2].ravel().tolist() == [False, False]
-    alone = ls.solve(case.replace({"meshes.a-w2.law.a": "-0.02 rad"})).positions[0]
+    alone = ls.solve(case.replace({"meshes.a-w2.gap": "-0.02 rad"})).positions[0]
     assert bool(found.determined[2, 0]) == (not alone.undetermined)
     assert "gear q2 x" not in alone.undetermined
     moved = found.displacement.sel(gear="q2").values[:2]

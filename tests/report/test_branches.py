@@ -74,6 +74,17 @@ def test_no_share_without_stages_or_load():
         bare.plot.share(over="mean")
 
 
+def test_a_position_without_load_is_not_like_the_others(read):
+    """Its Ω is none: the lines are broken there, and nothing is the same at all positions."""
+    torque = ["1000 N*m", "0 N*m", "1000 N*m"]
+    changes = {"operating.torque": torque, "operating.positions": 3}
+    spec = read(ls.solve(shipped("star/floating_sun_3").replace(changes)).plot.share().spec)
+    assert "the same at all" not in spec.words()
+    rows = {(r["mesh"], r["position"]): r["share"] for r in spec.rows("point", "share")}
+    (mesh, *_) = {mesh for mesh, _ in rows}
+    assert [rows[mesh, k] for k in (1, 2, 3)] == [pytest.approx(1.0, rel=1e-6), None, rows[mesh, 1]]
+
+
 def test_meshes_without_stages_share_a_panel(read):
     bare = ls.solve(shipped("star/floating_sun_3").replace({"stages": None}))
     spec = read(bare.plot.torque().spec)

@@ -12,6 +12,7 @@ import loadshare as ls
 from loadshare.case.reader import load_draft
 from loadshare.report.figures.layout import FIXED, FLOATS, layout_of
 from loadshare.report.figures.train import train
+from loadshare.report.flanks import carrying
 from loadshare.train import build_train
 
 
@@ -72,6 +73,29 @@ def test_lines_of_action_are_tangent_to_both_base_circles(name, drawing, read):
         assert way @ (1e3 * bodies[1].centre[:2] - 1e3 * bodies[0].centre[:2]) > 0.0
         seen += 1
     assert seen >= 2
+
+
+def test_arrows_of_a_result_are_those_of_the_flanks_that_carry(read):
+    """A push on the coast flank is tangent to the same base circles, and turns the other way."""
+    case = shipped("fgfbstts/all_elements").replace({"operating.power": "-2000 kW"})
+    built, result = build_train(case), ls.solve(case, positions=[1])
+    drive = layout_of(case, built).pairs
+    coast = layout_of(case, built, list(carrying(result.positions[0]))).pairs
+    seen = 0
+    for one, other in zip(drive, coast, strict=True):
+        bodies = [layout_of(case, built).bodies[n] for n in (one.driver, one.driven)]
+        if any(b.kind != "external" for b in bodies):
+            continue
+        for body in bodies:
+            arm = one.pitch_point - body.centre
+            turns = [float(body.axis @ np.cross(arm, m)) for m in (*one.pushes, *other.pushes)]
+            assert abs(turns[0]) == pytest.approx(body.base_radius, rel=1e-3)
+            # Of a jammed mesh both flanks push, the coast flank last.
+            assert turns[-1] == pytest.approx(-turns[0], rel=1e-3)
+        seen += 1
+    assert seen == 8
+    assert "push of the flanks that carry at position 1" in read(result.plot.train().spec).words()
+    assert "push of the drive flanks" in read(train(case).spec).words()
 
 
 def test_bent_arrows_run_in_the_running_sense(drawing, read):

@@ -108,8 +108,9 @@ def test_a_file_that_holds_no_result_is_refused(tmp_path):
 
 def test_coefficients():
     """Ω is the torque over the mean of its group; a group that carries nothing has none."""
-    found = coefficients({"a": 1.0, "b": 3.0, "c": 0.0, "d": 0.0}, [("a", "b"), ("c", "d")])
-    assert found == {"a": 0.5, "b": 1.5, "c": None, "d": None}
+    torque = {"a": 1.0, "b": 3.0, "c": 0.0, "d": 0.0, "e": 2.0, "f": -2.0 + 1e-15}
+    found = coefficients(torque, [("a", "b"), ("c", "d"), ("e", "f")], largest=3.0)
+    assert found == {"a": 0.5, "b": 1.5, "c": None, "d": None, "e": None, "f": None}
 
 
 def test_an_unloaded_train_has_no_coefficients(tmp_path):
@@ -121,6 +122,21 @@ def test_an_unloaded_train_has_no_coefficients(tmp_path):
     assert np.isnan(result.share.values).any()
     result.to_json(tmp_path / "still.json")
     assert ls.load_result(tmp_path / "still.json") == result
+
+
+def test_stages_that_carry_next_to_nothing_have_no_coefficients():
+    """Branches brace one another where no torque passes: Ω is not their round-off."""
+    power = ["2000 kW"] * 3 + ["0 kW"] + ["2000 kW"] * 16
+    case = shipped("fgfbstts/all_elements").replace({"operating.power": power})
+    result = ls.solve(case)
+    idle = result.positions[3]
+    assert set(idle.share.values()) == set(idle.pair_share.values()) == {None}
+    assert max(idle.coast_torque.values()) > 1.0
+    assert result.omega == ls.solve(case, positions=range(5, 21)).omega
+    table = ls.solve_many(case, {"rings.4.float [um]": [4.0]}, keep=["share", "pair_share"])
+    for kept in (table.share, table.pair_share):
+        assert np.isnan(kept.sel(position=4)).all()
+        assert np.nanmax(kept) < 2.0
 
 
 def test_the_worst_certificate_speaks_for_the_result(result):

@@ -149,7 +149,7 @@ def test_a_scene_is_what_the_train_says(name):
     rng = np.random.default_rng(5)
     for index in (1, train.count):
         scene, here = assemble(train, index), situation_of(train, index)
-        positions, rows = train.mesh_positions(index), {r.name: r for r in scene.rows}
+        positions, rows = train.flank_positions(index), {r.name: r for r in scene.rows}
         x = rng.normal(size=scene.size) * 1e-5
         turned = {gear: scene.angle(gear, x) for gear in train.gears}
         moved = {gear: scene.moved(gear, x) for gear in train.gears}
@@ -159,10 +159,11 @@ def test_a_scene_is_what_the_train_says(name):
             ends = turned[mesh.driver], turned[mesh.driven]
             for drive in mesh.flanks:
                 row = rows[mesh.flank_name(drive)]
-                expected = mesh.approach(drive, positions[mesh.name], ends, apart)
+                position = positions[row.name]
+                expected = mesh.approach(drive, position, ends, apart)
                 assert row.vector @ x - row.gap == pytest.approx(expected, abs=1e-17)
                 assert row.law.compression(700.0) == pytest.approx(
-                    mesh.law(positions[mesh.name]).compression(700.0), rel=1e-14
+                    mesh.law(position).compression(700.0), rel=1e-14
                 )
         force = scene.stiffness @ x - scene.load
         for gear, end in scene.rotation.items():

@@ -181,6 +181,8 @@ def test_arrays_and_progress():
     assert arrays["slip"].dims == ("position", "spline", "component")
     assert arrays["revolutions"].values.tolist() == [0.0, 0.125, 0.25, 0.375]
     assert float(arrays["dissipated"].sum()) == pytest.approx(found.dissipated)
+    assert not [v for v in arrays.data_vars if "long_name" not in arrays[v].attrs]
+    assert arrays["friction"].attrs["units"] == "N"
 
 
 def test_a_march_whose_displacements_are_too_large_is_refused():

@@ -10,8 +10,8 @@ from tests.support import shipped
 from loadshare.contact.radial import Piece, RadialLaw
 from loadshare.scene import assemble
 from loadshare.train import build_train
+from loadshare.train.elements import Spline
 from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.train import Spline
 
 SPLINE = Spline("4", 1e7, None, 40e-6, None, 0.1 / 0.035)
 

@@ -275,6 +275,8 @@ def test_arrays_and_defaults():
     arrays = found.dataset
     assert arrays["torque"].dims == ("position", "input", "side", "mesh")
     assert arrays["displacement"].sizes["component"] == 2
+    named = {arrays[name].attrs["long_name"] for name in arrays.data_vars}
+    assert len(named) == len(arrays.data_vars)
     mesh = next(iter(found.rates[1, keys[0], "rising"].torque))
     one = arrays["torque"].sel(position=1, input=keys[0], side="rising", mesh=mesh)
     assert float(one) == found.rates[1, keys[0], "rising"].torque[mesh]

@@ -27,6 +27,7 @@ class SpurTooth:
     poisson: float = 0.3
     foot: float = 0.4
     shape: str = "external"
+    axial_pitches: float = 0.0
 
     @property
     def pitch_radius(self):

@@ -53,6 +53,17 @@ def test_out_of_range(wrong):
         example(**wrong)
 
 
+@pytest.mark.parametrize(("sign", "limit"), [(-1.0, -0.5), (1.0, 2.0)])
+def test_shifts_at_a_limit_may_be_rounded(sign, limit):
+    """A sum of decimals is rarely the decimal that a user has in mind."""
+    shifts = (limit - sign * 0.1, sign * (0.1 + 6e-16))
+    assert sign * (sum(shifts) - limit) > 0.0
+    at_limit = example(profile_shift=(limit - sign * 0.1, sign * 0.1))
+    assert example(profile_shift=shifts).single == pytest.approx(at_limit.single, rel=1e-12)
+    with pytest.raises(ValueError, match=f"x1 . x2 = {limit + sign * 1e-6:.7g}: the formula holds"):
+        example(profile_shift=(limit, sign * 1e-6))
+
+
 def test_equal_gears_with_unequal_shifts_are_one_pair_either_way():
     """The formula is not symmetric in its gears; of equal teeth the larger shift comes first."""
     teeth = {"teeth": 25, "module": "4 mm", "face_width": "40 mm", "centre": ["0 mm", "0 mm"]}

@@ -91,7 +91,7 @@ def test_the_arrays_tell_what_the_train_tells():
     train = build_train(shipped("fgfbstts/all_elements"))
     for index in (1, 4):
         found, here = row(situation_of(train, index), 0), situation_of(train, index)
-        turned, places = train.rotations(index), train.mesh_positions(index)
+        turned, places = train.rotations(index), train.flank_positions(index)
         for g, (name, gear) in enumerate(train.gears.items()):
             offset = np.zeros(3)
             if name in train.offsets:
@@ -101,11 +101,12 @@ def test_the_arrays_tell_what_the_train_tells():
             driving = train.input_torque[0] if name == train.input else 0.0
             torque = train.external.get(name, 0.0) + driving
             assert found["torque"][g] == here.torques[name] == torque
-        for m, mesh in enumerate(train.meshes.values()):
-            place = places[mesh.name]
+        flanks = [(m, d) for m in train.meshes.values() for d in m.flanks]
+        for e, (mesh, drive) in enumerate(flanks):
+            place = places[mesh.flank_name(drive)]
             law = mesh.law(place)
-            assert (found["bending"][m], found["hertz"][m]) == (law.b, law.c)
-            assert (found["gap"][m], found["backlash"][m]) == (mesh.gap(place, True), mesh.backlash)
+            assert (found["bending"][e], found["hertz"][e]) == (law.b, law.c)
+            assert found["gap"][e] == mesh.gap(place, drive)
         for s, shaft in enumerate(train.shafts.values()):
             assert (found["clocking"][s], found["torsion"][s]) == (shaft.clocking, shaft.stiffness)
         drums = [r for r in train.rings.values() if isinstance(r, DrumRing)]

@@ -204,8 +204,9 @@ def _read_section(
             if key in read and known is not None and known[key] is item:
                 getattr(draft, name)[key] = read[key]
                 continue
-            if not key.strip() or not key.isprintable() or len(key) > ALLOWED.name:
-                draft.tell(path, "cannot be a name", f"1 to {ALLOWED.name} printable characters")
+            if not 0 < len(key) <= ALLOWED.name or not key.isprintable() or key != key.strip():
+                allowed = f"1 to {ALLOWED.name} printable characters, no blank at either end"
+                draft.tell(path, "cannot be a name", allowed)
             element = _read(draft, path, _with_ends(draft, path, item), model)
             if element is not None:
                 getattr(draft, name)[key] = element

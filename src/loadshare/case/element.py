@@ -182,8 +182,9 @@ def shaped(allowed: str, *, limits: tuple[str, ...] = ()) -> Discriminator:
 
 T = TypeVar("T")
 _HIGH = ALLOWED.largest
+_LOW = ALLOWED.smallest
 Number = Annotated[float, Strict(), Field(ge=-_HIGH, le=_HIGH, allow_inf_nan=False)]
-Positive = Annotated[float, Strict(), Field(gt=0, le=_HIGH, allow_inf_nan=False)]
+Positive = Annotated[float, Strict(), Field(ge=_LOW, le=_HIGH, allow_inf_nan=False)]
 NotNegative = Annotated[float, Strict(), Field(ge=0, le=_HIGH, allow_inf_nan=False)]
 Turns = Annotated[float, Strict(), Field(gt=0, le=ALLOWED.revolutions, allow_inf_nan=False)]
 

@@ -15,6 +15,7 @@ from loadshare.case.element import (
     TABLE,
     VALUE,
     Element,
+    NotNegative,
     PerPosition,
     Rule,
     shaped,
@@ -50,13 +51,17 @@ class Law(Element):
     """Loaded deformation of a mesh at the driver: a + b T + c T^(2/3)."""
 
     a: PerPosition[Angle] = Quantity("0 rad", 0.0)
-    """Unloaded gap [angle], one value or one per position."""
+    """Unloaded gap of either flank [angle], one value or one per position."""
 
     b: PerPosition[Bending] = Quantity("0 rad/(N*m)", 0.0)
     """Tooth and root bending [angle/torque], one value or one per position."""
 
     c: PerPosition[Hertz] = Quantity("0 rad/(N*m)^(2/3)", 0.0)
     """Hertz contact [angle/torque^(2/3)], one value or one per position."""
+
+    sampling: Literal["points", "means"] = "points"
+    """What a list holds: values at the positions, or means over the parts of the cycle about them.
+    """
 
     basis: str = Field(default="", exclude=True)
     """Where the law comes from."""
@@ -70,6 +75,10 @@ class Law(Element):
         default=None, exclude=True
     )
     """Torque at the driver above which its basis does not hold; results then warn [torque]."""
+
+    misfit: NotNegative | None = Field(default=None, exclude=True)
+    """By how much the law is off at loads other than those it was fitted to, at most, as a part of
+    the elastic angle; results warn from 0.03 on [-]."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield the positions at which the mesh would be rigid."""
@@ -167,7 +176,8 @@ class Mesh(Element):
     """Pair file from whose teeth the law is computed, relative to this file."""
 
     gap: PerPosition[Angle] | None = None
-    """Unloaded gap at the driver that opens the mesh [angle], one value or one per position."""
+    """Unloaded gap at the driver that opens the drive flank [angle], one value or one per position;
+    the flank that carries in a mesh without a backlash."""
 
     phase: Annotated[float, Strict(), Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
     """Part of its cycle that has passed at the first position [-]; by `operating.phases` when

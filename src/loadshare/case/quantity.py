@@ -18,7 +18,10 @@ if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 
 NUMBER = r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?"
-_QUANTITY = re.compile(rf"\s*({NUMBER}|[+\-−]?(?:inf|nan))\s*(?![\s\d.,])(.*?)\s*", re.DOTALL)
+UNIT = r"(?:1\s*/|[^\s\d.,])"
+"""How a unit begins; no number goes before it but the one of a reciprocal."""
+# A number is read whole: with 1e-6, no unit begins at its exponent.
+_QUANTITY = re.compile(rf"\s*(?>({NUMBER}|[+\-−]?(?:inf|nan)))\s*(|{UNIT}.*?)\s*", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -121,7 +124,8 @@ class Dimension:
             raise self._unknown(number, unit, str(error)) from None
         if factor is None:
             kind = kind_of(unit) or f"in {unit}"
-            raise self._problem(f"is {kind}, {self.kind} is needed")
+            hint = _rewritten(number, unit) if unit in OTHERS else ""
+            raise self._problem(f"is {kind}, {self.kind} is needed", hint=hint)
         # Decimal keeps "45.9 mm" and "0.0459 m" the same number.
         exact = Decimal(number) * Decimal(repr(factor))
         value = Quantity(str(text), float(exact))
@@ -187,7 +191,7 @@ class Dimension:
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        number = rf"\s*{NUMBER}\s*[^\s\d.,].*"
+        number = rf"\s*{NUMBER}\s*{UNIT}.*"
         return {
             "type": "string",
             "description": self.allowed,

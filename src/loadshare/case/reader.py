@@ -8,6 +8,7 @@ import tomllib
 from ast import literal_eval
 from collections.abc import Mapping
 from dataclasses import replace
+from os import PathLike
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -60,7 +61,13 @@ def load_case(path: str | FilePath, allow_outside: bool = False) -> Case:
     ------
     CaseError
         With all problems of the case at once.
+    TypeError
+        If it is no path.
     """
+    if not isinstance(path, str | PathLike):
+        kind = type(path).__name__
+        wanted = "a Case or the path of a case file is wanted; Case(data) makes one of a dictionary"
+        raise TypeError(f"{wanted}, not {kind}")
     path = FilePath(path)
     origin = _origin(path, allow_outside)
     data, files, problems = _read(path, (), origin)

@@ -25,27 +25,65 @@ FILE_KEYS: dict[str, Any] = {
 }
 
 
+WHOLE = "whole"
+"""Definition, within that of a table, of what the table must have if it inherits nothing."""
+
+
 def case_schema() -> dict[str, Any]:
     """Return the JSON Schema of a case file.
 
-    A file that extends another may leave out what it inherits; the merged content must hold all.
+    A file that extends another may leave out what it inherits, and a single copy of an element
+    what all copies share; the merged content must hold all.
 
     Returns
     -------
     dict
-        A schema of draft 2020-12; every key has a one-line description with its unit.
+        A schema of draft 2020-12; every key has a one-line description with its unit. What a table
+        must have is in its ``$defs``, under ``whole``.
     """
     schema: dict[str, Any] = _without_null(schema_of(Content, by_alias=True))
     schema["properties"] = {**FILE_KEYS, **schema["properties"]}
     required = schema.pop("required")
     inherits = {"required": ["extends"]}
+    one = {"additionalProperties": {"not": {"required": ["copies"]}}}
     return {
         "$schema": DIALECT,
         **schema,
         "title": "Case",
         "if": {"not": inherits},
-        "then": {"required": required},
+        "then": {
+            "required": required,
+            "if": {"properties": {"gears": one}},
+            "then": _demands(schema, schema["$defs"]),
+        },
     }
+
+
+def _demands(schema: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
+    """Return what the tables in a value must have, which is moved out of their definitions.
+
+    Lists are given whole, whatever is inherited: tables in them keep what they must have.
+    """
+    if "$ref" in schema:
+        name = schema["$ref"].rpartition("/")[2]
+        table = tables[name]
+        if WHOLE not in table.get("$defs", {}):
+            must = {"required": table.pop("required")} if "required" in table else {}
+            must |= _demands(table, tables)
+            if must:
+                table["$defs"] = {WHOLE: must}
+        return {"$ref": f"#/$defs/{name}/$defs/{WHOLE}"} if "$defs" in table else {}
+    options = schema.get("oneOf") or schema.get("anyOf") or ()
+    each = [_demands(option, tables) for option in options]
+    if any(each):
+        kinds = ({"type": option.get("type", "object")} for option in options)
+        return {"anyOf": [own or kind for own, kind in zip(each, kinds, strict=True)]}
+    below = schema.get("properties", {})
+    found = {key: must for key, value in below.items() if (must := _demands(value, tables))}
+    by_name = schema.get("additionalProperties")
+    if isinstance(by_name, dict) and (must := _demands(by_name, tables)):
+        return {"additionalProperties": must}
+    return {"properties": found} if found else {}
 
 
 def _without_null(schema: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Tables of a case: what they hold by name, never changed."""
+"""Tables of cases and results: what they hold by name, never changed."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ Item = TypeVar("Item")
 
 
 class Table(dict[str, Item]):
-    """A table that refuses to be changed, as what is known of its case would no longer be true."""
+    """A table that refuses to be changed: what is known of its case would no longer be true."""
 
     def _refuse(self, *_: object, **__: object) -> NoReturn:
-        raise TypeError("a case does not change: Case.replace returns one with other values")
+        raise TypeError("cases and results do not change: Case.replace makes one of other values")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.case.table import Table
 from loadshare.certify.state import ClaimedState, size
 
 Array = NDArray[np.float64]
@@ -99,7 +100,7 @@ def float_states(
         margin left, is contact.
     """
     rests = Rests(state, [undetermined], band)
-    return {gear: rests.one(gear) for gear in state.of.train.floating}
+    return Table({gear: rests.one(gear) for gear in state.of.train.floating})
 
 
 class Boundaries(NamedTuple):

@@ -70,14 +70,14 @@ class ClaimedState:
 
     def _put_flanks(self) -> None:
         of, here, claim = self.of, self.here, self.claim
-        gap = np.where(of.is_drive[:, None], here.gap[of.mesh_of], here.backlash[of.mesh_of])
+        gap = here.gap
         offset, moved = (v.reshape(-1, v.shape[-1]) for v in (here.offset, claim.displacement))
         self.at_rest = of.pushing @ offset - gap
         self._limits = np.abs(gap).max(axis=0, initial=0.0)
         self.approach = of.turning @ claim.rotation
         self.approach += of.pushing @ moved
         self.approach += self.at_rest
-        b, c = here.bending[of.mesh_of], here.hertz[of.mesh_of]
+        b, c = here.bending, here.hertz
         positive = np.maximum(self.force, 0.0)
         self._root = np.zeros_like(positive)
         if c.any():
@@ -90,7 +90,7 @@ class ClaimedState:
     @cached_property
     def _tables(self) -> tuple[Array, Array]:
         """Forces and compressions of the tabulated flanks, shape (tabled, points, S or 1)."""
-        tables = self.here.table[self.of.mesh_of[self.of.tabled]]
+        tables = self.here.table[self.of.tabled]
         return tables[:, 0], tables[:, 1]
 
     @cached_property
@@ -99,7 +99,7 @@ class ClaimedState:
         of, here, root = self.of, self.here, self._root
         flanks, tabled = len(root), of.tabled
         approach, positive = self.approach[:flanks], np.maximum(self.force[:flanks], 0.0)
-        b, c = here.bending[of.mesh_of], here.hertz[of.mesh_of]
+        b, c = here.bending, here.hertz
         square = root * root
         dual = 0.5 * b * positive**2 + 0.6 * c * (square * square * root)
         primal = strain_energy(b, c, approach, root)
@@ -264,7 +264,7 @@ class ClaimedState:
         Infinite where a Hertz contact carries nothing; none, where it follows a table.
         """
         of, here, root = self.of, self.here, self._root
-        b, c = here.bending[of.mesh_of], here.hertz[of.mesh_of]
+        b, c = here.bending, here.hertz
         with np.errstate(divide="ignore", invalid="ignore"):
             flanks = b + np.where(c > 0.0, 2.0 * c / (3.0 * root), 0.0)
         flanks[of.tabled] = 0.0

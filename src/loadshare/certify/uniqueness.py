@@ -35,10 +35,11 @@ from loadshare.certify.pulls import Pull, pulls_of
 from loadshare.certify.state import ClaimedState
 from loadshare.contact.radial import Piece
 from loadshare.settings import CERTIFY
+from loadshare.train.elements import Spline
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
-from loadshare.train.train import Spline, Train
+from loadshare.train.train import Train
 
 MEANINGS = {
     "convex": "only answer: the problem is convex",
@@ -168,7 +169,7 @@ class _System:
         for e in np.flatnonzero(state.claim.flank_force[:, 0] > self.load).tolist():
             slope = self._slope(e)
             if e in of.tabled:
-                forces, compressions = np.diff(state.here.table[of.mesh_of[e], :, :, 0])
+                forces, compressions = np.diff(state.here.table[e, :, :, 0])
                 slope = float(np.nanmin(forces / compressions))
             self._hold(self.rows[e], slope)
             if math.isfinite(slope):

@@ -182,12 +182,9 @@ class Measuring:
         shifts = np.ascontiguousarray(
             (answers.displacement + situations.offset).reshape(len(answers.rotation), -1).T
         )
-        gap = np.where(
-            of.is_drive, situations.gap[:, of.mesh_of], situations.backlash[:, of.mesh_of]
-        )
         compression = of.turning @ answers.rotation.T
         compression += of.pushing @ shifts
-        compression -= gap.T
+        compression -= situations.gap.T
         turned = np.abs((self.across / self.line) @ shifts)
         neglected = 0.5 * self.line * turned * turned
         room = np.maximum(-compression, 0.0) - neglected
@@ -282,8 +279,8 @@ class Measuring:
             "centre": np.sqrt((answers.displacement**2).sum(axis=2)).T / of.radius[:, None],
             "rotation": np.abs(answers.rotation).T,
         }
-        backlash = situations.backlash[:, of.mesh_of].T
-        some = np.isfinite(backlash) & (backlash > 0.0)
+        backlash = situations.gap.T
+        some = ~of.is_drive[:, None] & (backlash > 0.0)
         if some.any():
             size = np.hypot(of.pushing @ shifts, self.across @ shifts)
             found["backlash"] = np.where(some, size / np.where(some, backlash, 1.0), -1.0)

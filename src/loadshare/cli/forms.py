@@ -176,9 +176,9 @@ def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> 
 
     def workbook() -> bytes:
         from loadshare.exchange.spreadsheet import workbook_of
-        from loadshare.exchange.spreadsheet.importing import FOUND
+        from loadshare.exchange.spreadsheet.sheet import FOUND
 
-        return workbook_of({f"{FOUND}{name}": csv_of(frame())})
+        return workbook_of({f"{FOUND}{name}": frame()})
 
     return {
         "csv": lambda: csv_of(frame()),
@@ -200,8 +200,16 @@ def _drawn(figure: Callable[[], Figure], form: str) -> str | bytes:
 
 def _parquet(frame: pd.DataFrame) -> bytes:
     held = BytesIO()
-    frame.infer_objects().convert_dtypes().to_parquet(held, index=False)
+    frame.infer_objects().apply(_of_one_type).to_parquet(held, index=False)
     return held.getvalue()
+
+
+def _of_one_type(column: pd.Series[Any]) -> pd.Series[Any]:
+    """Return a column of the type that it has in every file: figures may happen to be whole."""
+    known = column.dropna()
+    if len(known) and all(isinstance(value, float) for value in known):
+        return column.astype("Float64")
+    return column if column.dtype.kind == "f" else column.convert_dtypes()
 
 
 def _netcdf(name: str, frame: pd.DataFrame) -> bytes:

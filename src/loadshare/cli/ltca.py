@@ -166,8 +166,9 @@ def _print_summary(pair: PairFile, found: Ltca) -> None:
         say(f"b or c is held at 0 at position {where}: the angles ask for a negative one.")
     if pair.offset:
         say(
-            f"The misalignment turns the driver by {1e6 * pair.offset:.3f} µrad as a whole; the "
-            "law leaves that out."
+            f"Offset and gear shift turn the driver by {1e6 * pair.offset:.3f} µrad as a whole; "
+            "the law leaves that out. In a case, state them as installation errors of the face "
+            "gear."
         )
     edges: dict[str, list[int]] = {}
     for edge in found.edges:

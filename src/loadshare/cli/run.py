@@ -16,9 +16,11 @@ from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, w
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
 from loadshare.cli.refusal import refusal_lines, refused_document
 from loadshare.errors import Refused
-from loadshare.output import clear
+from loadshare.output import clear, csv_of
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from loadshare.case import Case
     from loadshare.results import Result
 
@@ -174,7 +176,7 @@ def _write(
     single = [output for output in files or () if output.form != FOLDER]
     for output in files or ():
         if output.form == FOLDER:
-            texts = {output.file / f"{name}.csv": text for name, text in made().items()}
+            texts = {output.file / f"{name}.csv": csv_of(frame) for name, frame in made().items()}
             clear(texts)
             for name, text in texts.items():
                 save_text(name, text)
@@ -186,11 +188,11 @@ def _write(
     write_all(single, makers)
 
 
-def _tables(result: Result) -> dict[str, str]:
-    from loadshare.exchange.spreadsheet import export_tables
+def _tables(result: Result) -> dict[str, pd.DataFrame]:
+    from loadshare.exchange.spreadsheet import export_frames
 
     with reporting_problems():
-        return export_tables(result)
+        return export_frames(result)
 
 
 def _wanted(positions: list[int] | None, count: int) -> list[int]:

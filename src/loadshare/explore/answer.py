@@ -4,28 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 from loadshare.case import Case
 from loadshare.case.keys import dotted
 from loadshare.errors import CaseError, Refused
 from loadshare.explore.inputs import Inputs
-from loadshare.explore.pictures import float_shapes, train_shapes
+from loadshare.explore.pictures import float_shapes, force_shapes, train_shapes
 from loadshare.job import solve
 from loadshare.job.positions import prepared
+from loadshare.report.flanks import carrying
 from loadshare.report.numbers import decimals, fixed, omega, small
-from loadshare.report.page.verdict import trust, verdict_tables
+from loadshare.report.page.verdict import measure_of, trust, verdict_tables
 from loadshare.report.palette import palette_of
 from loadshare.report.records import Cell, Record, Table, table
 from loadshare.report.words import boundary_name
 from loadshare.results import Position, Result
-from loadshare.settings import EXPLORE
+from loadshare.settings import ALLOWED, EXPLORE
+from loadshare.study.parameter import read_value
 
 CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
 Plain = dict[str, Any]
 Setting = Mapping[str, object]
-MOVING = ("gears.", "meshes.", "errors.")
-"""Beginnings of keys that may move what the drawing of the train shows."""
+MOVING = ("gears.", "meshes.", "errors.", "operating.")
+"""Beginnings of keys that may change the drawing of the train: its places, roles and colours."""
 
 
 def setting_of(inputs: Inputs, given: Setting) -> Case:
@@ -55,56 +58,77 @@ def answer_of(inputs: Inputs, given: Setting, position: int) -> Plain:
         Inputs that differ from the case.
     position : int
         1-based, of which pictures are drawn; the last one where there are fewer.
+
+    Raises
+    ------
+    CaseError
+        If the setting makes no case.
     """
-    try:
-        case = setting_of(inputs, given)
-        count = prepared(case)[1].train.count
-    except CaseError as error:
-        return invalid(error)
-    position = min(position, count)
-    few = count <= EXPLORE.together
-    result, messages = _solved(case, None if few else [position])
-    found: Plain = {"position": position, "count": count, "messages": messages}
-    found["solved"] = count if few else 1
-    if result is None:
-        return {"status": REFUSED} | found
-    shown = next((p for p in result.positions if p.position == position), None)
-    found |= {"status": PARTLY if messages else CERTIFIED, "bound": _bound_text(result, count)}
-    found |= {
-        "tables": [plain(t) for t in verdict_tables(result)],
-        "bars": list(_bars(result, shown)),
-    }
-    if shown is not None:
-        found["floats"] = list(float_shapes(result, shown))
-        found["forces"] = dict(shown.loads.meshes)
-        found["states"] = plain(states(shown))
-    if any(key.startswith(MOVING) for key in given):
-        found["train"] = train_shapes(case)
-    return found
+    return _answer(inputs, given, position, EXPLORE.together)[0]
 
 
-def whole_of(inputs: Inputs, given: Setting) -> Plain:
-    """Solve a setting at all positions, and tell how far its answer is to be trusted.
+def whole_of(inputs: Inputs, given: Setting, position: int) -> Plain:
+    """Return the same answer at all positions, and how far it is to be trusted.
 
-    This is what takes too long to follow a slider.
+    This is what takes too long to follow a slider. It holds all that `answer_of` returns, so that
+    a page shows it in place of that.
     """
-    try:
-        case = setting_of(inputs, given)
-        prepared(case)
-    except CaseError as error:
-        return invalid(error)
-    result, messages = _solved(case, None)
-    found: Plain = {"messages": messages}
+    found, result = _answer(inputs, given, position, ALLOWED.positions)
     if result is None:
-        return {"status": REFUSED} | found
-    found |= {"status": PARTLY if messages else CERTIFIED, "trust": trust(result)}
-    found["tables"] = [plain(t) for t in verdict_tables(result)]
+        return found
+    found["trust"] = trust(result)
     if len(result.positions) > 1:
         found["cycle"] = {
             "positions": [p.position for p in result.positions],
             "omega": {name: list(values) for name, values in _cycle(result)},
         }
     return found
+
+
+def _answer(
+    inputs: Inputs, given: Setting, position: int, together: int
+) -> tuple[Plain, Result | None]:
+    """Return the answer at up to so many positions, beyond them at one, and its result."""
+    case = setting_of(inputs, given)
+    train = prepared(case)[1].train
+    position = min(position, train.count)
+    every = train.count <= together
+    result, messages = _solved(case, None if every else [position])
+    found: Plain = {
+        "position": position,
+        "count": train.count,
+        "solved": train.count if every else 1,
+        "messages": messages,
+        "numbers": dict(_numbers(inputs, given)),
+    }
+    if any(key.startswith(MOVING) for key in given):
+        found["train"] = train_shapes(case)
+    if result is None:
+        return {"status": REFUSED} | found, None
+    shown = next((p for p in result.positions if p.position == position), None)
+    found |= {
+        "status": PARTLY if messages else CERTIFIED,
+        "bound": _bound_text(result, found["solved"]),
+        "measure": measure_of(result),
+        "tables": [plain(t) for t in verdict_tables(result)],
+        "bars": list(_bars(result, shown)),
+    }
+    if shown is not None:
+        found["floats"] = list(float_shapes(result, shown))
+        found["forces"] = list(force_shapes(train, shown))
+        found["states"] = plain(states(shown))
+    return found, result
+
+
+def _numbers(inputs: Inputs, given: Setting) -> Iterator[tuple[str, float]]:
+    """Yield the numbers of a setting in the units of the case, in which sliders count."""
+    for key, value in given.items():
+        read = read_value(value)
+        if read is None:
+            continue
+        # What a plain number means, such as a per cent, a slider cannot show.
+        with suppress(ValueError):
+            yield key, float(f"{read.in_unit(inputs.every[key].unit).number:.12g}")
 
 
 def _solved(case: Case, positions: list[int] | None) -> tuple[Result | None, list[str]]:
@@ -115,14 +139,15 @@ def _solved(case: Case, positions: list[int] | None) -> tuple[Result | None, lis
         return refusal.partial, str(refusal).splitlines()
 
 
-def _bound_text(result: Result, count: int) -> str:
+def _bound_text(result: Result, solved: int) -> str:
     """How good an answer is, in a sentence: what was proved when it was judged."""
-    done = len(result.positions)
+    done, count = len(result.positions), result.positions[0].train.count
     where = f"{done} of {count} positions" if count > 1 else "the answer"
+    later = "" if solved == count else " so far, all when nothing moves"
     proved = max(p.certificate.proved for p in result.positions)
     return (
-        f"{where} certified: every torque within {small(proved)} of the exact equilibrium's, "
-        "as a part of the largest torque"
+        f"{where} certified{later}: every torque within {small(proved)} of the exact "
+        "equilibrium's, as a part of the largest torque"
     )
 
 
@@ -175,22 +200,20 @@ def states(shown: Position) -> Table:
 
 
 def _states(shown: Position) -> Iterator[Record]:
-    train, force = shown.train, shown.equilibrium.flank_force
-    floats = shown.floats.values()
-    sizes = [*force.values(), *(t.force for f in floats for t in f.boundaries)]
+    floats, flanks = shown.floats.values(), list(carrying(shown))
+    sizes = [*(f.force for f in flanks), *(t.force for f in floats for t in f.boundaries)]
     places = decimals(sizes)
-    least = 0.5 * 10.0**-places
 
     def row(element: str, state: str, size: float) -> Record:
         text = fixed(size, places) if size > 0.0 else ""
         return {"element": Cell(element), "state": Cell(state), "force": Cell(text, size)}
 
-    for name, mesh in train.meshes.items():
-        flanks = {drive: force[mesh.flank_name(drive)] for drive in mesh.flanks}
-        closed = {("drive" if drive else "coast"): f for drive, f in flanks.items() if f > least}
-        flanks_closed = " and ".join(closed) + (" flanks" if len(closed) > 1 else " flank")
-        state = f"{flanks_closed} closed" if closed else "open"
-        yield row(f"mesh {name}", state, sum(closed.values()))
+    for name in shown.train.meshes:
+        closed = [flank for flank in flanks if flank.mesh == name]
+        for flank in closed:
+            yield row(f"mesh {name}", f"{flank.side} closed", flank.force)
+        if not closed:
+            yield row(f"mesh {name}", "open", 0.0)
     for found in floats:
         touching = [touch for touch in found.boundaries if touch.touching]
         for touch in touching:
@@ -221,6 +244,7 @@ def case_of(inputs: Inputs) -> Plain:
                 one.turning,
                 one.about,
                 one.assumed,
+                one.geometry,
             ]
             for one in inputs.every.values()
         ],

@@ -32,6 +32,8 @@ ANGLES = ("direction", "phase")
 """Last steps of keys that go round: they have a dial."""
 ZERO = {"m": 1e-4, "N": 1e3, "N*m": 100.0, "rad": 1e-2, "K": 50.0}
 """Reach of a slider whose input is zero [SI], by the unit; one of its own unit for all others."""
+FITTING = ("m", "rad", "")
+"""SI units of what makes gears fit."""
 COARSE = 1e-3
 """Lengths from here on are of the geometry, which has to fit: their sliders reach a little way."""
 
@@ -59,6 +61,9 @@ class Input:
     about : str
         What it is.
     assumed : bool
+    geometry : bool
+        Whether it is a count or one of the lengths and angles that make the gears fit: no
+        tolerance study varies it.
     """
 
     key: str
@@ -72,6 +77,7 @@ class Input:
     turning: bool
     about: str
     assumed: bool
+    geometry: bool
 
 
 @dataclass(frozen=True)
@@ -220,6 +226,7 @@ class Inputs:
             turning=turning,
             about=about,
             assumed=self.case.is_assumed(dotted(path)),
+            geometry=whole or (path[0] == "gears" and value.si_unit in FITTING),
         )
 
 

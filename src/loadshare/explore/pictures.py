@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
@@ -14,12 +13,13 @@ from loadshare.errors import CaseError
 from loadshare.report.figures.layout import Body, Layout, layout_of
 from loadshare.report.figures.marks import Point, circle
 from loadshare.report.figures.region import Journey
+from loadshare.report.flanks import carrying, reaction_size
 from loadshare.report.numbers import significant
 from loadshare.report.palette import Palette, palette_of
 from loadshare.report.units import MICROMETRE, MILLIMETRE, engineering
 from loadshare.report.words import direction_name
 from loadshare.results import Position, Result
-from loadshare.train import build_train
+from loadshare.train import Train, build_train
 from loadshare.train.gear import Vector, transverse_frame
 
 Plain = dict[str, Any]
@@ -37,14 +37,14 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
     for gear in shown.floats:
         journey = Journey(here, shown.train, gear)
         region, rest = journey.region, journey.rests[0]
-        middle, half = journey.view
-        size = math.hypot(*rest.reaction)
+        view = _square(journey.view, [p.displacement[gear] for p in result.positions])
+        size = reaction_size(shown, gear)
         force = engineering([size], "N")
         yield {
             "gear": gear,
             "colour": palette.gear(gear).colour,
             "axes": [direction_name(v) for v in result.frames[gear]],
-            "view": [*_point(middle), MICROMETRE.of(half)],
+            "view": [MICROMETRE.of(v) for v in view],
             "pieces": [_path(piece) for piece in region.pieces] if region else [],
             "edges": [[b.name, _path(b.path), list(b.outward)] for b in region.boundaries]
             if region
@@ -54,9 +54,40 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
             ],
             "path": [_point(p.displacement[gear]) for p in result.positions],
             "here": _point(shown.displacement[gear]),
-            "reaction": [v / size for v in rest.reaction] if size > 0.0 else None,
-            "force": f"{significant(force.of(size))} {force.name}" if size > 0.0 else "",
+            "reaction": [v / size for v in rest.reaction] if size else None,
+            "force": f"{significant(force.of(size))} {force.name}" if size else "",
             "told": journey.subtitle[:-1],
+        }
+
+
+def _square(view: tuple[Point, float], path: list[Point]) -> tuple[float, float, float]:
+    """Return middle and half the side of a square that holds a view, and a path with some room."""
+    middle, half = view
+    lows = [min(m - half, *(1.1 * p[k] - 0.1 * m for p in path)) for k, m in enumerate(middle)]
+    highs = [max(m + half, *(1.1 * p[k] - 0.1 * m for p in path)) for k, m in enumerate(middle)]
+    x, y = (0.5 * (low + high) for low, high in zip(lows, highs, strict=True))
+    return x, y, 0.5 * max(high - low for low, high in zip(lows, highs, strict=True))
+
+
+def force_shapes(train: Train, shown: Position) -> Iterator[Plain]:
+    """Yield every flank that carries: its force and, as a unit vector, its push on the driven gear.
+
+    Parameters
+    ----------
+    train : Train
+        Placed as it is drawn, whatever has turned at the position.
+    shown : Position
+    """
+    for flank in carrying(shown):
+        mesh = train.meshes[flank.mesh]
+        normal = mesh.drive_normal if flank.drive else mesh.coast_normal
+        unit = engineering([flank.force], "N")
+        yield {
+            "mesh": flank.mesh,
+            "force": flank.force,
+            "push": normal.round(6).tolist(),
+            "text": f"{flank.where}, on gear {mesh.driven}: "
+            f"{significant(unit.of(flank.force))} {unit.name}",
         }
 
 
@@ -90,18 +121,13 @@ def _view(layout: Layout, palette: Palette, frame: Vector) -> Plain:
     return {
         "title": f"Seen against {direction_name(against)}",
         "axes": [direction_name(v) for v in frame],
+        "frame": frame.tolist(),
         "low": low.round(PLACES).tolist(),
         "high": high.round(PLACES).tolist(),
         "gears": [_gear(layout, palette, body, frame, against) for body in bodies],
         "shafts": [_line((layout.bodies[n].centre for n in ends), frame) for ends in layout.shafts],
         "meshes": [
-            {
-                "name": pair.name,
-                "at": _line([pair.pitch_point], frame)[0],
-                "push": None if pair.push is None else (frame @ pair.push).round(6).tolist(),
-                "colour": palette.mesh(pair.name).colour,
-            }
-            for pair in layout.pairs
+            {"name": pair.name, "at": _line([pair.pitch_point], frame)[0]} for pair in layout.pairs
         ],
     }
 

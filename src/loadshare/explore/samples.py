@@ -52,11 +52,14 @@ class Scatter(NamedTuple):
     name : str
     table : dict
         As ``[study.NAME]`` has it.
+    left : tuple of str
+        Inputs that are shown and do not scatter.
     """
 
     case: Case
     name: str
     table: dict[str, Any]
+    left: tuple[str, ...]
 
 
 def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
@@ -71,9 +74,9 @@ def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
     """
     given = setting(body)
     if body.get("study") is None:
-        name, case, table = SHOWN, *_of_shown(inputs, body, given)
+        name, (case, table, left) = SHOWN, _of_shown(inputs, body, given)
     else:
-        name, case = text(body, "study"), by_parts(inputs, (), given)
+        name, case, left = text(body, "study"), by_parts(inputs, (), given), []
         table = case.to_dict().get("study", {}).get(name, {})
         if table.get("kind") != "tolerance":
             raise RequestError(400, "there is no such tolerance study")
@@ -81,18 +84,25 @@ def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
     table["seed"] = number(body, "seed", 0, 0, 2**53)
     if body.get("limit") is not None:
         table["limit"] = finite(body, "limit")
-    return Scatter(case, name, table)
+    return Scatter(case, name, table, tuple(left))
 
 
 def _of_shown(
     inputs: Inputs, body: Mapping[str, Any], given: Mapping[str, object]
-) -> tuple[Case, dict[str, Any]]:
+) -> tuple[Case, dict[str, Any], list[str]]:
     ranges = body.get("ranges")
     if not isinstance(ranges, dict) or not ranges:
         raise RequestError(400, "ranges is no object of [low, high] by input")
+    left = [n for n in ranges if any(inputs.every[k].geometry for k in inputs.keys(n))]
+    if len(left) == len(ranges):
+        raise RequestError(
+            400, f"only counts and geometry are shown ({', '.join(left)}); add an input that varies"
+        )
     spreads: dict[str, Any] = {}
     every: list[str] = []
     for name, ends in ranges.items():
+        if name in left:
+            continue
         keys = inputs.keys(name)
         if not isinstance(ends, list) or len(ends) != 2:
             raise RequestError(400, f"the range of {name} is no [low, high]")
@@ -103,7 +113,7 @@ def _of_shown(
     table: dict[str, Any] = {"kind": "tolerance", "inputs": spreads}
     if prepared(case)[1].train.count > EXPLORE.together:
         table["positions"] = [place(body)]
-    return case, table
+    return case, table, left
 
 
 def _spread(one: Input, given: Mapping[str, object], low: float, high: float) -> dict[str, Any]:
@@ -146,6 +156,7 @@ def start_study(question: Scatter) -> Plain:
             "positions": list(settings["positions"]),
             "limit": block.limit,
             "engine": engine,
+            "left": list(question.left),
             "inputs": [[one.name, str(one.distribution)] for one in job.inputs.every],
             "toml": toml_text({"study": {question.name: question.table}}),
         },

@@ -43,6 +43,7 @@ INDEX = "index.html"
 Body = dict[str, Any]
 Parts = AsyncIterator[dict[str, Any]]
 Found = TypeVar("Found")
+Answering = Callable[[Inputs, Mapping[str, object], int], dict[str, Any]]
 Handler = Callable[[Request], Awaitable[Response]]
 
 
@@ -101,16 +102,19 @@ class Explorer:
         """What the page must know of the case."""
         return JSONResponse(await self.solved(partial(case_of, self.inputs)))
 
+    async def answered(self, request: Request, work: Answering) -> Response:
+        """What is answered to a setting and a position."""
+        body = await body_of(request)
+        asked = partial(work, self.inputs, setting(body), place(body))
+        return JSONResponse(await self.solved(asked))
+
     async def answer(self, request: Request) -> Response:
         """A setting, solved."""
-        body = await body_of(request)
-        work = partial(answer_of, self.inputs, setting(body), place(body))
-        return JSONResponse(await self.solved(work))
+        return await self.answered(request, answer_of)
 
     async def whole(self, request: Request) -> Response:
         """The same at all positions, and how far it is to be trusted."""
-        body = await body_of(request)
-        return JSONResponse(await self.solved(partial(whole_of, self.inputs, setting(body))))
+        return await self.answered(request, whole_of)
 
     async def keys(self, request: Request) -> Response:
         """The inputs that a name means: one with a star, or several joined."""

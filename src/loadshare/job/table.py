@@ -15,7 +15,7 @@ from loadshare.case import Case
 from loadshare.job.block import RUNGS, Block
 from loadshare.results.dataset import VARIABLES, Variable
 from loadshare.results.figures import COMPONENTS
-from loadshare.results.share import mesh_torques, shares
+from loadshare.results.share import MeshTorques, mesh_torques, shares
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.train import Train
 
@@ -152,11 +152,11 @@ class Table:
             self.each[name][place] = getattr(block, each.field)
         self.message |= block.message
         for p, answers in enumerate(block.equilibria):
-            torque, _ = mesh_torques(answers)
+            torques = mesh_torques(answers.names.train, answers.flank_force)
             for name, values in self.variables.items():
-                values[place, p] = self._read(name, answers, torque)
+                values[place, p] = self._read(name, answers, torques)
 
-    def _read(self, name: str, answers: Equilibria, torque: Array) -> Array:
+    def _read(self, name: str, answers: Equilibria, torques: MeshTorques) -> Array:
         """Return a variable of a block at one position."""
         if name == "displacement":
             flat = answers.displacement.reshape(len(answers.displacement), -1)
@@ -164,9 +164,8 @@ class Table:
             frames = self.frames if train.placed is None else _frames(train)
             return (flat @ frames).reshape(len(flat), frames.shape[1] // 2, 2)
         if name in ("share", "pair_share"):
-            train = self.names.train
-            return shares(torque, tuple(train.meshes), train.stages, pairs=name == "pair_share")
-        return torque if name == "torque" else answers.ring_force
+            return shares(torques, self.names.train.stages, pairs=name == "pair_share")
+        return torques.net if name == "torque" else answers.ring_force
 
     def dataset(self, case: Case, tolerance: float) -> xr.Dataset:
         """Return everything with labels."""

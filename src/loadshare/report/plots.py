@@ -71,8 +71,8 @@ class Plots:
         return laws.law(self.result, build_train(self.result.case))
 
     def train(self) -> Figure:
-        """Drawing of the train."""
-        return trains.train(self.result.case)
+        """Drawing of the train, with the push of the flanks that carry at the first position."""
+        return trains.train(self.result.case, self.result)
 
 
 @singledispatch

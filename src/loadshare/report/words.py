@@ -33,7 +33,9 @@ def period_text(period: Period, driving: str) -> str:
     )
 
 
-def rest_lines(rests: Sequence[FloatState], positions: Sequence[int]) -> list[str]:
+def rest_lines(
+    rests: Sequence[FloatState], positions: Sequence[int], least: float = 0.0
+) -> list[str]:
     """Return where a float rests over the positions, its margin or reaction, in a line or two.
 
     Parameters
@@ -41,6 +43,8 @@ def rest_lines(rests: Sequence[FloatState], positions: Sequence[int]) -> list[st
     rests : sequence of FloatState
     positions : sequence of int
         Their numbers.
+    least : float
+        Reaction [N] up to which there is none.
     """
     where = Counter(_where(rest) for rest in rests)
     if len(where) == 1:
@@ -56,7 +60,7 @@ def rest_lines(rests: Sequence[FloatState], positions: Sequence[int]) -> list[st
         lines.append(f"least margin inside {significant(unit.of(least), 3)} {unit.name}")
     forces = [math.hypot(*rest.reaction) for rest in rests]
     most = max(forces)
-    if most > 0.0 and len(rests) > 1 and most - min(forces) > 1e-6 * most:
+    if most > least and len(rests) > 1 and most - min(forces) > 1e-6 * most:
         unit = engineering([most], "N")
         at = positions[forces.index(most)]
         lines.append(f"reaction up to {significant(unit.of(most))} {unit.name}, at position {at}")
@@ -80,8 +84,11 @@ def boundary_name(name: str) -> str:
     return name.rpartition(": ")[2] if ": " in name else "ring"
 
 
-def spline_lines(rests: Sequence[FloatState]) -> list[str]:
-    """Return the stage of a float's spline over the positions and its force; none without one."""
+def spline_lines(rests: Sequence[FloatState], least: float = 0.0) -> list[str]:
+    """Return the stage of a float's spline over the positions and its force; none without one.
+
+    A force up to `least` [N] is none.
+    """
     stages = Counter(rest.spline for rest in rests if rest.spline)
     if not stages:
         return []
@@ -90,7 +97,8 @@ def spline_lines(rests: Sequence[FloatState]) -> list[str]:
     text = ", ".join(
         stage if len(stages) == 1 else f"{stage} at {count}" for stage, count in stages.items()
     )
-    return [f"spline: {text}; force up to {significant(unit.of(most))} {unit.name}"]
+    force = f"{significant(unit.of(most))} {unit.name}" if most > least else "0 N"
+    return [f"spline: {text}; force up to {force}"]
 
 
 def places_text(numbers: Sequence[int]) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from loadshare.case.table import Table
 from loadshare.train.equilibria import Names
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.train import Train
@@ -90,7 +91,7 @@ def claim_of(train: Train, found: Equilibrium) -> Claim:
         flank_force=_plain(found.flank_force),
         ring_force=_plain(found.ring_force),
         radial_reaction=_tuples(found.radial_reaction),
-        shaft_torque=torque,
+        shaft_torque=Table(torque),
         support_force=_tuples(force),
         slip=_tuples(train.slip) if train.slip else None,
     )
@@ -124,8 +125,8 @@ def _names(train: Train, *, memory: bool) -> dict[str, tuple[str, ...]]:
 
 
 def _plain(figures: Mapping[str, float]) -> dict[str, float]:
-    return {name: float(value) for name, value in figures.items()}
+    return Table({name: float(value) for name, value in figures.items()})
 
 
 def _tuples(vectors: Mapping[str, np.ndarray]) -> dict[str, Any]:
-    return {name: tuple(float(part) for part in vector) for name, vector in vectors.items()}
+    return Table({k: tuple(float(part) for part in vector) for k, vector in vectors.items()})

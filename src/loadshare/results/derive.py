@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from loadshare.case import Case
+from loadshare.case.table import Table
 from loadshare.results.result import Answered, Position, Result, Stamp
-from loadshare.results.share import largest, pair_shares, stage_shares
+from loadshare.results.share import coefficients, flank_torques, largest, largest_of
 from loadshare.train.train import Train
 
 
@@ -25,17 +26,17 @@ def position_of(
         Of the answer [N].
     answer : Answered
     """
-    drive, coast = {}, {}
-    for name, mesh in train.meshes.items():
-        parts = [mesh.lever(d) * float(flank_force[mesh.flank_name(d)]) for d in mesh.flanks]
-        coast[name] = sum(max(-part, 0.0) for part in parts)
-        drive[name] = sum(parts)
+    flanks = flank_torques(train, flank_force)
+    torque = Table({name: sum(both) for name, both in flanks.items()})
+    coast = Table({n: sum(max(-part, 0.0) for part in both) for n, both in flanks.items()})
+    largest_torque = largest_of(flanks)
+    stages = train.stages
     return Position(
         position=index,
-        torque=drive,
+        torque=torque,
         coast_torque=coast,
-        share=stage_shares(drive, train.stages),
-        pair_share=pair_shares(drive, train.stages),
+        share=coefficients(torque, [s.meshes for s in stages], largest_torque),
+        pair_share=coefficients(torque, [g for s in stages for g in s.groups], largest_torque),
         train=train,
         answer=answer,
     )
@@ -58,11 +59,13 @@ def result_from(
     """
     stages = train.stages
     return Result(
-        frames={
-            n: (tuple(g.plane[0].tolist()), tuple(g.plane[1].tolist()))
-            for n, g in train.gears.items()
-        },
-        stages={s.name: s.meshes for s in stages},
+        frames=Table(
+            {
+                n: (tuple(g.plane[0].tolist()), tuple(g.plane[1].tolist()))
+                for n, g in train.gears.items()
+            }
+        ),
+        stages=Table({s.name: s.meshes for s in stages}),
         positions=tuple(positions),
         omega=largest([p.share for p in positions], stages),
         pair_omega=largest([p.pair_share for p in positions], stages),

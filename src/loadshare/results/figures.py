@@ -16,7 +16,7 @@ from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import RESIDUALS, pushed_by_rings, scaled_residuals
 from loadshare.certify.state import ClaimedState
 from loadshare.certify.validity import measuring
-from loadshare.results.share import shares
+from loadshare.results.share import MeshTorques, shares
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Range
@@ -72,10 +72,14 @@ class Figures:
         return np.asarray(columns_of(self.train).over_meshes(figures))
 
     @cached_property
+    def _levers(self) -> Array:
+        """Torque of every flank on the gear that its mesh names first, per force [m], (flanks,)."""
+        return np.array([mesh.lever(drive) for mesh, drive in columns_of(self.train).all_flanks])
+
+    @cached_property
     def _flank_torque(self) -> Array:
         """Torque of every flank on the gear that its mesh names first [N·m], (S, flanks)."""
-        levers = [mesh.lever(drive) for mesh, drive in columns_of(self.train).all_flanks]
-        return np.asarray(self.answers.flank_force * np.array(levers))
+        return np.asarray(self.answers.flank_force * self._levers)
 
     @cached_property
     def torque(self) -> Array:
@@ -87,15 +91,20 @@ class Figures:
         """Part on the coast flank [N·m], (S, meshes)."""
         return self._over_meshes(np.maximum(-self._flank_torque, 0.0))
 
+    @property
+    def _torques(self) -> MeshTorques:
+        meshes = tuple(self.train.meshes)
+        return MeshTorques(meshes, self.torque, self.answers.flank_force, self._levers)
+
     @cached_property
     def share(self) -> Array:
         """Ω over the stage's mean, (S, meshes)."""
-        return shares(self.torque, tuple(self.train.meshes), self.train.stages)
+        return shares(self._torques, self.train.stages)
 
     @cached_property
     def pair_share(self) -> Array:
         """Ω over the group's mean, (S, meshes)."""
-        return shares(self.torque, tuple(self.train.meshes), self.train.stages, pairs=True)
+        return shares(self._torques, self.train.stages, pairs=True)
 
     @cached_property
     def mesh_position(self) -> Array:

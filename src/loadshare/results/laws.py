@@ -12,6 +12,9 @@ GIVEN = "given"
 """Basis of a law in numbers of which the case says no more."""
 MOST = 4
 """Meshes that a line names."""
+MISFIT = 0.03
+"""Part of the elastic angle by which a law may be off between the loads of its fit and need no
+warning: the models of the teeth are themselves off by as much [-]."""
 ROUNDED = 1e-6
 """Part of a torque by which it may pass a limit by rounding [-]."""
 
@@ -30,7 +33,8 @@ class LawUse:
         Largest tangential force at the reference circle per face width [N/m]; None where the case
         does not give teeth and face widths.
     note : str
-        That the load lies outside what the law holds for; empty where it does not.
+        That the load lies outside what the law holds for, or that the law is far off
+        between the loads it was fitted to; else empty.
     """
 
     basis: str
@@ -62,6 +66,10 @@ def laws_of(case: Case, torques: Sequence[Mapping[str, float]]) -> dict[str, Law
             note = _above(largest, law.holds_to.si)
         if note and load is not None:
             note += f"; it carries {load * 1e-3:.3g} N per mm of face width at most"
+        if law is not None and law.misfit is not None and law.misfit >= MISFIT:
+            note += "; " if note else ""
+            off = 100.0 * law.misfit
+            note += f"at loads other than those of its fit, the law is up to {off:.2g} % off"
         basis = law.basis if law is not None and law.basis else GIVEN
         found[name] = LawUse(basis, (least, largest), load, note)
     return found

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from loadshare.case.table import Table
 from loadshare.certify import Certificate, FloatState
 from loadshare.certify.uniqueness import MEANINGS, Uniqueness, uniqueness
 from loadshare.certify.validity import Measure, Validity, validity
@@ -177,13 +178,13 @@ class Position(Viewed):
         """
         gears, moved = self.train.gears, self.claim.displacement
         plane = {name: gears[name].plane @ p for name, p in moved.items()}
-        return {name: (float(p[0]), float(p[1])) for name, p in plane.items()}
+        return Table({name: (float(p[0]), float(p[1])) for name, p in plane.items()})
 
     @cached_property
     def mesh_position(self) -> Mapping[str, int]:
         """Position of every mesh in its own cycle, from 1."""
         index = self.equilibrium.index
-        return {mesh: k + 1 for mesh, k in self.train.mesh_positions(index).items()}
+        return Table({mesh: k + 1 for mesh, k in self.train.mesh_positions(index).items()})
 
     @cached_property
     def figures(self) -> Figures:

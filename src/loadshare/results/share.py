@@ -4,18 +4,79 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.train.equilibria import Equilibria
-from loadshare.train.train import Stage
+from loadshare.case.table import Table
+from loadshare.settings import CERTIFY
+from loadshare.train.elements import Stage
+from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
+Torque = TypeVar("Torque", float, Array)
+
+
+@dataclass(frozen=True, eq=False)
+class MeshTorques:
+    """Torques of S answers on the drivers of the meshes.
+
+    Attributes
+    ----------
+    meshes : tuple of str
+    net : ndarray, shape (S, meshes)
+        Drive flank less coast flank [N·m].
+    force : ndarray, shape (S, flanks)
+        [N].
+    lever : ndarray, shape (flanks,)
+        Net torque per force [m].
+    """
+
+    meshes: tuple[str, ...]
+    net: Array
+    force: Array
+    lever: Array
+
+    @cached_property
+    def largest(self) -> Array:
+        """Largest torque on any flank [N·m], (S,)."""
+        return np.asarray((np.abs(self.force) * np.abs(self.lever)).max(axis=1, initial=0.0))
+
+
+def flank_torques(train: Train, flank_force: Mapping[str, float]) -> dict[str, list[float]]:
+    """Return the torques of the flanks of every mesh on its driver [N·m], coast flanks negative.
+
+    Parameters
+    ----------
+    train : Train
+    flank_force : mapping of flank to float
+        [N].
+    """
+    return {
+        name: [mesh.lever(d) * float(flank_force[mesh.flank_name(d)]) for d in mesh.flanks]
+        for name, mesh in train.meshes.items()
+    }
+
+
+def largest_of(flanks: Mapping[str, Iterable[float]]) -> float:
+    """Largest of the torques of flanks [N·m]."""
+    return max((abs(torque) for both in flanks.values() for torque in both), default=0.0)
+
+
+def carries(mean: Torque, largest: Torque) -> Any:
+    """Whether a group with a mean torque carries, given the largest torque on any flank.
+
+    Flanks may press against one another, and branches brace one another, where next to nothing
+    passes through: a coefficient over a mean that is round-off says nothing.
+    """
+    return abs(mean) > CERTIFY.carries * largest
 
 
 def coefficients(
-    torque: Mapping[str, float], groups: Iterable[tuple[str, ...]]
+    torque: Mapping[str, float], groups: Iterable[tuple[str, ...]], largest: float
 ) -> dict[str, float | None]:
     """Ω of every branch: its torque over its group's mean; None where a group carries nothing.
 
@@ -25,22 +86,14 @@ def coefficients(
         [N·m].
     groups : iterable of tuple of str
         Meshes that share a torque.
+    largest : float
+        Torque on any flank [N·m].
     """
-    shares: dict[str, float | None] = {}
+    found: dict[str, float | None] = {}
     for group in groups:
         mean = math.fsum(torque[m] for m in group) / len(group)
-        shares |= {m: torque[m] / mean if mean else None for m in group}
-    return shares
-
-
-def stage_shares(torque: Mapping[str, float], stages: Iterable[Stage]) -> dict[str, float | None]:
-    """Ω over the mean of the whole stage."""
-    return coefficients(torque, [s.meshes for s in stages])
-
-
-def pair_shares(torque: Mapping[str, float], stages: Iterable[Stage]) -> dict[str, float | None]:
-    """Ω over the mean of the branch's group, such as the two idlers of one pinion."""
-    return coefficients(torque, [g for s in stages for g in s.groups])
+        found |= {m: torque[m] / mean if carries(mean, largest) else None for m in group}
+    return Table(found)
 
 
 def largest(
@@ -54,36 +107,40 @@ def largest(
         found[stage.name] = max(known, default=None)
     known = [v for v in found.values() if v is not None]
     found["system"] = max(known, default=None)
-    return found
+    return Table(found)
 
 
-def mesh_torques(answers: Equilibria) -> tuple[Array, tuple[str, ...]]:
-    """Return torques at the drivers [N·m], drive less coast, (S, meshes), and the meshes."""
-    meshes = answers.names.train.meshes
-    lever = np.zeros((answers.flank_force.shape[1], len(meshes)))
+def mesh_torques(train: Train, force: Array) -> MeshTorques:
+    """Return the torques that forces of flanks, (S, flanks) [N], exert on the drivers."""
+    meshes = train.meshes
+    lever = np.zeros((force.shape[1], len(meshes)))
     flank = 0
     for m, mesh in enumerate(meshes.values()):
         for drive in mesh.flanks:
             lever[flank, m] = mesh.lever(drive)
             flank += 1
-    return answers.flank_force @ lever, tuple(meshes)
+    return MeshTorques(tuple(meshes), force @ lever, force, lever.sum(axis=1))
 
 
-def shares(
-    torque: Array, meshes: tuple[str, ...], stages: Iterable[Stage], pairs: bool = False
-) -> Array:
-    """Return Ω of every mesh, shape (S, meshes): over its stage's mean, or over its group's.
+def shares(torques: MeshTorques, stages: Iterable[Stage], pairs: bool = False) -> Array:
+    """Return Ω of every mesh, shape (S, meshes): its torque over the mean of its stage or group.
 
     NaN for a mesh of no stage, and where a group carries nothing.
+
+    Parameters
+    ----------
+    torques : MeshTorques
+    stages : iterable of Stage
+    pairs : bool
+        Over the mean of the branch's group, such as the two idlers of one pinion.
     """
-    found = np.full_like(torque, np.nan)
-    order = {m: k for k, m in enumerate(meshes)}
-    with np.errstate(invalid="ignore", divide="ignore"):
-        for stage in stages:
-            for group in stage.groups if pairs else (stage.meshes,):
-                columns = [order[m] for m in group]
-                mean = torque[:, columns].mean(axis=1)
-                found[:, columns] = (
-                    torque[:, columns] / np.where(mean != 0.0, mean, np.nan)[:, None]
-                )
+    found = np.full_like(torques.net, np.nan)
+    order = {m: k for k, m in enumerate(torques.meshes)}
+    for stage in stages:
+        for group in stage.groups if pairs else (stage.meshes,):
+            columns = [order[m] for m in group]
+            of_group = torques.net[:, columns]
+            mean = of_group.mean(axis=1)
+            mean = np.where(carries(mean, torques.largest), mean, np.nan)
+            found[:, columns] = of_group / mean[:, None]
     return found

@@ -14,10 +14,11 @@ from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.scene import GearRadial, Scene
 from loadshare.scene.structure import ArcElement, RadialElement, Structure, structure_of
 from loadshare.settings import LAWS
+from loadshare.train.elements import Spline
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.placed import standing
 from loadshare.train.situations import Situations, situation_of
-from loadshare.train.train import Spline, Train
+from loadshare.train.train import Train
 
 
 def assemble(train: Train, index: int) -> Scene:

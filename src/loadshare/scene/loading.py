@@ -134,15 +134,15 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
         bends.append((column, 1.0 / situations.support[:, g, k]))
     if train.slip is not None:
         bends.append((columns.bends, np.repeat(0.5 / situations.spline[:, :, 0], 2, axis=1)))
-    m = np.array([number for number, *_ in structure.flanks], dtype=np.intp)
-    bends.append((columns.flanks, np.take(situations.bending, m, axis=1)))
+    bends.append((columns.flanks, situations.bending))
     gaps.append((columns.stops, situations.stop.reshape(len(situations.stop), -1)))
     walls = np.repeat(situations.wall, 2, axis=1)
     bends += [(columns.stops, walls), (columns.arcs, walls)]
     gaps.append((columns.radials, np.array([c for r in structure.radials for c in r.centre])[None]))
     tabulated = np.full(len(structure.names), -1)
     if situations.table.shape[-1]:
-        tabulated[columns.flanks] = np.where(situations.table[0, m, 0, 1] > 0.0, m, -1)
+        has = situations.table[0, :, 0, 1] > 0.0
+        tabulated[columns.flanks] = np.where(has, np.arange(len(has)), -1)
     load = situations.torque @ to_load
     if situations.push.any():
         load = load + situations.push.reshape(len(situations.push), -1) @ structure.pushed
@@ -154,7 +154,7 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
         bending=_side_by_side(structure, bends, force / length),
         hertz=_side_by_side(
             structure,
-            [(columns.flanks, np.take(situations.hertz, m, axis=1))],
+            [(columns.flanks, situations.hertz)],
             math.cbrt(force) ** 2 / length,
         ),
         tabulated=tabulated,

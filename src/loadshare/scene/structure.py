@@ -272,14 +272,8 @@ class Structure:
 
     def gaps_of_flanks(self, situations: Situations) -> Array:
         """Gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
-        m = np.array([number for number, *_ in self.flanks], dtype=np.intp)
-        drive = np.array([drives for *_, drives in self.flanks], dtype=bool)
-        found = np.take(situations.backlash, m, axis=1)
-        if len(found) < len(situations.gap):
-            found = np.repeat(found, len(situations.gap), axis=0)
-        found[:, drive] = situations.gap[:, m[drive]]
         flat = situations.offset.reshape(len(situations.offset), -1)
-        return np.asarray(found - self.at_rest - (self.nearer @ flat.T).T)
+        return np.asarray(situations.gap - self.at_rest - (self.nearer @ flat.T).T)
 
     @property
     def switches(self) -> int:

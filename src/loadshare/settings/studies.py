@@ -161,6 +161,8 @@ class March(NamedTuple):
     quick: int = 200
     """Newton steps in which a step with friction that follows the torque is mostly found at
     once."""
+    quick_plan: int = 60
+    """Newton steps in which a plan of a step with fixed friction is found, or mostly never."""
     passes: int = 40
     """Passes in which friction follows the torque."""
     settled: float = 1e-14

@@ -68,6 +68,8 @@ class Teeth(NamedTuple):
     fits: float = 1e-9
     """Part of a dimension, or of an angle [rad], by which it may differ from its partner's by
     rounding; likewise of how far tips reach."""
+    rounding: float = 1e-9
+    """Sum of profile shifts beyond the range of a formula that is rounding."""
     closing: float = 1e-6
     """Sum [m] of the single pitch deviations around a gear that is rounding."""
     radius: float = 1e-3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -22,10 +23,20 @@ from loadshare.train.memory import SlipFriction
 
 @dataclass(slots=True)
 class Known:
-    """What plans of a scene came to with a back-end, and what work is left for others."""
+    """What plans of a scene came to with a back-end, and what work is left for others.
+
+    Attributes
+    ----------
+    settled : dict of plan to Settled or Unsolved
+    work : Work
+        Newton steps left to all plans together.
+    each : float
+        Newton steps allowed to every plan, whatever the others took.
+    """
 
     settled: dict[tuple[object, ...], Settled | Unsolved] = field(default_factory=dict)
     work: Work = field(default_factory=Work)
+    each: float = math.inf
 
 
 def solve_scene(
@@ -112,7 +123,8 @@ def _once(
     key = (*plan.rows.values(), *plan.radials.values(), plan.condensed, method)
     if key not in known.settled:
         try:
-            known.settled[key] = settle(scene, plan, solver, options, method, known.work)
+            work = known.work if math.isinf(known.each) else Work(known.each)
+            known.settled[key] = settle(scene, plan, solver, options, method, work)
         except Unsolved as failure:
             known.settled[key] = failure
     found = known.settled[key]

@@ -26,10 +26,10 @@ from loadshare.study.answers import BACKEND
 from loadshare.study.memory import stepped
 from loadshare.study.positions import loaded
 from loadshare.train import Train, build_train
+from loadshare.train.elements import Spline
 from loadshare.train.gear import Vector
 from loadshare.train.memory import slip_of
 from loadshare.train.placed import standing
-from loadshare.train.train import Spline
 from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from itertools import combinations, islice
+from itertools import combinations, islice, product
 
 import numpy as np
 
@@ -34,11 +34,12 @@ from loadshare.solver import Options, Record, solve_scene
 from loadshare.solver.hot.proximal import search
 from loadshare.solver.position import Known, equilibrium_of, of_least_norm
 from loadshare.study.answers import BACKEND, certified
+from loadshare.train.elements import Spline
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.memory import SlipStop, slip_of
 from loadshare.train.situations import situation_of
-from loadshare.train.train import Spline, Train
+from loadshare.train.train import Train
 
 
 def stepped(train: Train, index: int) -> Answer:
@@ -288,9 +289,12 @@ def _held(
     scene = assemble(train, index)
     if gears:
         scene = _without_slip(scene, gears, _before(train))
-    for rung, options in tries:
+    # What a plan does not find soon, a wider one mostly does.
+    each = (math.inf,) if math.isfinite(steps) else (MARCH.quick_plan, math.inf)
+    for (rung, options), few in product(tries, each):
+        known = Known(work=Work(steps), each=few)
         try:
-            found, record = solve_scene(scene, options, Known(work=Work(steps)))
+            found, record = solve_scene(scene, options, known)
         except Refused:
             continue
         split = _split(train, found, gears, _before(train))

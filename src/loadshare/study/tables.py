@@ -122,17 +122,16 @@ def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
     found: dict[str, dict[str, np.ndarray]] = {}
     for part in sweep.answered.parts:
         answers, train = part.solved.found.equilibria, part.solved.machine.train
-        torque, meshes = mesh_torques(answers)
-        torque[list(part.refused)] = np.nan
+        force = answers.flank_force.copy()
+        force[list(part.refused)] = np.nan
         for number, answer in part.others.items():
-            torque[number] = [
-                sum(m.lever(d) * answer.flank_force[m.flank_name(d)] for d in m.flanks)
-                for m in train.meshes.values()
-            ]
+            flanks = (m.flank_name(drive) for m in train.meshes.values() for drive in m.flanks)
+            force[number] = [answer.flank_force[flank] for flank in flanks]
+        torques = mesh_torques(train, force)
         stages = {s.name: s.meshes for s in train.stages}
         points = np.array(sweep.usable)[part.rows]
         for name in ("omega", "pair_omega"):
-            share = shares(torque, meshes, train.stages, pairs=name == "pair_omega")
+            share = shares(torques, train.stages, pairs=name == "pair_omega")
             each = found.setdefault(
                 name, {s: np.full(len(sweep.points), np.nan) for s in (*stages, "system")}
             )
@@ -140,7 +139,7 @@ def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
                 *stages.items(),
                 ("system", [m for s in stages.values() for m in s]),
             ):
-                columns = [meshes.index(m) for m in own]
+                columns = [torques.meshes.index(m) for m in own]
                 largest = np.fmax.reduce(share[:, columns], axis=1, initial=np.nan)
                 largest = np.fmax.reduce(largest.reshape(-1, len(points)), axis=0)
                 each[stage][points] = np.fmax(each[stage][points], largest)
@@ -219,8 +218,14 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
                 by_name = getattr(found, name + ending)[at]
             rows.append(list(by_name.values()))
         values = np.array(rows, dtype=float).reshape([len(coords[d]) for d in dims])
-        unit = VARIABLES[name].units if name in VARIABLES else "1"
-        return dims, values, {"units": f"{unit} per SI unit of the input"}
+        figure = VARIABLES.get(name, VARIABLES["share" if name == "omega" else "pair_share"])
+        largest = "" if name in VARIABLES else "largest "
+        what = "stated error of the derivative" if ending else "derivative"
+        attributes = {
+            "units": f"{figure.units} per SI unit of the input",
+            "long_name": f"{what} of the {largest}{figure.long_name}",
+        }
+        return dims, values, attributes
 
     figures = (
         *((name, *each, "mesh") for name in ("torque", "share", "pair_share")),
@@ -262,11 +267,24 @@ def march_dataset(found: March) -> xr.Dataset:
         rows = [[getattr(step[g], name) for g in gears] for step in found.slips]
         return np.array(rows, dtype=float).reshape((steps, len(gears), *tail))
 
+    def about(unit: str, text: str) -> dict[str, str]:
+        return {"units": unit, "long_name": text}
+
     stages = np.array([[step[g].stage for g in gears] for step in found.slips], dtype=str)
+    turned = about("1", f"revolutions of gear {found.gear}") | {"gear": found.gear}
+    slipped = about("m", "slip at the end of the step in the gear's transverse frame")
     return found.result.dataset.assign_coords(spline=gears).assign(
-        slip=((*on_spline, "component"), over("slip", 2), {"units": "m"}),
-        dissipated=(on_spline, over("dissipated"), {"units": "J"}),
-        friction=(on_spline, over("friction"), {"units": "N"}),
-        stage=(on_spline, stages.reshape((steps, len(gears)))),
-        revolutions=("position", list(found.revolutions), {"gear": found.gear}),
+        slip=((*on_spline, "component"), over("slip", 2), slipped),
+        dissipated=(
+            on_spline,
+            over("dissipated"),
+            about("J", "energy that friction took up in the step"),
+        ),
+        friction=(on_spline, over("friction"), about("N", "largest friction force")),
+        stage=(
+            on_spline,
+            stages.reshape((steps, len(gears))),
+            {"long_name": "whether the spline sticks, slips or stops"},
+        ),
+        revolutions=("position", list(found.revolutions), turned),
     )

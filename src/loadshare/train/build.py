@@ -17,6 +17,7 @@ from loadshare import case as spec
 from loadshare.case.uneven import is_uneven
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.errors import CaseError, Problem
+from loadshare.train.elements import Shaft, Spline, Stage
 from loadshare.train.gear import Gear, Vector, cross
 from loadshare.train.geometry import Geometry, Pair, geometry_of
 from loadshare.train.mesh import Mesh
@@ -24,7 +25,7 @@ from loadshare.train.offset import Offset, polar
 from loadshare.train.rim import with_harmonics
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing, transverse
 from loadshare.train.thermal import fitted, flank_growth, grows, with_growth
-from loadshare.train.train import Shaft, Spline, Stage, Train
+from loadshare.train.train import Train
 
 Element = TypeVar("Element")
 
@@ -214,7 +215,11 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
     radii = pair.driver.base_radius, pair.driven.base_radius
     r = radii[1] if pair.turned else radii[0]
     law = mesh.power_law
-    gap = law.a if mesh.gap is None and law is not None else mesh.gap
+    # A gap of the law is one of the teeth, whose flanks are alike; any other is the drive flank's.
+    of_teeth = (0.0,) if law is None else tuple(r * a.si for a in _each(law.a))
+    phase, coast_phase = pair.phases if by_layout else (0.0, 0.0)
+    if mesh.phase is not None:
+        phase, coast_phase = mesh.phase, (mesh.phase + coast_phase - phase) % 1.0
     return Mesh(
         name=name,
         driver=pair.driver.name,
@@ -223,11 +228,14 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
         drive_normal=pair.normals[0],
         coast_normal=pair.normals[1],
         laws=_laws(mesh, r),
-        gaps=(0.0,) if gap is None else tuple(r * g.si for g in _each(gap)),
+        gaps=of_teeth if mesh.gap is None else tuple(r * g.si for g in _each(mesh.gap)),
         backlash=backlash,
         turned=pair.turned,
-        phase=pair.phase if mesh.phase is None and by_layout else mesh.phase or 0.0,
+        phase=phase,
         counted=pair.counted,
+        coast_phase=coast_phase,
+        coast_gaps=of_teeth,
+        means=law is not None and law.sampling == "means",
     )
 
 

@@ -6,7 +6,7 @@ It is settled once for all samples that share a machine.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -18,14 +18,14 @@ from loadshare.case.place import axis_of
 from loadshare.case.power_flow import against_the_names, has_sets
 from loadshare.case.teeth import tooth_counts
 from loadshare.case.words import count
-from loadshare.errors import CaseError, Problem
+from loadshare.errors import CaseError
 from loadshare.settings import ALLOWED
 from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
+from loadshare.train.layout import in_phase
 from loadshare.train.mesh import running_contact
 from loadshare.train.period import Period, period_of
-from loadshare.train.phases import MEETS, WHOLE, Meeting, Misfit, phases
-from loadshare.train.ring import transverse
+from loadshare.train.phases import WHOLE
 from loadshare.train.willis import Links
 
 
@@ -41,8 +41,9 @@ class Pair:
     turned : bool
         See `Mesh`.
     line : LineOfAction
-    phase : float
-        Part of its cycle that has passed at the first position, where teeth tell it [-].
+    phases : (float, float)
+        Parts of their cycle that drive and coast flank have passed at the first position, where
+        teeth tell them [-].
     backlash : float
         Along the line of action, where the mesh has it follow from its teeth [m].
     counted : (int, int)
@@ -54,7 +55,7 @@ class Pair:
     normals: tuple[Vector, Vector]
     turned: bool
     line: LineOfAction
-    phase: float = 0.0
+    phases: tuple[float, float] = (0.0, 0.0)
     backlash: float = math.inf
     counted: tuple[int, int] = (1, 1)
 
@@ -100,7 +101,7 @@ def geometry_of(case: spec.Case) -> Geometry:
         raise CaseError(problems)
     pairs = _pairs(case, kinematics.gears)
     period = _period(case, kinematics.gears) if common else None
-    return Geometry(kinematics.gears, _in_phase(case, pairs), period)
+    return Geometry(kinematics.gears, in_phase(case, pairs, tuple(kinematics.gears)), period)
 
 
 def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
@@ -148,94 +149,6 @@ def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
 def _number_text(number: Fraction | int) -> str:
     """A number of which only the size matters where it is large."""
     return f"{float(number):.6g}" if number < 10**300 else "more than 10^300"
-
-
-def _in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
-    """Return the meshes with their phases.
-
-    Raises
-    ------
-    CaseError
-        If teeth that are given completely do not meet.
-    """
-
-    def half(gear: Gear, pair: Pair) -> float:
-        tooth = case.gears[gear.name].tooth
-        if tooth is None:
-            return math.pi / (2.0 * (gear.teeth or math.inf))
-        return tooth.half_angle_at(pair.line.pressure_angle)
-
-    meetings = {
-        name: Meeting(p.driver, p.driven, (half(p.driver, p), half(p.driven, p)), p.counted)
-        for name, p in pairs.items()
-    }
-    found, misfits = phases(meetings)
-    problems = [
-        _misfit_problem(case, pairs, m)
-        for m in misfits
-        if all(case.gears[g].tooth is not None for g in case.meshes[m.mesh].ends)
-    ]
-    problems += _phases_against(case, found)
-    if problems:
-        raise CaseError(problems)
-    return {name: replace(pair, phase=found.get(name, 0.0)) for name, pair in pairs.items()}
-
-
-def _phases_against(case: spec.Case, found: Mapping[str, float]) -> Iterator[Problem]:
-    """Yield phases that are given although there is a layout from which others follow."""
-    if case.operating.phases != "layout":
-        return
-    for name, layout in found.items():
-        given = case.meshes[name].phase
-        if given is not None and abs((given - layout + 0.5) % 1.0 - 0.5) > MEETS:
-            path, allowed = ("meshes", name, "phase"), f"{layout:.4g}, or left out"
-            hint = 'With operating.phases = "together" any phases may be given.'
-            yield case.problem(path, "contradicts the teeth and their places", allowed, hint)
-
-
-def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:
-    """Say by how much teeth miss each other, and where a planet between two gears would fit."""
-    pair = pairs[misfit.mesh]
-    message = (
-        f"cannot be put together: its teeth miss each other by {abs(misfit.pitches):.2g} of a "
-        "pitch where all others meet"
-    )
-    return case.problem(("meshes", misfit.mesh), message, hint=_spacing_hint(case, pairs, pair))
-
-
-def _spacing_hint(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str:
-    """Say how far apart planets fit that lead from one gear to another about the same axis.
-
-    A planet that is turned on from one to the next by its pitch shifts the two gears against each
-    other by z₁ + z₂ parts of a revolution where they run against each other as seen from it, by
-    their difference where they run alike.
-    """
-    gears = {g.name: g for p in pairs.values() for g in (p.driver, p.driven)}
-    meshing: dict[str, list[str]] = {name: [] for name in gears}
-    for mesh in case.meshes.values():
-        for one, other in (mesh.ends, mesh.ends[::-1]):
-            meshing[one].append(other)
-
-    def about(one: str, other: str) -> bool:
-        between = transverse(gears[one].centre - gears[other].centre, gears[other].axis)
-        return bool(np.linalg.norm(between) <= MEETS * gears[other].base_radius)
-
-    for planet, last in ((pair.driver, pair.driven), (pair.driven, pair.driver)):
-        near = [n for n in meshing[planet.name] if n != last.name]
-        through = [n for n in near if not about(n, last.name)]
-        beyond = [n for other in through for n in meshing[other] if n != planet.name]
-        first = next((gears[n] for n in (*near, *beyond) if about(n, last.name)), None)
-        if first is None or about(planet.name, last.name):
-            continue
-        teeth = [round(g.teeth or 0) for g in (first, last)]
-        alike = first.sense * last.sense * float(first.axis @ last.axis) > 0.0
-        whole = abs(teeth[0] - teeth[1]) if alike else sum(teeth)
-        if whole:
-            return (
-                f"Gears about the same axis fit at angles {360.0 / whole:.6g} deg "
-                f"apart, and evenly spaced if their number divides {whole}."
-            )
-    return ""
 
 
 def _kinematics(case: spec.Case) -> Kinematics:

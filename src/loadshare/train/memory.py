@@ -22,8 +22,8 @@ from loadshare.settings import LAWS
 from loadshare.train.gear import Vector
 
 if TYPE_CHECKING:
+    from loadshare.train.elements import Spline
     from loadshare.train.equilibrium import Equilibrium
-    from loadshare.train.train import Spline
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
 
 from loadshare.contact.law import Law
 from loadshare.train.gear import Gear, Vector, cross
@@ -125,7 +128,8 @@ class Mesh:
     drive_normal, coast_normal : ndarray, shape (3,)
         n and n'.
     laws : tuple of Law
-        One, or one per meshing position, along the line of action.
+        One, or one per position of the mesh cycle, along the line of action. As the gaps, they are
+        in the order in which contact passes through them where the gear named first drives.
     gaps : tuple of float
         Unloaded gap of the drive flank along the line of action [m], one or one per position.
     backlash : float
@@ -135,6 +139,14 @@ class Mesh:
         has one flank only, and that flank is the one it presses.
     phase : float
         Part of its cycle that has passed at the first position [-].
+    coast_phase : float
+        The same of the coast flank.
+    coast_gaps : tuple of float
+        What the teeth of the coast flank lack [m], one or one per position: its gap over the
+        backlash.
+    means : bool
+        Whether laws and gaps are means over the part of the cycle about their position, or hold
+        from their position on.
     counted : (int, int)
         1 where a rotation of driver and of driven gear is counted in the sense in which the drive
         flank goes with the driver and pushes the driven gear, −1 where against it: in planetary
@@ -153,6 +165,9 @@ class Mesh:
     turned: bool = False
     phase: float = 0.0
     counted: tuple[int, int] = (1, 1)
+    coast_phase: float = 0.0
+    coast_gaps: tuple[float, ...] = (0.0,)
+    means: bool = False
 
     @property
     def first_radius(self) -> float:
@@ -170,19 +185,39 @@ class Mesh:
     @property
     def flanks(self) -> tuple[bool, ...]:
         """The flanks that can touch: drive (True) and, with a finite backlash, coast (False)."""
-        return (True,) if math.isinf(self.backlash) else (True, False)
+        # A backlash that is an array of samples is finite.
+        free = isinstance(self.backlash, float) and math.isinf(self.backlash)
+        return (True,) if free else (True, False)
 
     def flank_name(self, drive: bool) -> str:
         """Name of a flank's row: the mesh's own for the drive flank."""
         return self.name if drive else f"{self.name} coast"
 
     def law(self, position: int) -> Law:
-        """Compliance law of both flanks at mesh position `position` (0-based)."""
+        """Compliance law of a flank that is at position `position` (0-based) of its laws."""
         return self.laws[position % len(self.laws)]
 
     def gap(self, position: int, drive: bool) -> float:
-        """Gap [m] of a flank at mesh position `position` (0-based)."""
-        return self.gaps[position % len(self.gaps)] if drive else self.backlash
+        """Gap [m] of a flank that is at position `position` (0-based) of its laws."""
+        if drive:
+            return self.gaps[position % len(self.gaps)]
+        return self.backlash + self.coast_gaps[position % len(self.coast_gaps)]
+
+    def position(self, drive: bool, passed: Any, count: int) -> Any:
+        """Position (0-based) of its laws at which a flank is.
+
+        Parameters
+        ----------
+        drive : bool
+        passed : float or ndarray
+            How many positions of the cycle have passed since its teeth touched at the pitch point.
+        count : int
+            Positions of a mesh cycle.
+        """
+        # A position is not to be missed by round-off.
+        reached = np.floor(passed + (0.5 if self.means else 0.0) + 1e-9)
+        # Where the gear named second drives, contact passes through the positions backwards.
+        return (-reached if drive == self.turned else reached) % count
 
     def direction(self, drive: bool) -> tuple[float, float, Vector]:
         """Coefficients of δ on φ_driver [m], φ_driven [m] and the relative offset (3,)."""
@@ -208,7 +243,7 @@ class Mesh:
         drive : bool
             Drive flank, or coast flank.
         position : int
-            Mesh position, 0-based.
+            Position of its laws at which the flank is, 0-based.
         rotations : tuple of float
             φ of driver and driven gear [rad].
         relative_offset : ndarray, shape (3,)

@@ -6,16 +6,17 @@ pitch circle, the pitch point at β, all along its sense of rotation,
 
 .. math:: \gamma = \frac{z_i}{2\pi}\,(\tau_i \pm h_i - \beta_i) \mod 1 ,
 
-with the leading flank of a driver and the trailing flank of what is driven. Both gears of a mesh
-must say the same; in a planetary set that is the condition of assembly. Source: formulation,
-section 13.
+with the leading flank of a driver and the trailing flank of what is driven, and the other two for
+the coast flanks. Helical teeth stand elsewhere at another height: τ is that in the middle of the
+common face, where contact at the pitch point counts. Both gears of a mesh must say the same; in a
+planetary set that is the condition of assembly. Source: formulation, section 13.
 """
 
 from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,8 @@ from loadshare.train.gear import Gear
 
 WHOLE = 1e-6
 """How far a number of teeth that follows from others may be from a whole one [-]."""
+Both = tuple[float, float]
+"""Phases of the drive and of the coast flank of a mesh."""
 MEETS = 0.02
 """How far teeth may be from where they meet, in pitches: places are written with few digits."""
 
@@ -39,24 +42,29 @@ class Meeting:
         Half the angle of a tooth of each at the pitch circle [rad].
     counted : (int, int)
         See `Mesh`: the phase counts in the sense in which the drive flank goes.
+    twists : (float, float)
+        By how much a tooth of each stands further about its axis in the middle of the common face
+        than in the middle of its gear [rad].
     """
 
     driver: Gear
     driven: Gear
     halves: tuple[float, float]
     counted: tuple[int, int] = (1, 1)
+    twists: tuple[float, float] = (0.0, 0.0)
 
-    def passed(self, gear: str, tooth: float) -> float:
-        """Pitches by which the flank of a tooth at an angle [rad] is past the pitch point."""
+    def passed(self, gear: str, tooth: float, drive: bool = True) -> float:
+        """Pitches by which a flank of a tooth at an angle [rad] is past the pitch point."""
         here, sense = self._counted(gear)
-        half = self.halves[0] if here is self.driver else -self.halves[1]
-        along = sense * (tooth - self._towards(gear))
+        end = 0 if here is self.driver else 1
+        half = self.halves[end] if drive == (end == 0) else -self.halves[end]
+        along = sense * (tooth + self.twists[end] - self._towards(gear))
         return round(here.teeth or 0.0) * (along + half) / (2.0 * math.pi)
 
-    def tooth(self, gear: str, phase: float) -> float:
-        """Angle of a tooth of a gear [rad] in a phase."""
+    def tooth(self, gear: str, phase: float, drive: bool = True) -> float:
+        """Angle of a tooth of a gear [rad] in a phase of one of its flanks."""
         here, sense = self._counted(gear)
-        pitches = phase - self.passed(gear, 0.0)
+        pitches = phase - self.passed(gear, 0.0, drive)
         return sense * 2.0 * math.pi * pitches / round(here.teeth or math.inf)
 
     def _counted(self, gear: str) -> tuple[Gear, int]:
@@ -93,39 +101,52 @@ class Misfit:
     pitches: float
 
 
-def phases(meetings: Mapping[str, Meeting]) -> tuple[dict[str, float], tuple[Misfit, ...]]:
+def phases(
+    meetings: Mapping[str, Meeting], walk: Sequence[str]
+) -> tuple[dict[str, Both], tuple[Misfit, ...]]:
     """Return the phases of all meshes between gears with whole teeth, and what does not meet.
 
-    The first mesh of a gear from which nothing leads to another begins its cycle.
+    The first mesh of gears from which nothing leads to others begins its cycle: the leading flank
+    of the gear that is nearer to the input is at the pitch point, whichever flank carries and
+    whichever gear the name puts first.
 
     Parameters
     ----------
     meetings : mapping of mesh to Meeting
+    walk : sequence of str
+        All gears, in the order of a walk from the input.
     """
+    order = {gear: k for k, gear in enumerate(walk)}
     known = {name: m for name, m in meetings.items() if _is_whole(m.driver) and _is_whole(m.driven)}
     teeth: dict[str, float] = {}
-    found: dict[str, float] = {}
+    found: dict[str, Both] = {}
     misfits: list[Misfit] = []
-    for first, meeting in known.items():
+    for meeting in known.values():
         if meeting.driver.name in teeth or meeting.driven.name in teeth:
             continue
-        teeth[meeting.driver.name] = known[first].tooth(meeting.driver.name, 0.0)
-        queue = deque([meeting.driver.name])
+        drives = order[meeting.driver.name] < order[meeting.driven.name]
+        start = (meeting.driver if drives else meeting.driven).name
+        teeth[start] = meeting.tooth(start, 0.0, drives)
+        queue = deque([start])
         while queue:
             here = queue.popleft()
             for name, other, there in _meshes_of(here, known):
-                phase = there.passed(here, teeth[here]) % 1.0
+                phase, coast = (there.passed(here, teeth[here], d) % 1.0 for d in (True, False))
                 if other not in teeth:
                     teeth[other] = there.tooth(other, phase)
                     queue.append(other)
-                    found[name] = phase
+                    found[name] = phase, coast
                 elif name not in found:
-                    found[name] = phase
+                    found[name] = phase, coast
                     off = (there.passed(other, teeth[other]) - phase + 0.5) % 1.0 - 0.5
                     if abs(off) > MEETS:
                         misfits.append(Misfit(name, off))
+    return {n: (_of_cycle(d), _of_cycle(c)) for n, (d, c) in found.items()}, tuple(misfits)
+
+
+def _of_cycle(phase: float) -> float:
     # What is a whole cycle up to round-off is none.
-    return {n: p if p < 1.0 - 1e-9 else 0.0 for n, p in found.items()}, tuple(misfits)
+    return phase if phase < 1.0 - 1e-9 else 0.0
 
 
 def _meshes_of(gear: str, known: Mapping[str, Meeting]) -> Iterator[tuple[str, str, Meeting]]:

@@ -14,11 +14,12 @@ from typing import Any
 import numpy as np
 
 from loadshare.contact.law import PowerLaw
+from loadshare.train.elements import Shaft, Spline
 from loadshare.train.gear import Gear
 from loadshare.train.mesh import Mesh
 from loadshare.train.ring import Bearing, DrumRing, Ring
 from loadshare.train.situations import situation_of
-from loadshare.train.train import Shaft, Spline, Train
+from loadshare.train.train import Train
 
 
 def shape_of(train: Train) -> Hashable:
@@ -42,6 +43,7 @@ def shape_of(train: Train) -> Hashable:
         tuple(np.sign(train.input_torque).tolist()),
         (train.positions, train.count, train.rotating, train.march),
         (train.slip is None, train.uneven, train.placed),
+        tuple((train.held_at or {}).items()),
     )
 
 
@@ -54,12 +56,13 @@ def _gear(gear: Gear) -> tuple[Any, ...]:
 
 
 def _mesh(mesh: Mesh) -> tuple[Any, ...]:
-    kept = (mesh.name, mesh.driver, mesh.driven, mesh.radii, mesh.turned, mesh.phase, mesh.counted)
+    kept = (mesh.name, mesh.driver, mesh.driven, mesh.radii, mesh.turned, mesh.counted)
+    places = (mesh.phase, mesh.coast_phase, mesh.means, len(mesh.gaps), len(mesh.coast_gaps))
     flanks = (_bytes(mesh.drive_normal), _bytes(mesh.coast_normal), math.isinf(mesh.backlash))
     laws = tuple(
         (law.b > 0.0, law.c > 0.0) if isinstance(law, PowerLaw) else law for law in mesh.laws
     )
-    return (*kept, *flanks, laws, len(mesh.gaps))
+    return (*kept, *places, *flanks, laws)
 
 
 def _shaft(shaft: Shaft) -> tuple[Any, ...]:

@@ -31,8 +31,8 @@ Array = NDArray[np.float64]
 class Situations:
     """Situations of one train: S samples, or one row for all.
 
-    Gears, meshes, shafts, splines and rings are in the order of the train; drums and round rings
-    are counted apart.
+    Gears, shafts, splines and rings are in the order of the train, flanks in that of its meshes,
+    the drive flank first; drums and round rings are counted apart.
 
     Attributes
     ----------
@@ -48,11 +48,11 @@ class Situations:
         External torques [N·m].
     push : ndarray, shape (S or 1, gears, 3)
         External forces [N].
-    gap, backlash : ndarray, shape (S or 1, meshes)
-        Of the drive and the coast flank along the line of action [m].
-    bending, hertz : ndarray, shape (S or 1, meshes)
+    gap : ndarray, shape (S or 1, flanks)
+        Along the line of action [m], backlash included.
+    bending, hertz : ndarray, shape (S or 1, flanks)
         b [m/N] and c [m/N^(2/3)] of the laws; 0 where a mesh has a table.
-    table : ndarray, shape (S or 1, meshes, 2, points)
+    table : ndarray, shape (S or 1, flanks, 2, points)
         Forces [N] and compressions [m] of tabulated laws, the last point repeated to fill up.
     clocking, torsion : ndarray, shape (S or 1, shafts)
         [rad], [N·m/rad].
@@ -78,7 +78,6 @@ class Situations:
     torque: Array
     push: Array
     gap: Array
-    backlash: Array
     bending: Array
     hertz: Array
     table: Array
@@ -160,15 +159,15 @@ def situations_of(train: Train, index: int | Sequence[int]) -> Situations:
     several = not isinstance(index, int)
     where: Any = np.array(index, dtype=np.intp) if several else index
     rotation = train.rotations(where)
-    position = train.mesh_positions(where, rotation)
-    meshes = train.meshes
-    laws = {n: _laws(m, position[n]) for n, m in meshes.items()}
+    position = train.flank_positions(where, rotation)
+    flanks = [(m, d, position[m.flank_name(d)]) for m in train.meshes.values() for d in m.flanks]
+    laws = [_laws(mesh, at) for mesh, _, at in flanks]
     arrays = {
         "torque": _table([_torque(train, g, where) for g in train.gears]),
-        "gap": _table([_at(m.gaps, position[n]) for n, m in meshes.items()]),
-        "bending": _table([b for b, _, _ in laws.values()]),
-        "hertz": _table([c for _, c, _ in laws.values()]),
-        "table": _tables([tables for _, _, tables in laws.values()]),
+        "gap": _table([_gap(mesh, drive, at) for mesh, drive, at in flanks]),
+        "bending": _table([b for b, _, _ in laws]),
+        "hertz": _table([c for _, c, _ in laws]),
+        "table": _tables([tables for _, _, tables in laws]),
         **_turned(train, rotation),
         **_lasting(train),
     }
@@ -206,9 +205,8 @@ def _lasting(train: Train) -> dict[str, Array]:
     """What is the same at all positions, worked out once for a train."""
     if (known := _known.get(train)) is not None:
         return known
-    drums, rounds, meshes = train.drums, train.rounds, train.meshes
+    drums, rounds = train.drums, train.rounds
     found = _known[train] = {
-        "backlash": _table([m.backlash for m in meshes.values()]),
         "clocking": _table([s.clocking for s in train.shafts.values()]),
         "torsion": _table([s.stiffness for s in train.shafts.values()]),
         "support": _table([_support(g.support) for g in train.gears.values()], 2),
@@ -223,8 +221,13 @@ def _lasting(train: Train) -> dict[str, Array]:
     return found
 
 
+def _gap(mesh: Mesh, drive: bool, position: Any) -> Any:
+    """Gap of a flank [m] at a position of its laws, or at several of them."""
+    return _at(mesh.gaps, position) if drive else mesh.backlash + _at(mesh.coast_gaps, position)
+
+
 def _laws(mesh: Mesh, position: Any) -> tuple[Any, Any, Sequence[TableLaw | None]]:
-    """b, c and the table of a mesh at a position in its cycle, or at several of them."""
+    """b, c and the table of a flank at a position of its laws, or at several of them."""
     laws = mesh.laws
     powers = [law if isinstance(law, PowerLaw) else PowerLaw(0.0) for law in laws]
     tables = [law if isinstance(law, TableLaw) else None for law in laws]
@@ -335,7 +338,7 @@ def _support(support: Array | None) -> Array:
 
 
 def _tables(laws: Sequence[Sequence[TableLaw | None]]) -> Array:
-    """Tables of all meshes, each with one for all positions or one for each."""
+    """Tables of all flanks, each with one for all positions or one for each."""
     points = max((len(law.forces) for each in laws for law in each if law), default=0)
     count = max(map(len, laws), default=1) if points else 1
     table = np.zeros((count, len(laws), 2, points))

@@ -11,7 +11,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.contact.radial import RadialLaw, spline_law
+from loadshare.train.elements import Shaft, Spline, Stage
 from loadshare.train.gear import ORIGIN, Gear, Vector
 from loadshare.train.mesh import Approach, Mesh, approach_of
 from loadshare.train.offset import Angle, Offset, turned_about
@@ -19,92 +19,6 @@ from loadshare.train.period import Period
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
 
 Indices = NDArray[np.intp]
-
-
-@dataclass(frozen=True, slots=True)
-class Shaft:
-    """A torsion shaft: ½ K (φ_a − φ_b − clocking)².
-
-    Attributes
-    ----------
-    name, first, second : str
-    stiffness : float
-        K_T [N·m/rad]; infinite for a rigid shaft.
-    clocking : float
-        Angle by which the second end lags the first when unloaded [rad].
-    """
-
-    name: str
-    first: str
-    second: str
-    stiffness: float
-    clocking: float
-
-
-@dataclass(frozen=True, slots=True)
-class Spline:
-    """A clearance spline that holds a gear (formulation, section 5).
-
-    Attributes
-    ----------
-    gear : str
-    bending_stiffness : float
-        K_w [N/m].
-    stick_limit : float or None
-        S1 [m], or None for F_m/K_w.
-    clearance : float
-        S2 [m].
-    friction_force : float or None
-        F_m [N] where it is fixed (given, or τ F_N with F_N given).
-    friction_per_torque : float
-        τ/radius [1/m] where F_m follows the torque that the spline transmits to its gear.
-    """
-
-    gear: str
-    bending_stiffness: float
-    stick_limit: float | None
-    clearance: float
-    friction_force: float | None
-    friction_per_torque: float
-
-    @property
-    def name(self) -> str:
-        """Name of the element."""
-        return f"spline {self.gear}"
-
-    @property
-    def stop_name(self) -> str:
-        """Name of the stop at the end of its clearance, an element of its own with memory."""
-        return f"{self.name} clearance"
-
-    def bound(self, torque: float) -> float:
-        """Friction bound F_m [N] when the spline transmits `torque` [N·m]."""
-        if self.friction_force is not None:
-            return self.friction_force
-        return self.friction_per_torque * abs(torque)
-
-    def law(self, torque: float) -> RadialLaw:
-        """Radial law at `torque` [N·m].
-
-        Raises
-        ------
-        ValueError
-            If the law would drop at this torque; the message names the numbers.
-        """
-        bound = self.bound(torque)
-        try:
-            return spline_law(self.bending_stiffness, self.stick_limit, self.clearance, bound)
-        except ValueError as error:
-            raise ValueError(f"{self.name}: {error}") from error
-
-
-@dataclass(frozen=True, slots=True)
-class Stage:
-    """A named stage: the meshes among which load sharing is counted."""
-
-    name: str
-    meshes: tuple[str, ...]
-    groups: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,6 +59,8 @@ class Train:
         position has a train of its own (see `placed.py`).
     placed : int or None
         The position whose train this is; then all vectors are as the housing sees them.
+    held_at : mapping of flank to int, or None
+        Positions of their laws (0-based) at which all flanks are held.
     """
 
     name: str
@@ -168,6 +84,7 @@ class Train:
     slip: Mapping[str, Vector] | None = None
     uneven: bool = False
     placed: int | None = None
+    held_at: Mapping[str, int] | None = None
 
     def remembering(self, slip: Mapping[str, Vector]) -> Train:
         """Return the train with spline friction that starts from a slip [m] of every spline."""
@@ -352,17 +269,44 @@ class Train:
     def mesh_positions(
         self, index: int | Indices, rotation: Mapping[str, Any] | None = None
     ) -> dict[str, int] | dict[str, Indices]:
-        """Position in its cycle (0-based) at which every mesh is at position `index` (1-based).
+        """Position (0-based) of its laws at which every drive flank is, by mesh.
 
-        In a mesh cycle all meshes go through theirs together, each from its own phase; over their
-        common period each goes through its own. In a march a mesh whose teeth are known is at
+        As `flank_positions`, which has coast flanks as well.
+        """
+        found: dict[str, Any] = self.flank_positions(index, rotation)
+        return {mesh: found[mesh] for mesh in self.meshes}
+
+    @overload
+    def flank_positions(
+        self, index: int, rotation: Mapping[str, float] | None = None
+    ) -> dict[str, int]: ...
+
+    @overload
+    def flank_positions(
+        self, index: Indices, rotation: Mapping[str, Vector] | None = None
+    ) -> dict[str, Indices]: ...
+
+    def flank_positions(
+        self, index: int | Indices, rotation: Mapping[str, Any] | None = None
+    ) -> dict[str, int] | dict[str, Indices]:
+        """Position (0-based) of its laws at which every flank is at position `index` (1-based).
+
+        In a mesh cycle all meshes go through theirs together, each flank from its own phase; over
+        their common period each goes through its own. In a march a mesh whose teeth are known is at
         the position that its rotation reaches; others have one law for all positions.
         """
         rotation = rotation or self.rotations(index)
-        found = {m: self._mesh_position(m, index - 1, rotation) for m in self.meshes}
+        count, held = self.positions, self.held_at or {}
+        found: dict[str, Any] = {}
+        for mesh in self.meshes.values():
+            passed = self._passed(mesh, index - 1, rotation)
+            for drive in mesh.flanks:
+                name, phase = mesh.flank_name(drive), mesh.phase if drive else mesh.coast_phase
+                at = mesh.position(drive, (passed + phase) * count, count)
+                found[name] = held.get(name, at)
         if isinstance(index, int):
-            return {mesh: int(at) for mesh, at in found.items()}
-        return {mesh: np.asarray(at, dtype=np.intp) for mesh, at in found.items()}
+            return {flank: int(at) for flank, at in found.items()}
+        return {flank: np.asarray(at, dtype=np.intp) for flank, at in found.items()}
 
     @cached_property
     def _cycle(self) -> float:
@@ -374,19 +318,15 @@ class Train:
         gear = self.gears[self.cycle]
         return 2.0 * math.pi / ((gear.teeth or math.inf) * abs(gear.relative))
 
-    def _mesh_position(self, mesh: str, step: Any, rotation: Mapping[str, Any]) -> Any:
-        driver, phase = self.gears[self.meshes[mesh].driver], self.meshes[mesh].phase
+    def _passed(self, mesh: Mesh, step: Any, rotation: Mapping[str, Any]) -> Any:
+        """Part of its cycle that a mesh has passed since the first position [-]."""
         if self.march is None and self.period is not None:
-            passed = step * self.period.cycles[mesh] % self.count / self.count + phase
-            return np.floor(passed * self.positions + 1e-9) % self.positions
+            return step * self.period.cycles[mesh.name] % self.count / self.count
+        driver = self.gears[mesh.driver]
         if self.march is None or driver.teeth is None:
-            # In whole numbers as far as it goes: a position is not to be missed by round-off.
-            return (step + math.floor(phase * self.positions + 1e-9)) % self.positions
+            return step % self.positions / self.positions
         turned = rotation[self.input] * abs(driver.relative)
-        cycles = turned * driver.teeth / (2.0 * math.pi) + phase
-        # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the
-        # one before.
-        return np.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions
+        return turned * driver.teeth / (2.0 * math.pi) % 1.0
 
     def levers(self, gear: str) -> dict[str, float]:
         """Torque over a gear's shaft or spline, per unit of every flank's force [m]."""

@@ -155,6 +155,9 @@ def test_dataset_and_picture(slope, tmp_path):
     assert here["total_order"].sel(input=A) == one.shares[0].total.value
     assert here["edge"].values.tolist() == one.summary.edges.tolist()
     assert arrays.attrs["limit"] == 1.06
+    figures = [arrays[name] for name in (*arrays.data_vars, "edge", "level")]
+    assert {figure.attrs["units"] for figure in figures} == {"1"}
+    assert len({figure.attrs["long_name"] for figure in figures}) == len(figures)
     picture = found.plot("II").save(tmp_path / "tolerance.svg")
     text = picture.read_text(encoding="utf-8")
     assert "How Ω of stage II scatters" in text

@@ -1,5 +1,6 @@
 """Compliance of teeth: finite elements against a resolved plane model, slices against both."""
 
+import math
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
@@ -11,12 +12,16 @@ from tests.tooth.bodies import SpurTooth
 from tests.tooth.compliance.plane import solve_plane
 from tests.tooth.ltca.hertz import compression
 
+from loadshare.errors import Refused
+from loadshare.tooth.analysis.ltca import PairCompliance, ltca
 from loadshare.tooth.compliance.block import Divisions
 from loadshare.tooth.compliance.finite import FiniteElements
 from loadshare.tooth.compliance.interface import Flank
 from loadshare.tooth.compliance.middle import MiddleSurface
 from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.contact.strips import contact_modulus, half_width
+from loadshare.tooth.cylindrical.build import helicoid_pair
+from loadshare.tooth.cylindrical.gear import HelicoidGear
 
 BODY = SpurTooth(teeth=25, module=5e-3, face_width=50e-3, rim=0.035)
 MESH = Divisions(across=4, flank=4, fillet=1, root=2, rim=3, width=3)
@@ -209,6 +214,34 @@ def test_slices_converge_over_the_width():
     # What an even load does needs no degree at all except for Poisson's bending across.
     means = [p.mean() for p in parts]
     np.testing.assert_allclose(means, means[-1], rtol=1e-3)
+
+
+def wide(width):
+    """Two helical gears, with an axial pitch of 27.6 mm."""
+    gears = (
+        HelicoidGear(3e-3, teeth, width, helix_angle=math.radians(turn))
+        for teeth, turn in ((25, 20.0), (50, -20.0))
+    )
+    return helicoid_pair(*gears)
+
+
+def test_slices_follow_the_load_of_a_wide_helical_face():
+    """7.3 axial pitches, against the limit of the degree, with points that it does not resolve."""
+    pair = wide(0.2)
+    assert pair.driver.axial_pitches == pytest.approx(pair.overlap_ratio, rel=1e-12)
+    stiffness = []
+    for degree in (None, 90):
+        sides = Slices(pair.driver, 1, degree), Slices(pair.driven, 1, degree)
+        found = ltca(pair, 100.0, 2, (1.0,), PairCompliance(*sides, "slices"), points=32)
+        stiffness.append(found.secant().mean())
+    assert stiffness[0] == pytest.approx(stiffness[1], rel=0.01)
+
+
+def test_faces_that_slices_cannot_follow_are_refused():
+    with pytest.raises(Refused, match=r"21.8 axial pitches .*; allowed: up to 21; take a part"):
+        Slices(wide(0.6).driver, 1)
+    # Straight teeth of any width are followed: their load is even.
+    Slices(replace(BODY, face_width=5.0), 1)
 
 
 @pytest.mark.parametrize("model", [FiniteElements, Slices])

@@ -2,9 +2,11 @@
 
 import csv
 import io
+import math
+import re
 
 import pytest
-from tests.tooth.use.pairs import CASE, SPUR, written
+from tests.tooth.use.pairs import CASE, FACE, SPUR, written
 from typer.testing import CliRunner
 
 from loadshare.case import load_case
@@ -84,8 +86,16 @@ def test_misalignment_and_edges_are_reported(command, tmp_path):
     off = written(tmp_path, SPUR + '[misalignment]\ndeviation = "0.2 mrad"\n')
     result = command("ltca", off, "-o", tmp_path / "out")
     assert "Note: driver.face" in result.stdout
-    assert "The misalignment turns the driver by" in result.stdout
+    assert "turn the driver by" not in result.stdout
     assert "Load reaches the end of the face" in result.stdout
+
+
+def test_what_the_law_leaves_out_is_reported(command, tmp_path):
+    off = written(tmp_path, FACE + '[misalignment]\ngear_shift = "20 um"\n')
+    result = command("ltca", off, "-o", tmp_path / "out")
+    lead = re.search(r"Offset and gear shift turn the driver by (\S+) µrad", result.stdout)
+    # Early by s sin α along the line of action: s tan α/r at the driver, r = 25 · 4 mm/2.
+    assert float(lead[1]) == pytest.approx(-20.0 / 0.05 * math.tan(math.radians(25.0)), rel=0.02)
 
 
 def test_a_folder_of_cases_may_hold_pairs_and_laws(command, spur, tmp_path):

@@ -285,6 +285,18 @@ def test_the_basis_is_no_part_of_the_mechanics(case):
     assert ls.solve(measured).laws["a-b"].basis == "measured in 1999"
 
 
+def test_it_does_not_matter_which_gear_a_mesh_names_first(case):
+    """The analysis of the one pair runs through the cycle of the other backwards."""
+    case = case.replace({"operating.positions": 5, 'meshes."a-b".rated_torque': "130 N*m"})
+    rated = f"{130.0 * 49 / 25!r} N*m"
+    named = {'meshes."a-b"': None, 'meshes."b-a"': {"law": "ltca", "rated_torque": rated}}
+    one, other = ls.solve(case), ls.solve(case.replace(named))
+    for here, there in zip(one.positions, other.positions, strict=True):
+        assert there.rotation["a"] == pytest.approx(here.rotation["a"], rel=1e-6)
+    assert len({round(1e9 * p.rotation["a"]) for p in one.positions}) == 5
+    assert [p.mesh_position["b-a"] for p in other.positions] == [1, 5, 4, 3, 2]
+
+
 def test_the_table_and_the_report_tell_it(case, tmp_path):
     from typer.testing import CliRunner
 

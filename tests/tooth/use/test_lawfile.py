@@ -1,18 +1,22 @@
 """Law files and the cache in which they are kept."""
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from platformdirs import user_cache_path
-from tests.tooth.use.pairs import SPUR, written
+from tests.tooth.use.pairs import CASE, FACE, SPUR, written
 
 from loadshare import tooth
+from loadshare.case import load_case
 from loadshare.errors import CaseError
+from loadshare.tooth import resolve
 from loadshare.tooth.law import folder as cache
 from loadshare.tooth.law.file import law_of, law_text, load_law, parsed_law
 from loadshare.tooth.law.folder import computed_law, known_law
 from loadshare.tooth.pair.file import load_pair
+from loadshare.tooth.pair.gears import gears_of
 
 
 def test_a_law_file_holds_the_law_bit_for_bit(spur, tmp_path):
@@ -37,6 +41,7 @@ def test_a_law_file_holds_the_law_bit_for_bit(spur, tmp_path):
         (("rad/(N*m)^(2/3)", "rad/(N*m)"), "c[0]", "is "),
         (("positions = 2", "positions = 3"), "a", "has 2 values, computed.positions is 3"),
         (("misfit", "missfit"), "missfit", "unknown key"),
+        (('type = "external"', 'type = "round"'), "computed.gears.driver.type", "is "),
     ],
 )
 def test_a_wrong_law_file_is_reported(spur, tmp_path, change, key, message):
@@ -48,6 +53,38 @@ def test_a_wrong_law_file_is_reported(spur, tmp_path, change, key, message):
     problems = {problem.key: problem for problem in caught.value.problems}
     assert message in problems[key].message
     assert problems[key].file == str(file)
+
+
+def test_a_law_that_yields_nothing_is_refused_by_its_file(spur, tmp_path):
+    pair = load_pair(spur)
+    law = law_of(pair, pair.analyse())
+    text = law_text(law).replace(law.b[1].text, "0 rad/(N*m)")
+    text = text.replace(law.c[1].text, "0 rad/(N*m)^(2/3)")
+    file = written(tmp_path, text, "law.toml")
+    case = load_case(written(tmp_path, CASE + 'law_file = "law.toml"\n', "case.toml"))
+    with pytest.raises(CaseError) as caught:
+        resolve(case)
+    (problem,) = caught.value.problems
+    assert (problem.file, problem.key) == (str(file), "b[1]")
+    assert problem.message == "and c are both 0 here: the mesh would be rigid"
+
+
+def test_a_law_file_describes_its_gears(tmp_path):
+    """Of 25 and 49 teeth: r_b = z m cos α_t/(2 cos β), tan α_t = tan 20°/cos 8°."""
+    text = SPUR.replace("[driven]", 'helix_angle = "8 deg"\n[driven]\nprofile_shift = -0.1')
+    pair = load_pair(written(tmp_path, text.replace("teeth = 50", "teeth = 49")))
+    gears = load_law(written(tmp_path, law_text(computed_law(pair)), "law.toml")).computed.gears
+    transverse = math.atan(math.tan(math.radians(20)) / math.cos(math.radians(8)))
+    radius = 1.5e-3 * math.cos(transverse) / math.cos(math.radians(8))
+    assert gears.driver.base_radius.si == pytest.approx(25 * radius, rel=1e-8)
+    assert gears.driven.base_radius.si == pytest.approx(49 * radius, rel=1e-8)
+    assert (gears.driver.type, gears.driven.type) == ("external", "external")
+    assert (gears.driver.teeth, gears.driven.teeth) == (25, 49)
+    assert gears.driven.helix_angle.si == pytest.approx(-math.radians(8))
+    assert gears.driven.profile_shift == -0.1
+    face = load_pair(written(tmp_path, FACE, "face.toml"))
+    assert gears_of(face.geometry).driven.type == "face"
+    assert gears_of(face.geometry).driven.module is None
 
 
 def test_the_cache_gives_back_what_it_was_given(own_cache, spur):

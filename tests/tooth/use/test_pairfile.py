@@ -10,8 +10,10 @@ from loadshare.case.described import schema_of
 from loadshare.errors import CaseError
 from loadshare.tooth.cylindrical.pair import Misalignment
 from loadshare.tooth.face.pair import FaceGearPair
+from loadshare.tooth.law.file import law_of
 from loadshare.tooth.pair.file import load_pair
 from loadshare.tooth.pair.model import CONTENTS
+from loadshare.tooth.unloaded.positions import transmission_error
 
 
 def problems_in(path):
@@ -188,6 +190,39 @@ def test_a_misaligned_pair_as_a_whole_is_turned_and_its_law_is_not(tmp_path):
     assert shifted.offset == pytest.approx(lead, rel=0.02)
     found = shifted.analyse()
     assert np.mean(found.unloaded_error - shifted.offset) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("key", ["deviation", "inclination"])
+def test_a_tilt_about_the_middle_of_the_face_leaves_the_loaded_angle(tmp_path, key):
+    """A case cannot state it, so the law keeps it: with the whole face in contact, both halves
+    of the tilt cancel, and what is left of the lead at one end is not taken off the law."""
+    heavy = SPUR.replace("100 N*m", "300 N*m").replace("points = 8", "points = 16")
+    tilt = f'[misalignment]\n{key} = "0.5 mrad"\n'
+    pairs = [load_pair(written(tmp_path, text)) for text in (heavy, heavy + tilt)]
+    laws = [law_of(pair, pair.analyse()) for pair in pairs]
+    aligned, tilted = (
+        [a.si + b.si * 300.0 + c.si * 300.0 ** (2 / 3) for a, b, c in zip(*abc, strict=True)]
+        for abc in ((law.a, law.b, law.c) for law in laws)
+    )
+    # In the direction of the normal, an end of the face moves by 0.5 mrad · 10 mm times this.
+    share = {"deviation": math.cos, "inclination": math.sin}[key](math.radians(20.0))
+    lead = 0.5e-3 * 10e-3 * share / pairs[0].geometry.arm
+    first = transmission_error(pairs[1].geometry, 0.0)
+    assert first == pytest.approx(-lead, rel=0.02)
+    assert tilted == pytest.approx(aligned, abs=0.02 * lead)
+
+
+def test_a_tilt_of_a_face_gear_stays_in_its_law(tmp_path):
+    """Beside a shift, which the law leaves out as if there were no tilt."""
+    tilt = '[misalignment]\nshaft_angle = "0.1 mrad"\n'
+    shift = 'gear_shift = "20 um"\n'
+    texts = FACE + tilt, FACE + tilt + shift, FACE + "[misalignment]\n" + shift
+    tilted, both, shifted = (load_pair(written(tmp_path, text)) for text in texts)
+    assert tilted.offset == 0.0
+    # A tilt about where the axes cross lifts the middle of the teeth, at 244.5 mm, as a shift does.
+    lead = transmission_error(tilted.geometry, 0.0)
+    assert lead == pytest.approx(shifted.offset * 0.1e-3 * 244.5e-3 / 20e-6, rel=0.1)
+    assert both.offset == pytest.approx(shifted.offset, rel=0.05)
 
 
 @pytest.mark.parametrize("name", ["p12", "p46", "p610"])

@@ -1,5 +1,7 @@
 """Cases whose meshes name pair files and law files."""
 
+import math
+
 import pytest
 from tests.tooth.use.pairs import CASE, FACE, PAIRS, SPUR, written
 
@@ -132,6 +134,127 @@ def test_contradictions_are_reported_with_both_values(case):
     assert radius.message == "spur has the base radius 35.2385 mm"
     assert found["gears.a.teeth"].allowed == "25"
     assert found['meshes."a-b".pressure_angle'].allowed == "20 deg"
+
+
+TEETH = """module = "3 mm"
+teeth = {teeth}
+helix_angle = "0 deg"
+face_width = "20 mm"
+profile_shift = 0.0
+addendum = 1.0
+dedendum = 1.25
+tip_radius = 0.38
+"""
+
+
+@pytest.fixture
+def toothed(spur, tmp_path):
+    """The case whose gears say all of their teeth, as the pair has them."""
+    text = CASE + 'geometry = "spur.toml"\n'
+    for name, teeth in (("35.238", 25), ("70.476", 50)):
+        text = text.replace(f'base_radius = "{name} mm"\n', TEETH.format(teeth=teeth))
+    return load_case(written(tmp_path, text, "toothed.toml"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "message"),
+    [
+        ({"gears.a.face_width": "40 mm"}, "gears.a.face_width", "the face width 20 mm"),
+        ({"gears.b.profile_shift": -0.01}, "gears.b.profile_shift", "the profile shift 0"),
+        ({"gears.b.addendum": 0.9}, "gears.b.addendum", "the addendum 1"),
+        (
+            {"gears.b.tip_alteration": "-0.3 mm"},
+            "gears.b.tip_alteration",
+            "the addendum 1; with the alteration it is 0.9",
+        ),
+        ({"gears.a.dedendum": 1.4}, "gears.a.dedendum", "the dedendum 1.25"),
+        ({"gears.a.tip_radius": 0.2}, "gears.a.tip_radius", "the tip radius 0.38"),
+    ],
+)
+def test_teeth_that_contradict_the_pair_are_reported(toothed, changes, key, message):
+    resolve(toothed)
+    (problem,) = problems_of(toothed.replace(changes)).values()
+    assert (problem.key, problem.message) == (key, f"spur has {message}")
+
+
+def test_a_module_that_contradicts_the_pair_is_reported_once(toothed):
+    both = {"gears.a.module": "2.9 mm", "gears.b.module": "2.9 mm"}
+    centre = {"gears.b.centre": ["108.75 mm", "0 mm"]}
+    found = problems_of(toothed.replace(both | centre))
+    assert {key: problem.message for key, problem in found.items()} == {
+        f"gears.{name}.module": "spur has the module 3 mm" for name in "ab"
+    }
+
+
+def test_the_hand_of_the_helix_is_compared(toothed, tmp_path):
+    text = SPUR.replace("[driven]", 'helix_angle = "8 deg"\n[driven]')
+    written(tmp_path, text, "spur.toml")
+    distance = 112.5 / math.cos(math.radians(8))
+    place = {"gears.b.centre": [f"{distance!r} mm", "0 mm"], 'meshes."a-b".pressure_angle': None}
+    hands = {"gears.a.helix_angle": "8 deg", "gears.b.helix_angle": "-8 deg"}
+    right = toothed.replace(place | hands)
+    resolve(right)
+    left = right.replace({"gears.a.helix_angle": "-8 deg", "gears.b.helix_angle": "8 deg"})
+    found = problems_of(left)
+    assert found["gears.a.helix_angle"].allowed == "8 deg"
+    assert found["gears.b.helix_angle"].allowed == "-8 deg"
+    # Either hand will do for the halves of a herringbone gear, whose face is that of both.
+    double = "helices = 2\nhelix_gap = '6 mm'\n" + text
+    written(tmp_path, double, "spur.toml")
+    assert set(problems_of(left)) == {"gears.a.face_width", "gears.b.face_width"}
+    for width in ("40 mm", "46 mm"):
+        resolve(left.replace({f"gears.{name}.face_width": width for name in "ab"}))
+
+
+def test_a_face_may_be_that_of_the_overlap(toothed):
+    """Faces of 30 mm that overlap over 20 mm: a pair of the overlap fits, one of 25 mm does not."""
+    wide = {f"gears.{name}.face_width": "30 mm" for name in "ab"}
+    apart = {"gears.a.centre": ["0 mm", "0 mm", "0 mm"]}
+    resolve(toothed.replace(wide | apart | {"gears.b.centre": ["112.5 mm", "0 mm", "10 mm"]}))
+    nearer = toothed.replace(wide | apart | {"gears.b.centre": ["112.5 mm", "0 mm", "5 mm"]})
+    assert set(problems_of(nearer)) == {"gears.a.face_width", "gears.b.face_width"}
+
+
+def test_a_law_file_of_other_gears_is_reported(case, spur, tmp_path):
+    """Driver and driven gear exchanged: the law is at the wrong gear."""
+    resolve(case)
+    written(tmp_path, law_text(known_law(load_pair(spur))), "law.toml")
+    exchanged = case.replace(
+        {
+            'meshes."a-b".geometry': None,
+            'meshes."a-b".law_file': str(tmp_path / "law.toml"),
+            "gears.a.base_radius": "70.476 mm",
+            "gears.b.base_radius": "35.238 mm",
+        }
+    )
+    found = problems_of(exchanged)
+    assert set(found) == {"gears.a.base_radius", "gears.b.base_radius"}
+    assert found["gears.a.base_radius"].message == "law.toml has the base radius 35.2385 mm"
+
+
+def test_a_law_file_that_lacks_its_gears_is_read_and_says_so(case, spur, tmp_path):
+    by_pair = resolve(case)
+    text = law_text(known_law(load_pair(spur))).partition("[computed.gears]")[0]
+    written(tmp_path, text, "law.toml")
+    old = {'meshes."a-b".geometry': None, 'meshes."a-b".law_file': str(tmp_path / "law.toml")}
+    found = resolve(case.replace(old)).meshes["a-b"].law
+    assert (found.a, found.b, found.c) == tuple(
+        getattr(by_pair.meshes["a-b"].law, key) for key in "abc"
+    )
+    assert found.basis.startswith("LTCA, slices; its law file does not say of which gears")
+
+
+def test_a_law_that_fits_badly_is_reported_with_the_result(case, spur, tmp_path):
+    import loadshare as ls
+
+    law = known_law(load_pair(spur)) if resolve(case) else None
+    assert max(law.misfit) < 0.03
+    assert ls.solve(case).laws["a-b"].note == ""
+    text = law_text(law).replace(f"misfit = [{law.misfit[0]}", "misfit = [0.084")
+    written(tmp_path, text, "law.toml")
+    own = {'meshes."a-b".geometry': None, 'meshes."a-b".law_file': str(tmp_path / "law.toml")}
+    note = ls.solve(case.replace(own)).laws["a-b"].note
+    assert note == "at loads other than those of its fit, the law is up to 8.4 % off"
 
 
 def test_another_kind_of_gear_is_reported(case, tmp_path):

@@ -111,7 +111,7 @@ class Claim:
     @cached_property
     def rest(self) -> tuple[Twofold, Array]:
         """Lengths at X = 0, shape (S, m) [m], and the sum of the sizes of their terms."""
-        here, (on, _) = self.situations, self.columns.constants
+        here, on = self.situations, self.columns.constants
         offset = here.offset.reshape(len(here.offset), -1)
         rows = max(len(offset), len(here.clocking))
         varying = np.concatenate(
@@ -126,10 +126,9 @@ class Claim:
     def _gaps(self) -> Array:
         """Gaps, limits and centres, shape (S or 1, m) [m]."""
         columns, train, here = self.columns, self.columns.train, self.situations
-        rows = max(len(here.gap), len(here.backlash), len(here.stop), len(here.offset))
+        rows = max(len(here.gap), len(here.stop), len(here.offset))
         gaps = np.zeros((rows, len(columns.names)))
-        for e, (mesh, drive) in enumerate(columns.constants[1]):
-            gaps[:, e] = (here.gap if drive else here.backlash)[:, mesh]
+        gaps[:, columns.flanks] = here.gap
         gaps[:, columns.stops] = here.stop.reshape(len(here.stop), -1)
         for q, ring in enumerate(train.rounds):
             at = columns.radials.start + 2 * q

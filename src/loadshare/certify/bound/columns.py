@@ -162,13 +162,9 @@ class Columns:
         return found
 
     @cached_property
-    def constants(self) -> tuple[Array, tuple[tuple[int, bool], ...]]:
-        """What lengths take from clockings and centre offsets, and where flanks have their gaps.
-
-        A matrix, shape (shafts + 3 gears, m), and the mesh and side of every flank.
-        """
+    def constants(self) -> Array:
+        """What lengths take from clockings and centre offsets, shape (shafts + 3 gears, m)."""
         shafts = list(self.train.shafts.values())
-        order = {m: k for k, m in enumerate(self.train.meshes)}
         on = np.zeros((len(shafts) + 3 * len(self.order), len(self.names)))
         for e, to in enumerate(self.train.approaches.values()):
             for gear, arm in to.turning.items():
@@ -183,7 +179,7 @@ class Columns:
             for gear, sign in ((shafts[k].first, 1.0), (shafts[k].second, -1.0)):
                 for j, lag in self.turns[gear].shafts:
                     on[j, at] -= sign * lag * arm
-        return on, tuple((order[m.name], d) for m, d in self.all_flanks)
+        return on
 
     @cached_property
     def units(self) -> Array:

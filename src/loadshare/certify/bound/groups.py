@@ -83,7 +83,7 @@ class Plan:
     def __init__(self, columns: Columns, spring: Numbers, spring_arm: Array) -> None:
         self.layout = of = layout_of(columns, spring, spring_arm)
         self.over_meshes = columns.over_meshes
-        self.varying = len(columns.constants[0])
+        self.varying = len(columns.constants)
         matrix, first = columns.matrix.high, columns.arcs.start
         arcs = [
             -(way / size) @ matrix[first + 2 * k : first + 2 * k + 2]

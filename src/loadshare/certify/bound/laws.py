@@ -256,8 +256,7 @@ def _flanks(
 ) -> None:
     """Compliance (at a force), curvature and misfit of flanks, in twice the precision."""
     columns, here = claim.columns, claim.situations
-    mesh = columns.meshes
-    b, c = here.bending[:, mesh], here.hertz[:, mesh]
+    b, c = here.bending, here.hertz
     force = np.maximum(claim.forces[:, columns.flanks], 0.0)
     part = slice(0, columns.flanks.stop)
     hertz = 2.0 / 3.0 * c / np.cbrt(at)
@@ -278,7 +277,7 @@ def _flanks(
     tabled = columns.tabled
     if len(tabled):
         yielded = type(yielded)(yielded.high.copy(), yielded.low.copy())
-        slope, value, jump, room[:, tabled] = _tables(claim, mesh[tabled], force[:, tabled], scale)
+        slope, value, jump, room[:, tabled] = _tables(claim, tabled, force[:, tabled], scale)
         soft[:, tabled], yielded.high[:, tabled], yielded.low[:, tabled] = slope, value, 0.0
         width[:, tabled] += EPS * value
         curve[:, tabled] = jump
@@ -287,14 +286,14 @@ def _flanks(
 
 
 def _tables(
-    claim: Claim, meshes: NDArray[np.intp], force: Array, scale: Array
+    claim: Claim, flanks: NDArray[np.intp], force: Array, scale: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Slopes and values of tabulated laws (S, k), curvatures that cover corners close by, and room.
 
     The last is the distance to the nearest corner that is not covered [N].
     """
     table = np.broadcast_to(
-        claim.situations.table[:, meshes], (*force.shape, *claim.situations.table.shape[2:])
+        claim.situations.table[:, flanks], (*force.shape, *claim.situations.table.shape[2:])
     )
     forces, values = table[:, :, 0], table[:, :, 1]
     last = (~np.isnan(forces)).sum(axis=2) - 2

@@ -27,7 +27,6 @@ class Layout(NamedTuple):
     """
 
     mesh: Numbers  # (e,)
-    is_drive: Flags  # (e,)
     is_tabled: Flags  # (e,)
     arm: Array  # (e,)
     twin: Numbers  # (c,): opposed contact of the same ring, or −1
@@ -138,11 +137,10 @@ def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
     loads = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items()]
     pulled = [order[r.gear] for r in train.rounds] + [order[g] for g in train.splines]
     gear_pairs = _pairs([(order[m.driver], order[m.driven]) for m, _ in columns.all_flanks])
-    size, rest = measuring(train), _entries(columns.constants[0].T)
+    size, rest = measuring(train), _entries(columns.constants.T)
     across = size.across.reshape(len(gear_pairs), -1, 3)
     return Layout(
         columns.meshes,
-        np.array([d for _, d in columns.all_flanks], dtype=np.bool_),
         np.isin(np.arange(columns.flanks.stop), columns.tabled),
         columns.arms,
         _twins(columns, nominal, apart),

@@ -162,7 +162,7 @@ def _over_tangents(
     with np.errstate(divide="ignore"):
         light = np.minimum(1.5 * np.cbrt(least / force), BOUND.endless)
     hertz = np.broadcast_to(claim.situations.hertz, (claim.count, claim.situations.hertz.shape[1]))
-    some = hertz[rows][:, claim.columns.meshes] > 0.0
+    some = hertz[rows] > 0.0
     return np.where(some & (force < least), light, 1.0 / BOUND.secant)
 
 

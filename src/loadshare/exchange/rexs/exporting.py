@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.rexs.gearing import Gearing
-from loadshare.exchange.rexs.holding import axes_of, borne_by
+from loadshare.exchange.rexs.holding import borne_by
 from loadshare.exchange.rexs.model import Component
 from loadshare.exchange.rexs.reading import read_model, tables
 from loadshare.input import read_file
@@ -138,15 +138,16 @@ def _of_bearings(result: Result, gearing: Gearing) -> Values:
     Each takes its part of what the bodies on its shaft push, as the import has taken them.
     """
     pushed: dict[str, Array] = {}
+    across: dict[str, Array] = {}
     for body, name in _bodies(result, gearing):
-        shafts, at = gearing.shafts_of(body), gearing.along(body)
-        for bearing, side, part in borne_by(gearing.model, shafts, at):
-            along = part if side == "inner" else -part
-            known = pushed.get(bearing.id, np.zeros(3))
-            pushed[bearing.id] = known + along * _pushed(result, name)
+        for link, part in borne_by(gearing, body):
+            along = part if link.side == "inner" else -part
+            known = pushed.get(link.part.id, np.zeros(3))
+            pushed[link.part.id] = known + along * _pushed(result, name)
+            across[link.part.id] = np.stack(gearing.places.across(link.part, link.shaft))
     made: Values = {}
     for id_, forces in pushed.items():
-        outwards = np.stack(axes_of(gearing.model.components[id_])) @ _largest(forces)
+        outwards = across[id_] @ _largest(forces)
         made[id_] = {
             ON_SIDE.format(side=side, axis=axis): (float(sign * force), "N")
             for side, sign in (("inner", -1.0), ("outer", 1.0))
@@ -160,7 +161,9 @@ def _stiffness(result: Result, name: str) -> list[float]:
     values = []
     for position in result.positions:
         force = abs(position.loads.meshes[name])
-        law = position.train.meshes[name].law(position.mesh_position[name] - 1)
+        mesh, pressed = position.train.meshes[name], position.equilibrium.flank_force
+        flank = max(map(mesh.flank_name, mesh.flanks), key=lambda one: pressed[one])
+        law = mesh.law(position.train.flank_positions(position.position)[flank])
         yielded = law.compression(force)
         values.append(1e-3 * force / yielded if yielded > 0.0 else 0.0)
     return values

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
-from loadshare.exchange.rexs.holding import BEARINGS
 from loadshare.exchange.rexs.model import Component, Model
+from loadshare.exchange.rexs.places import GEARS, Places, Vector, ahead
 
-GEARS = ("cylindrical_gear", "ring_gear")
 COUPLINGS = ("coupling", "switchable_coupling", "rigid_connection", "involute_spline_connection")
+BEARINGS = (
+    "concept_bearing",
+    "rolling_bearing_with_catalog_geometry",
+    "rolling_bearing_with_detailed_geometry",
+    "plain_bearing",
+    "radial_plain_bearing",
+)
 READ = {
     *GEARS,
     *COUPLINGS,
@@ -31,10 +36,15 @@ READ = {
     "cylindrical_stage_gear_data",
 }
 """Types of components of which something is read, or that hold nothing by themselves."""
-LONG = 6
-"""References to the place of another component that follow one another."""
 
-Vector = tuple[float, float, float]
+
+class Joint(NamedTuple):
+    """A bearing or coupling, and the side of it on which a shaft is: "inner" or "outer"."""
+
+    part: Component
+    side: str
+    shaft: Component
+    other: Component
 
 
 @dataclass(frozen=True)
@@ -47,6 +57,11 @@ class Gearing:
     """
 
     model: Model
+
+    @cached_property
+    def places(self) -> Places:
+        """Where components are."""
+        return Places(self.model)
 
     @cached_property
     def stages(self) -> list[tuple[Component, Component, Component]]:
@@ -86,24 +101,34 @@ class Gearing:
         return {part.id: whole for whole, part in pairs if whole.type == "shaft"}
 
     @cached_property
-    def carrier_of(self) -> dict[str, Component]:
-        """Carrier of every planet, by id of its gear."""
-        carriers = {
+    def _carriers_of_stages(self) -> dict[str, Component]:
+        """Carrier of every planetary stage, by id of the stage."""
+        return {
             whole.id: part
             for whole, part in self.model.related("assembly", "assembly", "part")
             if whole.type == "planetary_stage" and part.type == "planet_carrier"
         }
-        shafts = {
-            shaft.id: carriers[stage.id]
-            for stage, shaft in self.model.related("planet_shaft", "planetary_stage", "shaft")
-            if stage.id in carriers
+
+    def _on_carriers(self, relation: str) -> dict[str, Component]:
+        """Carrier of every shaft that a relation gives to a planetary stage, by id of the shaft."""
+        of_stage = self._carriers_of_stages
+        related = self.model.related(relation, "planetary_stage", "shaft")
+        return {shaft.id: of_stage[stage.id] for stage, shaft in related if stage.id in of_stage}
+
+    @cached_property
+    def carrier_of(self) -> dict[str, Component]:
+        """Carrier of every planet, by id of its gear."""
+        shafts = self._on_carriers("planet_shaft")
+        return {
+            gear.id: shafts[self.shaft_of[gear.id].id]
+            for gear in self.gears
+            if gear.id in self.shaft_of and self.shaft_of[gear.id].id in shafts
         }
-        found = {}
-        for gear in self.gears:
-            shaft = self.shaft_of.get(gear.id)
-            if shaft is not None and shaft.id in shafts:
-                found[gear.id] = shafts[shaft.id]
-        return found
+
+    @cached_property
+    def pins(self) -> set[str]:
+        """Ids of the shafts on which planets sit."""
+        return {s.id for _, s in self.model.related("planet_pin", "planetary_stage", "shaft")}
 
     @cached_property
     def carrier_shafts(self) -> dict[str, Component]:
@@ -113,27 +138,110 @@ class Gearing:
             for whole, part in self.model.related("assembly", "assembly", "part")
             if whole.type == "planet_carrier" and part.type == "shaft"
         }
-        pins = {s.id for _, s in self.model.related("planet_pin", "planetary_stage", "shaft")}
-        return {id_: c for id_, c in found.items() if id_ not in pins and c in self.carriers}
+        found |= self._on_carriers("planet_carrier_shaft")
+        return {id_: c for id_, c in found.items() if id_ not in self.pins and c in self.carriers}
+
+    def parts_of(self, carrier: Component) -> set[str]:
+        """Ids of a carrier, of its shafts and of side plates, which are parts of carriers."""
+        shafts = {id_ for id_, whole in self.carrier_shafts.items() if whole is carrier}
+        return {carrier.id, *shafts, *(plate.id for plate in self.model.of_type("side_plate"))}
+
+    @cached_property
+    def casing(self) -> set[str]:
+        """Ids of what stands still."""
+        return {c.id for c in self.model.of_type("gear_casing", "gear_unit")}
+
+    # Places ---------------------------------------------------------------------------------------
 
     def on_shaft(self, shaft: Component) -> list[tuple[float, str]]:
         """Places along a shaft [m] and names of its gears; of a carrier's shaft the carrier."""
-        found = [
-            (self.along(g), self.names[g.id])
-            for g in self.gears
-            if self.shaft_of.get(g.id) is shaft
-        ]
-        carrier = self.carrier_shafts.get(shaft.id)
-        if carrier is not None:
-            found.append((0.0, self.names[carrier.id]))
-        return sorted(found)
+        return self._bodies.get(shaft.id, [])
 
-    @staticmethod
-    def along(gear: Component) -> float:
+    @cached_property
+    def _bodies(self) -> dict[str, list[tuple[float, str]]]:
+        """Places along shafts [m] and names of bodies, by id of the shaft."""
+        found: dict[str, list[tuple[float, str]]] = {}
+        for gear in self.gears:
+            if gear.id in self.shaft_of:
+                body = self.along(gear), self.names[gear.id]
+                found.setdefault(self.shaft_of[gear.id].id, []).append(body)
+        for id_, carrier in self.carrier_shafts.items():
+            place, _ = self.joint(self.model.components[id_])
+            found.setdefault(id_, []).append((place, self.names[carrier.id]))
+        return {id_: sorted(bodies) for id_, bodies in found.items()}
+
+    def along(self, gear: Component) -> float:
         """Middle of a gear along its shaft [m]."""
-        return (gear.number("u_coordinate_on_shaft") or 0.0) + 0.5 * (
-            gear.number("face_width") or 0.0
-        )
+        shaft = self.shaft_of.get(gear.id)
+        return (self.places.along(gear, shaft) if shaft is not None else None) or 0.0
+
+    def joint(self, shaft: Component) -> tuple[float, Component | None]:
+        """Where a carrier's shaft takes its torque [m], and the coupling there, if any.
+
+        Without a coupling to a side plate it is the place along the shaft nearest to the planets.
+        """
+        carrier = self.carrier_shafts[shaft.id]
+        mates = self.parts_of(carrier) - set(self.carrier_shafts)
+        for coupling, inner, outer in self.coupled:
+            for mine, other, side in ((inner, outer, "inner"), (outer, inner, "outer")):
+                if mine is shaft and other.id in mates and transmits(coupling):
+                    return self.places.along(coupling, shaft, side) or 0.0, coupling
+        middle, start = self.middle(carrier), self.places.of(shaft)
+        if middle is None or start is None:
+            return 0.0, None
+        ends = [
+            end
+            for section in self.sections(shaft)
+            if (at := section.number("u_coordinate_on_shaft")) is not None
+            for end in (at, at + (section.number("length") or 0.0))
+        ]
+        at = ahead(middle, start, self.places.axis(shaft))
+        return (min(max(at, min(ends)), max(ends)) if ends else at), None
+
+    def sections(self, shaft: Component) -> list[Component]:
+        """Sections of a shaft."""
+        return [
+            part
+            for whole, part in self.model.related("assembly", "assembly", "part")
+            if whole is shaft and part.type == "shaft_section"
+        ]
+
+    def nearest(self, shaft: Component, part: Component, side: str = "") -> tuple[str, float]:
+        """The body on a shaft that is nearest to a part of it, and how far away it is [m]."""
+        at = self.places.along(part, shaft, side) or 0.0
+        place, name = min(self.on_shaft(shaft), key=lambda body: abs(body[0] - at))
+        return name, at - place
+
+    def middle(self, body: Component) -> Vector | None:
+        """The middle of a gear, or of the planets of a carrier [m]."""
+        if body in self.carriers:
+            planets = [g for g in self.gears if self.carrier_of.get(g.id) is body]
+            found = [place for g in planets if (place := self.middle(g)) is not None]
+            if not found:
+                return None
+            x, y, z = (sum(parts) / len(found) for parts in zip(*found, strict=True))
+            return (x, y, z)
+        place, shaft = self.places.of(body), self.shaft_of.get(body.id)
+        if place is None and shaft is not None:
+            return self.places.on_axis(shaft, self.along(body))
+        return place
+
+    def axis(self, body: Component) -> Vector:
+        """Direction of a body's axis; its shaft's, or x, if it gives none."""
+        return self.places.axis(body, *self.shafts_of(body))
+
+    def ahead(self, part: Component, shaft: Component, side: str, body: Component) -> float | None:
+        """How far a part of a shaft lies ahead of the middle of a body, along its axis [m].
+
+        None where the file does not give enough for that.
+        """
+        along = self.places.along(part, shaft, side)
+        if along is None:
+            return None
+        if self.shaft_of.get(body.id) is shaft:
+            return along - self.along(body)
+        there, here = self.places.on_axis(shaft, along), self.middle(body)
+        return None if there is None or here is None else ahead(there, here, self.axis(body))
 
     def shafts_of(self, body: Component) -> list[Component]:
         """Shaft of a gear, or the shafts of a carrier."""
@@ -146,43 +254,46 @@ class Gearing:
         related = self.model.related("flank", "gear", "left", "right")
         return [flank for owner, *both in related if owner is gear for flank in both]
 
-    def place(self, body: Component, depth: int = 0) -> Vector | None:
-        """Where a component is [m], its reference's place added if that is another's."""
-        here, other = body.vector("support_vector"), self._reference(body)
-        if here is None or other is None:
-            return here
-        start = self.place(other, depth + 1) if depth < LONG else None
-        if start is None:
-            return here
-        return (start[0] + here[0], start[1] + here[1], start[2] + here[2])
+    # Couplings and loads --------------------------------------------------------------------------
 
-    def is_referred(self, body: Component) -> bool:
-        """Whether a component's position is given relative to another component than the unit."""
-        return self._reference(body) is not None
+    def joined(self, *types: str) -> list[tuple[Component, Component, Component]]:
+        """Bearings or couplings, and the inner and outer part of each."""
+        related = self.model.related("side", "assembly", "inner_part", "outer_part")
+        return [(part, inner, outer) for part, inner, outer in related if part.type in types]
 
-    def _reference(self, body: Component) -> Component | None:
-        reference = body.attributes.get("reference_component_for_position")
-        number = isinstance(reference, float) and reference.is_integer()
-        other = self.model.components.get(f"{reference:.0f}" if number else str(reference))
-        return None if other is None or other is body or other.type == "gear_unit" else other
+    @cached_property
+    def coupled(self) -> list[tuple[Component, Component, Component]]:
+        """Couplings that are engaged, and the inner and outer part of each."""
+        return [joint for joint in self.joined(*COUPLINGS) if self.is_engaged(joint[0])]
 
-    def axis(self, body: Component) -> Vector:
-        """Direction of a body's axis, of length 1; its shaft's, or x, if it gives none."""
-        for one in (body, self.shaft_of.get(body.id)):
-            axis = one.vector("u_axis_vector") if one is not None else None
-            if axis is not None and any(axis):
-                # Of a direction the unit says nothing.
-                size = math.hypot(*axis)
-                return (axis[0] / size, axis[1] / size, axis[2] / size)
-        return (1.0, 0.0, 0.0)
+    @cached_property
+    def joints(self) -> dict[str, list[Joint]]:
+        """Bearings and engaged couplings at every component, by its id."""
+        found: dict[str, list[Joint]] = {}
+        for part, inner, outer in (*self.joined(*BEARINGS), *self.coupled):
+            found.setdefault(inner.id, []).append(Joint(part, "inner", inner, outer))
+            found.setdefault(outer.id, []).append(Joint(part, "outer", outer, inner))
+        return found
 
-    def coupled(self) -> Iterator[tuple[Component, Component, Component]]:
-        """Couplings that are engaged, and what they join."""
-        sides = self.model.related("side", "assembly", "inner_part", "outer_part")
-        for coupling, one, other in sides:
-            open_ = coupling.attributes.get("is_engaged") in (False, "false")
-            if coupling.type in COUPLINGS and not open_:
-                yield coupling, one, other
+    def is_engaged(self, coupling: Component) -> bool:
+        """Whether a coupling is engaged in the gear in which the unit is."""
+        given = coupling.attributes.get("is_engaged")
+        if isinstance(given, tuple):
+            number = self.shift if len(given) > 1 else 1
+            return bool(given[number - 1]) if 0 < number <= len(given) else False
+        return given is not False
+
+    @cached_property
+    def shifts(self) -> int:
+        """For how many gears, as in gear shifting, couplings say whether they are engaged."""
+        given = [c.attributes.get("is_engaged") for c in self.model.of_type(*COUPLINGS)]
+        return max((len(each) for each in given if isinstance(each, tuple)), default=1)
+
+    @cached_property
+    def shift(self) -> int:
+        """The gear in which the unit is, from 1."""
+        given = [unit.number("gear_shift_index") for unit in self.model.of_type("gear_unit")]
+        return next((round(number) for number in given if number is not None), 1)
 
     def loads(self) -> list[tuple[Component, Component]]:
         """Shafts with gears or carriers, and the loads on them."""
@@ -191,3 +302,8 @@ class Gearing:
             for shaft, load in self.model.related("assembly", "assembly", "part")
             if shaft.type == "shaft" and load.type == "external_load" and self.on_shaft(shaft)
         ]
+
+
+def transmits(coupling: Component) -> bool:
+    """Whether a coupling transmits torque: not with a torsional stiffness of zero."""
+    return coupling.number("rotational_stiffness") != 0.0

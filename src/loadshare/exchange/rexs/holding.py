@@ -2,24 +2,46 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
-from loadshare.exchange.rexs.model import Component, Model
+from loadshare.exchange.rexs.beam import NEAR, STIFF, beam, is_one
+from loadshare.exchange.rexs.gearing import BEARINGS, Gearing, Joint
+from loadshare.exchange.rexs.model import Component
 
-BEARINGS = (
-    "concept_bearing",
-    "rolling_bearing_with_catalog_geometry",
-    "rolling_bearing_with_detailed_geometry",
-    "plain_bearing",
-    "radial_plain_bearing",
+CLEARANCES = (
+    "operating_radial_bearing_clearance",
+    "mounted_radial_bearing_clearance",
+    "radial_bearing_clearance",
+    "radial_clearance",
+    "radial_backlash",
 )
-STIFF = 1e15
-"""Stiffness from which on a bearing counts as rigid [N/m]."""
+"""Radial clearance of a bearing as versions name it; that in operation counts most."""
+
+
+@dataclass(frozen=True)
+class Link:
+    """A bearing or coupling that holds a shaft.
+
+    Attributes
+    ----------
+    part : Component
+    side : str
+        The side of it on which the shaft is: "inner" or "outer".
+    shaft : Component
+    stiffness : float
+        Across the axis [N/m]; `STIFF` if rigid.
+    place : float
+        How far it lies ahead of the body [m].
+    """
+
+    part: Component
+    side: str
+    shaft: Component
+    stiffness: float
+    place: float
 
 
 @dataclass(frozen=True)
@@ -34,138 +56,156 @@ class Holding:
         Its bearing with clearance, if any.
     offset : tuple of float
         By which its bearings are out of place (3,) [m].
+    parts : frozenset of str
+        Ids of the bearings and couplings that hold it.
     """
 
     support: dict[str, Any]
     clearance: dict[str, Any]
     offset: tuple[float, float, float]
+    parts: frozenset[str]
 
 
-def holding_of(
-    model: Model, shafts: list[Component], at: float, name: str, assumed: list[str]
-) -> Holding:
-    """Return what holds a body at a place along its shaft [m].
+def holding_of(of: Gearing, body: Component, assumed: list[str]) -> Holding:
+    """Return what holds a body.
 
-    The shaft is a rigid beam on the stiffnesses k of its bearings at u; at a place x it yields by
-
-    (1, x) S⁻¹ (1, x)ᵀ with S = Σ k (1, u)ᵀ (1, u).
-
+    Its shaft is a rigid beam on its bearings, and so is the pin on which a planet sits on its
+    seats: both yield to the force on the body, which goes through both.
     Other bodies on the same shaft are not seen.
     """
-    found = _bearings_on(model, shafts)
-    if not found:
-        return Holding({"support": "free" if shafts else "rigid"}, {}, (0.0, 0.0, 0.0))
-    stiffness = [_stiffness(bearing, name, assumed) for bearing, *_ in found]
-    places = np.array([place for _, place, _ in found])
-    held = _seen_from(at, np.array(stiffness), places)
-    if len(found) > 1 or held is not None:
+    links, seats = _links(of, body, assumed)
+    name, nowhere = of.names[body.id], (0.0, 0.0, 0.0)
+    if not links:
+        shafts = of.shafts_of(body)
+        if shafts:
+            assumed.append(f"{name}: no bearing holds it across its axis, it floats")
+        return Holding({"support": "free" if shafts else "rigid"}, {}, nowhere, frozenset())
+    yields = sum(_yields(level) for level in (links, seats) if level)
+    stiffness = f"{1.0 / yields:.12g} N/m" if yields > 1.0 / STIFF else "rigid"
+    if len(links) > 1 or yields:
         assumed.append("supports: each gear by the bearings of its shaft, as a rigid beam")
-    rigid = held is None or held >= STIFF
-    bearings = [bearing for bearing, *_ in found]
-    clearance_keys = ("operating_radial_bearing_clearance", "radial_clearance")
-    gaps = [bearing.number(*clearance_keys) or 0.0 for bearing in bearings]
-    offset = _offset(bearings)
-    gap = sum(gaps) / len(gaps)
+    parts = frozenset(link.part.id for link in (*links, *seats))
+    offset = _offset(of, links)
+    if any(offset) and body.id in of.carrier_of:
+        assumed.append("planets: the misalignment of their bearings stays as it is when they turn")
+    gaps = [link.part.number(*CLEARANCES) or 0.0 for link in links if link.part.type in BEARINGS]
+    gap = sum(gaps) / len(gaps) if gaps else 0.0
     if gap > 0.0:
         assumed.append(f"{name}: half of its bearings' mean radial clearance to every side")
-        text = "rigid" if rigid else f"{held:.12g} N/m"
-        return Holding({}, {"clearance": f"{0.5e6 * gap:.12g} um", "stiffness": text}, offset)
-    return Holding({"support": "rigid" if rigid else f"{held:.12g} N/m"}, {}, offset)
+        clearance = {"clearance": f"{0.5e6 * gap:.12g} um", "stiffness": stiffness}
+        return Holding({}, clearance, offset, parts)
+    return Holding({"support": stiffness}, {}, offset, parts)
 
 
-def borne_by(
-    model: Model, shafts: list[Component], at: float
-) -> list[tuple[Component, str, float]]:
-    """Return the bearings that hold a body at a place along its shaft [m], as `holding_of` has it.
+def borne_by(of: Gearing, body: Component) -> list[tuple[Link, float]]:
+    """Return the bearings that hold a body, as `holding_of` has it.
 
     Returns
     -------
-    list of (Component, str, float)
-        Bearing, the side on which the shaft is ("inner" or "outer"), and the part of the body's
-        force that the bearing takes, k (1, u) S⁻¹ (1, x)ᵀ; all parts add up to one.
+    list of (Link, float)
+        What holds its shaft, and the part of the body's force that it takes; all parts add up to
+        one.
     """
-    found = _bearings_on(model, shafts)
-    if not found:
+    links, _ = _links(of, body, [])
+    if not links:
         return []
-    stiffness = np.array([_stiffness(bearing, "", []) for bearing, *_ in found])
-    parts, _ = _beam(at, stiffness, np.array([place for _, place, _ in found]))
-    return [(b, side, part) for (b, _, side), part in zip(found, parts.tolist(), strict=True)]
+    return list(zip(links, _beam(links)[0].tolist(), strict=True))
 
 
-def axes_of(bearing: Component) -> tuple[np.ndarray, np.ndarray]:
-    """Directions v and w of a bearing, of length 1."""
-    u = np.array(bearing.vector("u_axis_vector") or (1.0, 0.0, 0.0))
-    w = np.array(bearing.vector("w_axis_vector") or (0.0, 0.0, 1.0))
-    u, w = (a / np.linalg.norm(a) if a.any() else a for a in (u, w))
-    return np.cross(w, u), w
+def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link], list[Link]]:
+    """What holds a body's shafts, and what holds the pin if they turn on one."""
+    fixed = of.casing
+    if body.id in of.carrier_of:
+        fixed = fixed | of.parts_of(of.carrier_of[body.id])
+    name = of.names[body.id]
+    firm: list[Joint] = []
+    pinned: list[tuple[Joint, list[Joint]]] = []
+    for joint in _joints(of, of.shafts_of(body)):
+        other = joint.other
+        if other.id in fixed:
+            firm.append(joint)
+        elif other.type == "shaft" and not of.on_shaft(other):
+            seats = [seat for seat in _joints(of, [other]) if seat.other.id in fixed]
+            if seats:
+                pinned.append((joint, seats))
+            elif other.id in of.pins:
+                assumed.append("pins of which no seat is given are rigid in their carriers")
+                firm.append(joint)
+    # One pin yields in series; beside other supports that would need the tilting of both shafts.
+    seats = pinned[0][1] if pinned else []
+    if firm or len({joint.other.id for joint, _ in pinned}) > 1:
+        if any(radial(seat.part) < STIFF for _, seats in pinned for seat in seats):
+            assumed.append(f"{name}: held in several ways, of which shafts without gears are rigid")
+        seats = []
+    held = [*firm, *(joint for joint, _ in pinned)]
+    return _placed(of, body, held, assumed), _placed(of, body, seats, assumed)
 
 
-def _bearings_on(model: Model, shafts: list[Component]) -> list[tuple[Component, float, str]]:
-    """Bearings of shafts, where along the shaft they sit [m], and on which side it is."""
-    found = []
-    for bearing, inner, outer in model.related("side", "assembly", "inner_part", "outer_part"):
-        if bearing.type not in BEARINGS:
-            continue
-        for shaft, side in ((inner, "inner"), (outer, "outer")):
-            if shaft in shafts:
-                place = bearing.number(f"u_coordinate_on_shaft_{side}_side") or 0.0
-                found.append((bearing, place, side))
-    return found
+def _joints(of: Gearing, shafts: list[Component]) -> list[Joint]:
+    """Bearings and couplings that join some shafts to anything else and can hold it there."""
+    return [
+        joint
+        for shaft in shafts
+        for joint in of.joints.get(shaft.id, [])
+        if joint.other not in shafts and radial(joint.part) > 0.0
+    ]
 
 
-def _arms(at: float, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(1, u) of places along a shaft and of one more, in units of suitable size."""
-    size = float(np.ptp(places))
-    if size < 1e-9:
-        return np.ones((len(places), 1)), np.ones(1)
-    # About the middle of the bearings, in units of their distance: better numbers.
-    middle = float(places.mean())
-    arms = np.column_stack([np.ones(len(places)), (places - middle) / size])
-    return arms, np.array([1.0, (at - middle) / size])
+def _placed(of: Gearing, body: Component, joints: list[Joint], assumed: list[str]) -> list[Link]:
+    """Joints as springs along the axis of a body."""
+    places = [of.ahead(joint.part, joint.shaft, joint.side, body) for joint in joints]
+    unknown = len(joints) > 1 and None in places
+    if unknown:
+        places = [0.0 for _ in places]
+    known = [place for place in places if place is not None]
+    if unknown or (known and is_one(known) and abs(known[0]) > NEAR):
+        why = "the places of its bearings are not given" if unknown else "it is held at one place"
+        assumed.append(f"{of.names[body.id]}: no tilting is seen, {why}")
+    assumed += [
+        f"{joint.part.title()}: no radial stiffness is given, it is rigid"
+        for joint in joints
+        if joint.part.type in BEARINGS and joint.part.number("radial_stiffness") is None
+    ]
+    return [
+        Link(joint.part, joint.side, joint.shaft, radial(joint.part), place or 0.0)
+        for joint, place in zip(joints, places, strict=True)
+    ]
 
 
-def _stiffness(bearing: Component, name: str, assumed: list[str]) -> float:
-    found = bearing.number("radial_stiffness")
-    if found is None or found <= 0.0:
-        assumed.append(
-            f"{name}: a bearing of its shaft gives no radial stiffness and is taken as rigid"
-        )
-        return STIFF
-    return min(found, STIFF)
+def radial(part: Component) -> float:
+    """Stiffness of a bearing or coupling across its axis [N/m]; 0 if it holds nothing there."""
+    given = part.number("radial_stiffness")
+    if part.attributes.get("radial_force_absorption") is False:
+        return 0.0
+    if given is None:
+        return STIFF if part.type in BEARINGS or part.type == "rigid_connection" else 0.0
+    return min(given, STIFF)
 
 
-def _seen_from(at: float, stiffness: np.ndarray, places: np.ndarray) -> float | None:
-    """Stiffness at a place [N/m]; None where all is rigid."""
-    if stiffness.min() >= STIFF:
-        return None
-    _, compliance = _beam(at, stiffness, places)
-    return 1.0 / compliance
+def _beam(links: list[Link]) -> tuple[np.ndarray, float]:
+    stiffness = np.array([link.stiffness for link in links])
+    return beam(stiffness, np.array([link.place for link in links]))
 
 
-def _beam(at: float, stiffness: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, float]:
-    """What of a unit force at a place each bearing takes (n,), and the compliance there [m/N].
+def _yields(links: list[Link]) -> float:
+    """Compliance of a body on what holds it [m/N]; 0 where all is rigid."""
+    if min(link.stiffness for link in links) >= STIFF:
+        return 0.0
+    return _beam(links)[1]
 
-    With √k (1, u) = Q R and y = R⁻ᵀ (1, x)ᵀ they are √k Q y and yᵀ y. S = Rᵀ R itself would lose a
-    bearing that is softer than another by the precision of numbers; with the stiff rows first, R
-    does not.
+
+def _offset(of: Gearing, links: list[Link]) -> tuple[float, float, float]:
+    """By how much bearings that are out of place move a body without load (3,) [m].
+
+    A bearing's misalignment is the offset of its outer ring where that is mounted: a shaft inside
+    moves along, a shaft outside moves the other way. As the shaft is rigid, each bearing moves the
+    body by the part of the body's force that it would take.
     """
-    arms, here = _arms(at, places)
-    stiff_first = np.argsort(-stiffness, kind="stable")
-    root = np.sqrt(stiffness[stiff_first])
-    q, r = np.linalg.qr(root[:, None] * arms[stiff_first])
-    y = solve_triangular(r.T, here, lower=True)
-    parts = np.empty(len(stiffness))
-    parts[stiff_first] = root * (q @ y)
-    length = math.hypot(*y.tolist())
-    return parts, length * length
-
-
-def _offset(bearings: list[Component]) -> tuple[float, float, float]:
-    """Mean of what bearings are out of place (3,) [m]."""
     total = np.zeros(3)
-    for bearing in bearings:
-        v, w = axes_of(bearing)
-        total += (bearing.number("misalignment_in_v_direction") or 0.0) * v
-        total += (bearing.number("misalignment_in_w_direction") or 0.0) * w
-    x, y, z = (total / len(bearings)).tolist()
+    for link, part in zip(links, _beam(links)[0].tolist(), strict=True):
+        v, w = of.places.across(link.part, link.shaft)
+        moved = (link.part.number("misalignment_in_v_direction") or 0.0) * v
+        moved += (link.part.number("misalignment_in_w_direction") or 0.0) * w
+        total += part * moved if link.side == "inner" else -part * moved
+    x, y, z = total.tolist()
     return (x, y, z)

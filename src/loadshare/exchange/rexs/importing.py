@@ -6,17 +6,18 @@ import math
 from collections import Counter, deque
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import Data, Imported, commented
-from loadshare.exchange.rexs.gearing import GEARS, READ, Gearing, Vector
+from loadshare.exchange.rexs.checking import unknown_gears, unread_values, unused
+from loadshare.exchange.rexs.gearing import BEARINGS, COUPLINGS, READ, Gearing
 from loadshare.exchange.rexs.holding import Holding, holding_of
+from loadshare.exchange.rexs.links import Links, links_of
 from loadshare.exchange.rexs.model import Component
+from loadshare.exchange.rexs.places import GEARS, Vector
 from loadshare.exchange.rexs.reading import read_model
-from loadshare.exchange.rexs.shafts import torsion_between
 
 
 def import_rexs(path: str | Path) -> Imported:
@@ -53,7 +54,12 @@ class _Importer:
     def imported(self) -> Imported:
         """Return the case."""
         self.assumed += self.of.model.notes
-        if any(self.of.is_referred(body) for body in (*self.of.gears, *self.of.carriers)):
+        if problems := unread_values(self.path, self.of) + unknown_gears(self.path, self.of):
+            raise CaseError(problems)
+        if self.of.shifts > 1:
+            self.assumed.append(f"couplings are engaged as in gear {self.of.shift}")
+        placed = self.of.model.of_type(*GEARS, *BEARINGS, *COUPLINGS, "planet_carrier", "shaft")
+        if any(self.of.places.is_referred(body) for body in placed):
             self.assumed.append("places taken from other components are rotated like these")
         if not self.of.stages:
             self._lacks("", "has no cylindrical stage that joins two gears")
@@ -64,8 +70,7 @@ class _Importer:
             raise CaseError(self.problems)
         assert flow is not None
         first, last, torque, running = flow
-        held = self._held()
-        for name in held:
+        for name in self.links.held:
             gears[name]["held"] = True
         data: Data = {
             "title": f"{self.path.stem}, from REXS {self.of.model.version}",
@@ -79,7 +84,7 @@ class _Importer:
             },
             "gears": gears,
             "meshes": self._meshes(first),
-            "shafts": self._shafts(),
+            "shafts": self.links.shafts,
         }
         if bearings := self._bearings():
             data["bearings"] = bearings
@@ -135,56 +140,50 @@ class _Importer:
             made["face_width"] = _mm(width)
         self.assumed.append("teeth: the rack's addendum is one module, tips are not altered")
         shaft = self.of.shaft_of.get(gear.id)
-        made |= self._placed(gear, shaft)
+        if shaft is not None and self.of.places.along(gear, shaft) is None:
+            self.assumed.append(f"{name}: at the start of its shaft, no place along it is given")
+        made |= self._placed(gear)
         if gear.id in self.of.carrier_of:
             made["carrier"] = self.of.names[self.of.carrier_of[gear.id].id]
         made |= self.holding[gear.id].support
         return made
 
     def _carrier(self, carrier: Component) -> Data:
-        held = self.of.shafts_of(carrier)
         made: Data = {"type": "carrier"}
-        places = [
-            (g, self.of.place(g)) for g in self.of.gears if self.of.carrier_of.get(g.id) is carrier
-        ]
-        around = [p for _, p in places if p is not None]
-        for body in (*held, carrier):
-            if self.of.place(body) is not None and "centre" not in made:
-                made |= self._placed(body, None)
-        if "centre" not in made and len(around) >= 2:
-            middle = tuple(sum(parts) / len(around) for parts in zip(*around, strict=True))
-            made["centre"] = [_mm(v) for v in middle]
-            made["axis"] = _axis(self.of.axis(places[0][0]))
+        bodies = (*self.of.shafts_of(carrier), carrier)
+        body = next((b for b in bodies if self.of.places.of(b) is not None), None)
+        middle = self.of.middle(carrier)
+        planets = [g for g in self.of.gears if self.of.carrier_of.get(g.id) is carrier]
+        if body is not None:
+            made |= self._placed(body)
+        elif middle is not None and len(planets) >= 2:
+            made |= {"centre": [_mm(v) for v in middle], "axis": _axis(self.of.axis(planets[0]))}
             self.assumed.append(f"{self.of.names[carrier.id]}: its axis is amid its planets")
-        elif "centre" not in made:
+        else:
             self._lacks(carrier, "has no place")
         return made | self.holding[carrier.id].support
 
-    def _placed(self, body: Component, shaft: Component | None) -> Data:
-        place = self.of.place(body)
-        axis = self.of.axis(body)
-        if place is None and shaft is not None and (start := self.of.place(shaft)) is not None:
-            along = self.of.along(body)
-            x, y, z = (p + along * a for p, a in zip(start, axis, strict=True))
-            place = (x, y, z)
+    def _placed(self, body: Component) -> Data:
+        place = self.of.places.of(body)
+        if place is None and body in self.of.gears:
+            place = self.of.middle(body)
         if place is None:
             self._lacks(body, "has no place: no support_vector of three numbers")
             return {}
-        return {"centre": [_mm(v) for v in place], "axis": _axis(axis)}
+        return {"centre": [_mm(v) for v in place], "axis": _axis(self.of.axis(body))}
 
     @cached_property
     def holding(self) -> dict[str, Holding]:
         """What holds every gear and carrier, by id."""
         return {
-            body.id: holding_of(
-                self.of.model,
-                self.of.shafts_of(body),
-                self.of.along(body),
-                self.of.names[body.id],
-                self.assumed,
-            )
+            body.id: holding_of(self.of, body, self.assumed)
             for body in (*self.of.gears, *self.of.carriers)
         }
+
+    @cached_property
+    def links(self) -> Links:
+        """What joins bodies around their axes."""
+        return links_of(self.of, self.assumed)
 
     def _bearings(self) -> Data:
         return {
@@ -212,38 +211,39 @@ class _Importer:
                 "", "has no external_load with a torque_around_u_axis on a shaft with gears"
             )
             return None
-        shaft, load = driving[0]
-        others = [pair for pair in loads if pair[0] is not shaft]
+        shaft, first = driving[0][0], self.of.nearest(*driving[0])[0]
+        same = [pair for pair in loads if self._are_one(pair[0], shaft)]
+        others = [pair for pair in loads if pair not in same]
         others.sort(key=lambda pair: bool(pair[1].number("torque_around_u_axis")))
         if not others:
             self._lacks("", "has no second shaft with an external_load: the output is not known")
             return None
-        self.left_out += [f"load {e.name or e.id}" for _, e in others[1:]]
-        torque = load.number("torque_around_u_axis") or 0.0
+        torque = sum(
+            self.of.places.way(s, shaft) * (e.number("torque_around_u_axis") or 0.0)
+            for s, e in same
+        )
+        if not torque:
+            self._lacks(driving[0][1], "is balanced by other loads of its shaft: no torque is left")
+            return None
+        added = [e for _, e in same if e.number("torque_around_u_axis")]
+        if len(added) > 1:
+            self.assumed.append(f"{first}: the torques of {len(added)} loads on its shaft, added")
+        self.left_out += [
+            f"{e.title()}: it is neither on the input nor on the output"
+            for s, e in others[1:]
+            if not self._are_one(s, others[0][0])
+        ]
         speed = shaft.number("rotational_speed") or torque
-        first, last = self._nearest(shaft, load), self._nearest(*others[0])
         running = "counter-clockwise" if speed > 0.0 else "clockwise"
+        last = self.of.nearest(*others[0])[0]
         return first, last, torque if speed > 0.0 else -torque, running
 
-    def _nearest(self, shaft: Component, load: Component) -> str:
-        """The body on a shaft that is nearest to a load."""
-        at = load.number("u_coordinate_on_shaft") or 0.0
-        return min(self.of.on_shaft(shaft), key=lambda body: abs(body[0] - at))[1]
-
-    def _held(self) -> list[str]:
-        """Bodies that a coupling joins to the casing."""
-        casing = {c.id for c in self.of.model.of_type("gear_casing", "gear_unit")}
-        found = []
-        for coupling, one, other in self.of.coupled():
-            for shaft, fixed in ((one, other), (other, one)):
-                if fixed.id in casing and (bodies := self.of.on_shaft(shaft)):
-                    found.append(bodies[0][1])
-                    if coupling.number("rotational_stiffness"):
-                        self.assumed.append(f"{bodies[0][1]}: its coupling to the casing is rigid")
-        for whole, part in self.of.model.related("assembly", "assembly", "part"):
-            if whole.id in casing and part in self.of.gears:
-                found.append(self.of.names[part.id])
-        return list(dict.fromkeys(found))
+    def _are_one(self, shaft: Component, other: Component) -> bool:
+        """Whether two shafts are one, or belong to one carrier."""
+        carrier = self.of.carrier_shafts.get(shaft.id)
+        return shaft is other or (
+            carrier is not None and self.of.carrier_shafts.get(other.id) is carrier
+        )
 
     def _meshes(self, first: str) -> Data:
         """Meshes, the driver first as the torque comes from the input."""
@@ -270,7 +270,7 @@ class _Importer:
     def _reached(self, first: str) -> dict[str, int]:
         """Steps from the input to every body."""
         links = [[self.of.names[a.id], self.of.names[b.id]] for _, a, b in self.of.stages]
-        links += [name.split("-") for name in self._shafts()]
+        links += [name.split("-") for name in self.links.shafts]
         steps, queue = {first: 0}, deque([first])
         while queue:
             here = queue.popleft()
@@ -281,23 +281,6 @@ class _Importer:
                         steps[other] = steps[here] + 1
                         queue.append(other)
         return {name: steps.get(name, len(self.of.names)) for name in self.of.names.values()}
-
-    def _shafts(self) -> Data:
-        """Torsion between neighbours on a shaft, and couplings between shafts."""
-        made: Data = {}
-        for shaft in self.of.model.of_type("shaft"):
-            bodies = self.of.on_shaft(shaft)
-            for (u, one), (v, other) in pairwise(bodies):
-                stiffness = torsion_between(self.of.model, shaft, u, v)
-                if stiffness is None:
-                    self.assumed.append(f"shaft {one}-{other}: rigid, its sections do not tell")
-                made[f"{one}-{other}"] = {"stiffness": _torsion(stiffness)}
-        for coupling, inner, outer in self.of.coupled():
-            ends = [self.of.on_shaft(shaft) for shaft in (inner, outer)]
-            if all(ends) and ends[0][0][1] != ends[1][0][1]:
-                stiffness = coupling.number("rotational_stiffness")
-                made[f"{ends[0][0][1]}-{ends[1][0][1]}"] = {"stiffness": _torsion(stiffness)}
-        return made
 
     def _stages(self, meshes: Data) -> Data:
         """Where a gear drives, or is driven by, several others: there the load is shared."""
@@ -323,6 +306,8 @@ class _Importer:
         self.left_out += [f"{count} {kind}" for kind, count in sorted(kinds.items())]
         idle = [g for g in self.of.model.of_type(*GEARS) if g.id not in self.of.names]
         self.left_out += [f"gear {g.name or g.id}: it meshes with nothing" for g in idle]
+        holding = [id_ for held in self.holding.values() for id_ in held.parts]
+        self.left_out += unused(self.of, {*holding, *self.links.used})
         self.left_out.append("axial forces, tilting and bending of shafts: the model is plane")
 
     def _lacks(self, what: Component | str, message: str) -> None:
@@ -358,8 +343,3 @@ def _axis(axis: Vector) -> Any:
         if max(abs(a - b) for a, b in zip(axis, unit, strict=True)) < 1e-12:
             return name
     return list(axis)
-
-
-def _torsion(stiffness: float | None) -> str:
-    rigid = stiffness is None or not 0.0 < stiffness < 1e15
-    return "rigid" if rigid else f"{stiffness:.12g} N*m/rad"

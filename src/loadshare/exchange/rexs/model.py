@@ -8,7 +8,27 @@ from functools import cached_property
 
 from loadshare.settings import ALLOWED
 
-Value = float | bool | str | tuple[float, ...]
+
+@dataclass(frozen=True)
+class Unread:
+    """A value that a case needs as a number, and that is none.
+
+    Attributes
+    ----------
+    given : str
+        As the file has it, with its unit.
+    message : str
+        What is wrong with it.
+    allowed : str
+        What it may be instead.
+    """
+
+    given: str
+    message: str
+    allowed: str = ""
+
+
+Value = float | bool | str | tuple[float, ...] | Unread
 
 
 @dataclass(frozen=True)
@@ -19,8 +39,8 @@ class Component:
     ----------
     id : str
     type, name : str
-    attributes : mapping of str to float, bool, str or tuple of float
-        In SI units; numbers in a unit that is not known as texts.
+    attributes : mapping of str to float, bool, str, tuple of float or bool, or Unread
+        In SI units.
     """
 
     id: str
@@ -46,6 +66,10 @@ class Component:
     def holds(self, name: str) -> bool:
         """Whether an attribute is true."""
         return self.attributes.get(name) in (True, "true")
+
+    def title(self) -> str:
+        """Type, id and name, for messages."""
+        return " ".join(filter(None, (self.type, self.id, f"({self.name})" if self.name else "")))
 
 
 @dataclass(frozen=True)

@@ -6,47 +6,22 @@ import base64
 import binascii
 import json
 import lzma
-import math
-import re
 import struct
 import zipfile
 import zlib
 from collections.abc import Mapping
-from contextlib import suppress
-from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
 from typing import Any, NoReturn
 from xml.etree import ElementTree
 from xml.parsers import expat
 
-from loadshare.case.units import FACTORS, si_factor
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.rexs.model import Component, Model, Relation, Value
+from loadshare.exchange.rexs.quantities import in_si
 from loadshare.input import Unreadable, read_file
 from loadshare.settings import ALLOWED
 
-UNITS = {
-    "mm": 1e-3,
-    "mum": 1e-6,
-    "deg": math.pi / 180.0,
-    "°": math.pi / 180.0,
-    "rad": 1.0,
-    "N": 1.0,
-    "kN": 1e3,
-    "N m": 1.0,
-    "N / m": 1.0,
-    "N / mm": 1e3,
-    "N mm / rad": 1e-3,
-    "N m / rad": 1.0,
-    "N / (mm mum)": 1e9,
-    "N / mm^2": 1e6,
-    "1 / min": math.pi / 30.0,
-    "kW": 1e3,
-    "W": 1.0,
-    "none": 1.0,
-}
-"""SI value of units as the standard spells them; others are read as those of a case."""
 CODES = {"float64": "d", "float32": "f"}
 """Arrays as bytes, by the code in the file."""
 
@@ -66,6 +41,7 @@ DAMAGED = (
     ValueError,
 )
 """What reading an archive raises that is damaged, or packed in a way that Python does not know."""
+ENDINGS = (".rexs", ".rexsj")
 ENCRYPTED = 1
 """Flag of a file in an archive."""
 
@@ -111,7 +87,7 @@ def _refuse(path: Path, why: str) -> NoReturn:
 def _unpacked(path: Path, content: bytes) -> bytes:
     try:
         with zipfile.ZipFile(BytesIO(content)) as archive:
-            inside = [i for i in archive.infolist() if i.filename.endswith((".rexs", ".rexsj"))]
+            inside = [i for i in archive.infolist() if i.filename.lower().endswith(ENDINGS)]
             if len(inside) != 1:
                 _refuse(path, f"is an archive with {len(inside)} REXS files, not 1")
             if inside[0].flag_bits & ENCRYPTED:
@@ -176,7 +152,7 @@ def _parsed(content: bytes) -> ElementTree.Element:
 
 
 def _component(element: ElementTree.Element) -> Component:
-    attributes = {}
+    attributes: dict[str, Value] = {}
     for attribute in element.iterfind("attribute"):
         array = attribute.find("array")
         if array is None:
@@ -185,15 +161,21 @@ def _component(element: ElementTree.Element) -> Component:
             value = _decoded(array.text or "", array.get("code", ""))
         else:
             value = _numbers([(c.text or "").strip() for c in array.iterfind("c")])
-        attributes[attribute.get("id", "")] = _in_si(value, attribute.get("unit", "none"))
+        _put(attributes, attribute.get("id", ""), value, attribute.get("unit", ""))
     return Component(
         element.get("id", ""), element.get("type", ""), element.get("name", ""), attributes
     )
 
 
+def _put(attributes: dict[str, Value], name: str, value: Value, unit: str) -> None:
+    read = in_si(name, value, unit)
+    if read is not None:
+        attributes[name] = read
+
+
 def _scalar(text: str) -> Value:
-    if text in ("true", "false"):
-        return text == "true"
+    if text.lower() in ("true", "false"):
+        return text.lower() == "true"
     try:
         return float(text)
     except ValueError:
@@ -201,6 +183,9 @@ def _scalar(text: str) -> Value:
 
 
 def _numbers(texts: list[Any]) -> Value:
+    words = [str(text).lower() for text in texts]
+    if words and all(word in ("true", "false") for word in words):
+        return tuple(word == "true" for word in words)
     try:
         return tuple(float(text) for text in texts)
     except (TypeError, ValueError, OverflowError):
@@ -216,31 +201,6 @@ def _decoded(text: str, code: str) -> Value:
         return struct.unpack(f"<{len(held) // struct.calcsize(letter)}{letter}", held)
     except (binascii.Error, struct.error, ValueError):
         return ""
-
-
-def _in_si(value: Value, unit: str) -> Value:
-    """Return a value in SI units; in a unit that is not known it is a text, and no number."""
-    factor = _factor(unit)
-    if factor == 1.0 or isinstance(value, bool | str):
-        return value
-    if factor is None:
-        return f"{value} {unit}"
-    return tuple(factor * v for v in value) if isinstance(value, tuple) else factor * value
-
-
-@lru_cache(maxsize=1024)
-def _factor(unit: str) -> float | None:
-    """SI value of a unit; None for one that no input of a case has."""
-    unit = unit.replace("Nm", "N m") if unit.startswith("Nm") else unit
-    if unit in UNITS:
-        return UNITS[unit]
-    spelled = re.sub(r"\s+", "*", re.sub(r"\s*/\s*", "/", unit.strip()))
-    for si in FACTORS:
-        with suppress(ValueError):
-            factor = si_factor(spelled, si)
-            if factor is not None:
-                return factor
-    return None
 
 
 def _from_json(content: bytes) -> Model:
@@ -273,12 +233,11 @@ def tables(given: Any) -> list[dict[str, Any]]:
 
 
 def _json_component(given: Mapping[str, Any]) -> Component:
-    attributes = {}
+    attributes: dict[str, Value] = {}
     for attribute in tables(given.get("attributes")):
         values = [v for k, v in attribute.items() if k not in ("id", "unit")]
-        unit = attribute.get("unit", "none")
         value = _json_value(values[0]) if len(values) == 1 else ""
-        attributes[str(attribute.get("id", ""))] = _in_si(value, str(unit))
+        _put(attributes, str(attribute.get("id", "")), value, str(attribute.get("unit") or ""))
     return Component(
         str(given.get("id", "")), str(given.get("type", "")), str(given.get("name", "")), attributes
     )

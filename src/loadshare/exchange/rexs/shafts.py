@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.model import Component, Model
 
 STEEL = 79.3e9
@@ -12,18 +13,13 @@ PARTS = 16
 """Parts into which a section is cut, for sections that taper."""
 
 
-def torsion_between(model: Model, shaft: Component, start: float, stop: float) -> float | None:
+def torsion_between(of: Gearing, shaft: Component, start: float, stop: float) -> float | None:
     """Return the torsional stiffness [N·m/rad] between two places along a shaft [m].
 
     1/K = ∫ du / (G I_p) with I_p = π (D⁴ − d⁴)/32. None where sections do not cover the way.
     """
-    sections = [
-        part
-        for whole, part in model.related("assembly", "assembly", "part")
-        if whole is shaft and part.type == "shaft_section"
-    ]
     covered, yields = 0.0, 0.0
-    for section in sections:
+    for section in of.sections(shaft):
         at, length = section.number("u_coordinate_on_shaft"), section.number("length")
         if at is None or not length or length < 0.0:
             continue
@@ -37,7 +33,7 @@ def torsion_between(model: Model, shaft: Component, start: float, stop: float) -
             polar = math.pi / 32.0 * (_outer(section, part) - _inner(section, part))
             if polar <= 0.0:
                 return None
-            yields += step / (_shear_modulus(model, shaft) * polar)
+            yields += step / (_shear_modulus(of.model, shaft) * polar)
     if covered < (stop - start) * (1.0 - 1e-6) or yields <= 0.0:
         return None
     return 1.0 / yields

@@ -20,7 +20,7 @@ Schema = Mapping[str, Any]
 
 NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?")
 QUANTITY = re.compile(rf"({NUMBER.pattern}) (\S.*)")
-HEAD = re.compile(r"(.*?)\s*\[([^\d\[\]][^\[\]]*)\]\s*", re.DOTALL)
+HEAD = re.compile(r"(.*?)\s*\[((?:1\s*/|[^\d\[\]])[^\[\]]*)\]\s*", re.DOTALL)
 LONG = 40
 """Letters of a number."""
 

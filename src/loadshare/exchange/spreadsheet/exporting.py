@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator, Mapping
-from io import BytesIO, StringIO
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from io import BytesIO
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from loadshare.case.content import Content
@@ -17,10 +18,13 @@ from loadshare.exchange.spreadsheet.cells import (
     value_of,
     with_common_unit,
 )
-from loadshare.exchange.spreadsheet.importing import ABOUT, ALONE, FOUND
-from loadshare.output import csv_of
+from loadshare.exchange.spreadsheet.importing import ABOUT, ALONE
+from loadshare.exchange.spreadsheet.sheet import FOUND
+from loadshare.output import csv_of, without_formulas
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from loadshare.results import Result
 
 
@@ -39,19 +43,24 @@ def export_tables(result: Result) -> dict[str, str]:
     CaseError
         If a name or text of the case cannot be put in a cell, as one with a semicolon in a list.
     """
+    return {name: csv_of(frame) for name, frame in export_frames(result).items()}
+
+
+def export_frames(result: Result) -> dict[str, pd.DataFrame]:
+    """Return the tables of `export_tables` as data frames."""
     from loadshare.results.dataset import frames
 
-    made = dict(case_tables(result.case.to_dict()))
-    return made | {FOUND + name: csv_of(frame) for name, frame in frames(result).items()}
+    found = {FOUND + name: frame for name, frame in frames(result).items()}
+    return {**dict(case_frames(result.case.to_dict())), **found}
 
 
-def workbook_of(tables: Mapping[str, str]) -> bytes:
-    """Return tables as a workbook with a sheet for each; figures of results are numbers there.
+def workbook_of(tables: Mapping[str, pd.DataFrame]) -> bytes:
+    """Return tables as a workbook with a sheet for each, in which numbers are numbers.
 
     Parameters
     ----------
-    tables : mapping of str to str
-        As `export_tables` has them.
+    tables : mapping of str to pandas.DataFrame
+        As `export_frames` has them.
 
     Raises
     ------
@@ -62,27 +71,31 @@ def workbook_of(tables: Mapping[str, str]) -> bytes:
     from openpyxl.cell import WriteOnlyCell
 
     book = Workbook(write_only=True)
-    for name, text in tables.items():
+    for name, frame in tables.items():
         sheet = book.create_sheet(name)
-        for row in csv.reader(StringIO(text, newline="")):
-            cells = []
-            for value in row:
-                cell = WriteOnlyCell(sheet, _figure(value) if name.startswith(FOUND) else value)
+        table = without_formulas(frame)
+        rows: Iterator[Iterable[Any]] = table.itertuples(index=False, name=None)
+        for row in chain([table.columns], rows):
+            cells = [WriteOnlyCell(sheet, _cell(value)) for value in row]
+            for cell in cells:
                 if isinstance(cell.value, str):
-                    # A text that begins like a formula is none.
+                    # A text that begins like a formula is none, "nan" no error, 1_1 no number.
                     cell.data_type = "s"
-                cells.append(cell)
             sheet.append(cells)
     content = BytesIO()
     book.save(content)
     return content.getvalue()
 
 
-def _figure(text: str) -> str | float:
-    try:
-        return float(text)
-    except ValueError:
-        return text
+def _cell(value: Any) -> str | float | None:
+    """Return what a cell of a workbook holds, which knows no infinity and nothing missing."""
+    import pandas as pd
+
+    value = value.item() if hasattr(value, "item") else value
+    if value is pd.NA or value is None or value != value:
+        return None
+    is_number = isinstance(value, int | float) and math.isfinite(value)
+    return value if is_number else str(value)
 
 
 def case_tables(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -98,6 +111,12 @@ def case_tables(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     CaseError
         As `export_tables`.
     """
+    for name, frame in case_frames(data):
+        yield name, csv_of(frame)
+
+
+def case_frames(data: Mapping[str, Any]) -> Iterator[tuple[str, pd.DataFrame]]:
+    """Yield the tables of `case_tables` as data frames of texts."""
     about = {key: value for key, value in data.items() if not isinstance(value, Mapping)}
     for name in (ABOUT, *Content.model_fields):
         value = about if name == ABOUT else data.get(name)
@@ -107,7 +126,7 @@ def case_tables(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         if name == ABOUT or name in ALONE:
             leaves = dict(_leaves(value))
             cells = [_column(path, [leaf], above) for path, leaf in leaves.items()]
-            yield name, _csv(["key", "value"], [[head, text] for head, (text,) in cells])
+            yield name, _texts(["key", "value"], [[head, text] for head, (text,) in cells])
             continue
         rows = {element: dict(_leaves(keys)) for element, keys in value.items()}
         columns = [list(rows)]
@@ -116,7 +135,7 @@ def case_tables(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             head, texts = _column(path, [keys.get(path) for keys in rows.values()], (name, "x"))
             heads.append(head)
             columns.append(texts)
-        yield name, _csv(heads, [list(row) for row in zip(*columns, strict=True)])
+        yield name, _texts(heads, [list(row) for row in zip(*columns, strict=True)])
 
 
 def _leaves(data: Mapping[str, Any], above: Path = ()) -> Iterator[tuple[Path, Any]]:
@@ -154,7 +173,7 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
     return head, cells
 
 
-def _csv(heads: list[str], rows: list[list[str]]) -> str:
+def _texts(heads: list[str], rows: list[list[str]]) -> pd.DataFrame:
     import pandas as pd
 
-    return csv_of(pd.DataFrame(rows, columns=heads, dtype=object))
+    return pd.DataFrame(rows, columns=heads, dtype=object)

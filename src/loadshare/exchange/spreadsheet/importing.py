@@ -13,7 +13,9 @@ from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import Data, Imported, commented
 from loadshare.exchange.spreadsheet.cells import head_of, taken, value_of
-from loadshare.exchange.spreadsheet.sheets import WORKBOOK, Sheet, sheets_of
+from loadshare.exchange.spreadsheet.sheet import FOUND, Sheet
+from loadshare.exchange.spreadsheet.sheets import sheets_of
+from loadshare.exchange.spreadsheet.workbook import ENDING
 from loadshare.output import FORMULA
 from loadshare.settings import ALLOWED
 
@@ -21,15 +23,13 @@ ABOUT = "case"
 """Sheet of what a file says besides its tables, such as its title."""
 ALONE = ("operating", "march")
 """Sections that are one element."""
-FOUND = "result_"
-"""Beginning of the names of sheets that hold a result."""
 FILES = ("law_file", "geometry")
 """Keys that name files, which are next to the case file."""
 
 
 def is_spreadsheet(path: FilePath) -> bool:
     """Tell whether a file or folder is for `import_tables`."""
-    return path.is_dir() or path.suffix.lower() == WORKBOOK
+    return path.is_dir() or path.suffix.lower() == ENDING
 
 
 def import_tables(path: str | FilePath) -> Imported:
@@ -89,6 +89,8 @@ class _Reader:
             self._tell(sheet.place, f"{sheet.name} is no table of a case", choices(known), hint)
         elif len(sheet.rows) > ALLOWED.entries:
             self._tell(sheet.place, f"has {len(sheet.rows)} rows", f"at most {ALLOWED.entries}")
+        elif sheet.problems:
+            self.problems += sheet.problems
         elif sheet.name == ABOUT or sheet.name in ALONE:
             self._keys_and_values(sheet)
         else:

@@ -3,7 +3,7 @@ import { INK, SOFT, FAINT, WARNING, path, picture, shape, ticks } from "./dom.js
 
 const WIDTH = 400, ROW = 19, LEFT = 96, RIGHT = 58;
 
-export function drawBars(figure, bars, pinned) {
+export function drawBars(figure, { bars, measure }, pinned) {
   for (const old of figure.querySelectorAll("svg")) old.remove();
   figure.hidden = !bars.length;
   if (!bars.length) return;
@@ -20,7 +20,7 @@ export function drawBars(figure, bars, pinned) {
   }
   for (const stage of stages) {
     const own = bars.filter((b) => b.stage === stage), largest = own.reduce((a, b) => ((b.most || 0) > (a.most || 0) ? b : a));
-    svg.append(shape("text", { x: 4, y: y + 13, "font-weight": 600 }, cut(`Stage ${stage}: Kγ = ${largest.text}`, 52)));
+    svg.append(shape("text", { x: 4, y: y + 13, "font-weight": 600 }, cut(`Stage ${stage}: ${measure === "Kγ" ? measure : `largest ${measure}`} = ${largest.text}`, 52)));
     y += ROW;
     for (const bar of own) {
       const title = shape("title", {}, `mesh ${bar.mesh}: Ω ${bar.text}${bar.here === null ? "" : `, here ${bar.here.toFixed(4)}`}`);

@@ -6,12 +6,12 @@ const SHOWN = 30;
 let count = 0;
 
 export function read(one) {
-  const [key, text, number, unit, low, high, step, whole, turning, about, assumed] = one;
-  return { key, text, number, unit, low, high, step, whole, turning, about, assumed };
+  const [key, text, number, unit, low, high, step, whole, turning, about, assumed, geometry] = one;
+  return { key, text, number, unit, low, high, step, whole, turning, about, assumed, geometry };
 }
 
 export function written(input, number) {
-  const places = Math.max(0, Math.min(12, -Math.floor(Math.log10(input.step) + 1e-9)));
+  const places = Math.max(0, Math.min(100, -Math.floor(Math.log10(input.step) + 1e-9)));
   const rounded = Number(number.toFixed(places));
   // Very large and very small numbers are shorter with an exponent.
   const text = Math.abs(rounded) >= 1e7 || (rounded !== 0 && Math.abs(rounded) < 1e-4) ? rounded.toExponential(6).replace(/\.?0+e/, "e") : String(rounded);
@@ -37,24 +37,24 @@ const broken = (name) => name.split(/(?<=[.=])/).flatMap((part) => [element("wbr
 
 export class Control {
   // `keys` are the inputs that take the value; the first one lends its unit and range.
-  constructor(name, inputs, now, actions) {
+  constructor(name, inputs, actions) {
     this.name = name;
     this.keys = inputs.map((one) => one.key);
     this.input = { ...inputs[0] };
     this.actions = actions;
-    this.build(now);
-    this.show(now);
+    this.build();
   }
 
-  build(now) {
+  build() {
     const { input } = this, id = `control-${count += 1}`;
-    this.field = element("input", { class: "value", id, value: now, spellcheck: "false", autocomplete: "off",
+    this.field = element("input", { class: "value", id, spellcheck: "false", autocomplete: "off",
       onchange: () => this.set(given(input, this.field.value)) });
     this.slider = element("input", { type: "range", min: input.low, max: input.high, step: input.step,
       "aria-label": `${this.name}, slider`, oninput: () => this.slid() });
     this.ticks = element("div", { class: "ticks", role: "group", "aria-label": `critical values of ${this.name}` });
     this.events = element("ul", { class: "events" });
     this.status = element("p", { class: "small", role: "status" });
+    this.apart = element("p", { class: "small apart" });
     const ends = ["low", "high"].map((end) => element("input", { value: input[end], "aria-label": `${end === "low" ? "least" : "largest"} value of the slider of ${this.name}`,
       inputmode: "decimal", onchange: (event) => this.reach(end, Number(event.target.value), event.target) }));
     this.ends = ends;
@@ -69,7 +69,7 @@ export class Control {
       element("div", { class: "row" }, this.critical, this.sweep,
         button("Case", "value of the case for", () => this.actions.back(this)),
         button("✕", "remove the slider of", () => this.actions.remove(this))),
-      this.status, this.events,
+      this.apart, this.status, this.events,
       element("details", {}, element("summary", {}, "range and meaning"), element("p", { class: "small" }, about),
         element("p", {}, "slider from ", ends[0], " to ", ends[1], ` ${input.unit}`)));
   }
@@ -79,6 +79,7 @@ export class Control {
     const face = shape("svg", { width: 56, height: 56, viewBox: "0 0 56 56", class: "dial", "aria-hidden": "true" },
       shape("circle", { cx: 28, cy: 28, r: 25, fill: "none", stroke: SOFT }), path([[28, 28], [53, 28]], { stroke: SOFT, "stroke-dasharray": "2 3" }), this.needle);
     const turn = (event) => {
+      if (this.slider.disabled) return;
       const box = face.getBoundingClientRect();
       const angle = Math.atan2(box.top + box.height / 2 - event.clientY, event.clientX - box.left - box.width / 2);
       const turn = this.input.high - this.input.low, value = (angle * turn) / (2 * Math.PI);
@@ -109,10 +110,13 @@ export class Control {
     this.marks([]);
   }
 
-  // The value as it is set; a number beyond the slider moves its end there.
-  show(value) {
+  // The value as it is set, and its number; one beyond the slider moves its end there. Without a
+  // number the slider waits.
+  show(values, number) {
+    const [value] = values, apart = new Set(values).size > 1;
+    this.apart.textContent = apart ? `These inputs differ: ${this.keys.map((key, k) => `${key} = ${values[k]}`).join(", ")}. Moving the slider sets all of them.` : "";
+    this.slider.disabled = number === null;
     if (document.activeElement !== this.field || this.field.value.trim() !== String(value)) this.field.value = value;
-    const number = numberOf(this.input, value);
     if (number === null) { this.slider.setAttribute("aria-valuetext", value); return; }
     if (!this.input.turning && number > this.input.high) this.ends[1].value = number, this.reach("high", number, this.ends[1]);
     if (!this.input.turning && number < this.input.low) this.ends[0].value = number, this.reach("low", number, this.ends[0]);

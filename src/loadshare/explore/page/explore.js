@@ -1,7 +1,7 @@
 // The page: what is set, what was requested, what is shown; they are distinguished by a number.
 import { byId, card, element, table } from "./dom.js";
 import { Latest, Lines, post } from "./ask.js";
-import { Control, listFound, read } from "./controls.js";
+import { Control, listFound, numberOf, read } from "./controls.js";
 import { drawFloats } from "./floats.js";
 import { drawForces, drawTrain } from "./train.js";
 import { drawBars, drawLines } from "./bars.js";
@@ -12,7 +12,6 @@ import { copyLink, linked, savePicture, saveText } from "./save.js";
 
 const IDLE = 350; // milliseconds without a change after which the rest is worked out
 const FIRST = 6; // controls at the beginning
-const MOVES = /^(gears|meshes|errors)\./;
 
 const page = { case: null, inputs: new Map(), setting: new Map(), controls: [], position: 1, number: 0, shown: null, pins: [] };
 const latest = new Latest("answer", show), whole = new Lines("whole");
@@ -22,19 +21,27 @@ let resting = 0, ofCase = null;
 
 const valueOf = (key) => (page.setting.has(key) ? page.setting.get(key) : page.inputs.get(key).text);
 
+// In the unit of the case; the server converts what is entered in another unit. Null until it has.
+function numberAt(key) {
+  const value = valueOf(key), { shown } = page;
+  return numberOf(page.inputs.get(key), value) ?? (shown?.changes[key] === value ? shown.answer.numbers[key] ?? null : null);
+}
+
+const showControl = (control) => control.show(control.keys.map(valueOf), numberAt(control.keys[0]));
+
 function change(keys, value) {
   for (const key of keys) {
     if (value === page.inputs.get(key).text) page.setting.delete(key);
     else page.setting.set(key, value);
   }
   for (const control of page.controls)
-    if (control.keys.some((key) => keys.includes(key))) control.show(valueOf(control.keys[0]));
+    if (control.keys.some((key) => keys.includes(key))) showControl(control);
   ask(keys);
 }
 
 function reset() {
   page.setting.clear();
-  for (const control of page.controls) control.show(valueOf(control.keys[0]));
+  page.controls.forEach(showControl);
   ask();
 }
 
@@ -46,7 +53,8 @@ async function take(name) {
     if (!found.keys) { byId("done").textContent = (found.messages || []).join(" "); return null; }
     keys = found.keys;
   }
-  const control = new Control(name, keys.map((key) => page.inputs.get(key)), valueOf(keys[0]), actions);
+  const control = new Control(name, keys.map((key) => page.inputs.get(key)), actions);
+  showControl(control);
   page.controls.push(control);
   byId("controls").append(control.place);
   return control;
@@ -62,7 +70,7 @@ const actions = {
   change,
   back(control) {
     for (const key of control.keys) page.setting.delete(key);
-    for (const one of page.controls) one.show(valueOf(one.keys[0]));
+    page.controls.forEach(showControl);
     ask(control.keys);
   },
   critical: (control) => studies.critical(control, view(), redraw),
@@ -91,24 +99,19 @@ function ask(keys = null) {
 function forget() {
   clearTimeout(resting);
   whole.stop();
-  byId("trust").replaceChildren(element("p", { class: "note" }, "is worked out when nothing moves"));
+  trust("is worked out when nothing moves");
   byId("cycle").hidden = true;
 }
 
-const rest = (number) => whole.ask({ changes: Object.fromEntries(page.setting) }, (found) => { if (number === page.number) trusted(found); });
+const trust = (text) => byId("trust").replaceChildren(element("p", { class: "note" }, text));
 
-function trusted(found) {
-  if (found.trust) {
-    byId("trust").replaceChildren(element("dl", {}, ...Object.entries(found.trust).flatMap(([name, text]) =>
-      [element("dt", {}, name), element("dd", {}, text)])));
-  } else byId("trust").replaceChildren(element("p", { class: "note" }, (found.messages || ["no answer"]).join(" ")));
-  if (found.cycle) {
-    const lines = new Map(Object.entries(found.cycle.omega).map(([stage, values]) => [`stage ${stage}`, values]));
-    drawLines(byId("cycle"), "cycle", { x: found.cycle.positions, lines, title: "position" });
-  }
-  if (found.tables && page.shown.answer.count > page.shown.answer.solved)
-    byId("trust").append(...found.tables.map((one) => card({ ...one, title: `${one.title}, all positions` })));
-}
+// The answer at all positions takes the place of the one before, which may be of one position alone.
+const rest = (request) => whole.ask({ changes: request.changes, position: request.position }, (found) => {
+  if (request.number !== page.number) return;
+  if (found.tables) { show(request, found); return; }
+  trust((found.messages || ["no answer"]).join(" "));
+  if (page.shown?.answer.solved !== page.shown?.answer.count) say(found.messages);
+});
 
 // --- What is shown
 
@@ -120,50 +123,69 @@ function tell(state, text, outcome = "") {
 
 function show(request, answer) {
   const present = request.number === page.number;
-  if (!answer.tables) {
-    if (!present) return;
-    empty();
-    document.body.dataset.state = "none";
-    tell(answer.status, answer.status === "invalid" ? "this setting makes no case; nothing was solved" : "there is no answer for this setting", answer.status);
-    say(answer.messages);
-    return;
-  }
+  if (!present && !answer.tables) return;
+  if (answer.tables) fill(request, answer);
+  else empty();
+  if (!present) return;
+  document.body.dataset.state = answer.tables ? "present" : "none";
+  tell(answer.status, answer.bound || nothing(answer), answer.status);
+  say(answer.messages);
+  if (answer.count) place(answer.count);
+  page.controls.forEach(showControl);
+  for (const control of page.controls) control.slider.disabled = false;
+  if (!answer.trust && (answer.tables || answer.solved < answer.count)) resting = setTimeout(() => rest(request), IDLE);
+}
+
+function nothing({ status, position, solved, count }) {
+  if (status === "invalid") return "this setting makes no case; nothing was solved";
+  return solved < count ? `there is no answer at position ${position}; the others follow when nothing moves` : "there is no answer for this setting";
+}
+
+function fill(request, answer) {
+  const { shown } = page, drawn = shown?.number === request.number && shown.answer.solved === answer.solved;
   page.shown = { ...request, answer };
+  for (const pin of page.pins) if (pin.number === request.number) pin.answer = answer;
+  if (!drawn) figures(request, answer);
+  if (answer.trust) {
+    byId("trust").replaceChildren(element("dl", {}, ...Object.entries(answer.trust).flatMap(([name, text]) =>
+      [element("dt", {}, name), element("dd", {}, text)])));
+  }
+  if (answer.cycle) {
+    const lines = new Map(Object.entries(answer.cycle.omega).map(([stage, values]) => [`stage ${stage}`, values]));
+    drawLines(byId("cycle"), "cycle", { x: answer.cycle.positions, lines, title: "position" });
+  }
+}
+
+function figures(request, answer) {
   byId("answer").dataset.of = request.number;
-  byId("of").textContent = settingText(request);
-  byId("summary").textContent = summary(answer.bars);
+  byId("of").textContent = `${settingText(request)}${answer.states ? "" : ` There is no answer at position ${answer.position}, and no picture of it.`}`;
+  byId("summary").textContent = summary(answer);
   byId("tables").replaceChildren(...answer.tables.map(card));
   byId("states").replaceChildren(...(answer.states ? table(answer.states) : []));
   draw();
-  if (!present) return;
-  document.body.dataset.state = "present";
-  tell(answer.status, answer.bound, answer.status);
-  say(answer.messages);
-  place(answer.count);
-  resting = setTimeout(() => rest(request.number), IDLE);
 }
 
-// K_γ of every stage: what stays in sight while sliders move.
-function summary(bars) {
+// The largest Ω of every stage, and what it is: what stays in sight while sliders move.
+function summary({ bars, measure }) {
   const most = new Map();
   for (const bar of bars) if (bar.most !== null && !(most.get(bar.stage)?.most >= bar.most)) most.set(bar.stage, bar);
-  return [...most].map(([stage, bar]) => `Kγ ${stage} = ${bar.text}`).join(", ");
+  return [...most].map(([stage, bar], k) => `${measure === "Kγ" ? "Kγ " : k ? "" : `${measure}: `}${stage} = ${bar.text}`).join(", ");
 }
 
 function draw() {
-  const { answer, changes } = page.shown;
-  drawBars(byId("bars"), answer.bars, pinnedBars(page.pins));
+  const { answer } = page.shown;
+  drawBars(byId("bars"), answer, pinnedBars(page.pins));
   drawFloats(byId("floats"), answer.floats || [], (gear) => ({
     trace: studies.traceOf(gear),
     pinned: page.pins.flatMap((pin) => (pin.answer.floats || []).filter((f) => f.gear === gear).map((f) => [pin.name, f.here])),
   }));
   const shapes = answer.train || page.case.train;
-  if (ofCase !== shapes && (answer.train ? Object.keys(changes).some((key) => MOVES.test(key)) : true)) {
+  if (ofCase !== shapes) {
     drawTrain(byId("train"), shapes);
     ofCase = shapes;
   }
   drawForces(answer.forces);
-  studies.drawTrace(valueOf, answer);
+  studies.drawTrace(numberAt, answer);
   byId("pins").hidden = !page.pins.length;
   byId("compared").replaceChildren(...comparison(page.pins, page.shown, settingText, unpin));
 }
@@ -175,8 +197,8 @@ function empty() {
   delete byId("answer").dataset.of;
   for (const id of ["of", "summary"]) byId(id).textContent = "";
   for (const id of ["tables", "states", "floats"]) byId(id).replaceChildren();
-  drawBars(byId("bars"), [], []);
-  drawForces({});
+  drawBars(byId("bars"), { bars: [] }, []);
+  drawForces([]);
   byId("trace").hidden = true;
   byId("compared").replaceChildren();
 }
@@ -197,24 +219,24 @@ const settingText = (one) => `${page.case.positions > 1 ? `Pictures at position 
 
 function place(count) {
   const holder = byId("position");
-  if (holder.dataset.count === String(count)) return;
-  holder.dataset.count = count;
   page.position = Math.min(page.position, count);
-  holder.replaceChildren();
+  if (holder.dataset.count !== String(count)) {
+    holder.dataset.count = count;
+    holder.replaceChildren(...(count > 1 ? [positionControl(count)] : []));
+  }
   if (count < 2) return;
-  const angles = page.case.angles?.length === count ? page.case.angles : null;
-  const text = element("span", { class: "small" });
-  const slider = element("input", { type: "range", id: "position-slider", min: 1, max: count, step: 1 });
-  const label = () => {
-    const angle = angles ? `, input turned by ${angles[page.position - 1]}°` : "";
-    text.textContent = `${page.position} of ${count}${angle}`;
-    slider.setAttribute("aria-valuetext", text.textContent);
-  };
-  slider.addEventListener("input", () => { page.position = Number(slider.value); label(); ask(); });
+  const slider = byId("position-slider"), angles = page.case.angles?.length === count ? page.case.angles : null;
   slider.value = page.position;
-  label();
-  holder.append(element("div", { class: "control" }, element("div", { class: "head" },
-    element("label", { class: "key", for: "position-slider" }, "Position shown"), text), slider));
+  const text = `${page.position} of ${count}${angles ? `, input turned by ${angles[page.position - 1]}°` : ""}`;
+  byId("position-text").textContent = text;
+  slider.setAttribute("aria-valuetext", text);
+}
+
+function positionControl(count) {
+  const slider = element("input", { type: "range", id: "position-slider", min: 1, max: count, step: 1,
+    oninput: () => { page.position = Number(slider.value); place(count); ask(); } });
+  return element("div", { class: "control" }, element("div", { class: "head" },
+    element("label", { class: "key", for: "position-slider" }, "Position shown"), element("span", { class: "small", id: "position-text" })), slider);
 }
 
 // --- Pins
@@ -236,15 +258,17 @@ function unpin(name) {
 
 // Floats, clearances and errors that the case has: what a designer asks first.
 const mattering = () => [...page.inputs.values()].filter((one) => one.number !== 0 && !one.whole
-  && /^(rings|splines|bearings)\.|^errors\..*amount$/.test(one.key)).map((one) => one.key);
+  && /^(rings|splines|bearings)\.|^errors\..*(amount$|pin\.)/.test(one.key)).map((one) => one.key);
 
 function firstNames() {
   const keys = [...page.inputs.keys()], nonzero = (key) => page.inputs.get(key).number !== 0;
+  const varying = keys.filter((key) => !page.inputs.get(key).geometry);
   const own = (pattern) => keys.filter((key) => pattern.test(key) && nonzero(key));
   const tied = page.case.tied.map(([name]) => name).filter((name) => /^rings\.\*\.(float|radius)$/.test(name));
   const errors = own(/^errors\..*\.amount$/).flatMap((key) => [key, key.replace(/amount$/, "direction")]);
   return [...tied, ...own(/^(rings|splines|bearings)\..*(float|radius|clearance)/), ...own(/^operating\.(torque|power)/),
-    ...errors.slice(0, 2), ...own(/friction$/), ...own(/^meshes\..*stiffness/), ...errors, ...keys];
+    ...errors.slice(0, 2), ...own(/^errors\..*\.pin\./), ...own(/friction$/), ...own(/^meshes\..*(gap|backlash)/),
+    ...own(/^meshes\..*stiffness/), ...errors, ...varying, ...keys];
 }
 
 async function begin() {
@@ -253,15 +277,20 @@ async function begin() {
   document.title = `${page.case.title} – loadshare explorer`;
   byId("title").textContent = page.case.title;
   byId("name").textContent = page.case.name;
-  place(page.case.positions);
   samples.offer(page.case.studies);
+  addEventListener("hashchange", open);
+  return open();
+}
+
+// The view of the address: at the beginning, and when another link is put there.
+async function open() {
   const link = linked(page.inputs);
-  for (const [key, value] of Object.entries(link.changes)) page.setting.set(key, value);
-  if (link.position <= page.case.positions) page.position = link.position;
-  const names = link.names.length ? link.names : [...new Set(firstNames())].slice(0, FIRST);
-  const request = ask();
-  for (const name of names) await take(name);
-  return request;
+  page.setting = new Map(Object.entries(link.changes));
+  page.position = link.position <= page.case.positions ? link.position : 1;
+  place(page.case.positions);
+  for (const control of [...page.controls]) actions.remove(control);
+  ask();
+  for (const name of link.names.length ? link.names : [...new Set(firstNames())].slice(0, FIRST)) await take(name);
 }
 
 const search = byId("search");

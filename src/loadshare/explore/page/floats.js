@@ -14,15 +14,24 @@ function viewOf(found) {
 
 export function drawFloats(place, floats, beside) {
   place.replaceChildren(...floats.map((found) => {
-    const figure = element("figure", { "data-gear": found.gear });
-    figure.append(draw(found, beside(found.gear)),
-      element("figcaption", {}, ...found.told.map((line) => element("p", {}, line))));
+    const figure = element("figure", { "data-gear": found.gear }), more = beside(found.gear), view = viewOf(found);
+    figure.append(draw(found, view, more),
+      element("figcaption", {}, ...[...found.told, ...outside(view, more)].map((line) => element("p", {}, line))));
     return figure;
   }));
 }
 
-function draw(found, { trace = [], pinned = [] }) {
-  const [mx, my, half] = viewOf(found), plot = SIDE - LEFT;
+// What is cut off at the edge of a picture, in words.
+function outside([x, y, half], { trace = [], pinned = [] }) {
+  const beyond = ([u, v]) => Math.max(Math.abs(u - x), Math.abs(v - y)) > half;
+  const text = (value) => String(Number(value.toPrecision(4))).replace("-", "−");
+  const lines = pinned.filter(([, point]) => beyond(point)).map(([name, [u, v]]) => `pinned ${name} at (${text(u)}, ${text(v)}) µm`);
+  if (trace.some(beyond)) lines.push("part of the trace");
+  return lines.length ? [`outside the picture: ${lines.join("; ")}`] : [];
+}
+
+function draw(found, [mx, my, half], { trace = [], pinned = [] }) {
+  const plot = SIDE - LEFT;
   const scale = plot / (2 * half);
   const at = ([x, y]) => [LEFT + (x - mx + half) * scale, TOP + (my + half - y) * scale];
   const svg = picture(SIDE + 8, TOP + plot + BOTTOM, `gear ${found.gear}: ${found.told.join("; ")}`);

@@ -68,7 +68,8 @@ function about(study, text) {
   byId("sampled-of").textContent = text;
   const where = study.positions.length === 1 ? `position ${study.positions[0]}` : `${study.positions.length} positions`;
   const slow = study.engine === "compiled" ? "" : " Solved by NumPy, which is slow: “loadshare warm” compiles what is fast.";
-  byId("drawn").textContent = `${study.samples} ${study.sampling} samples, seed ${study.seed}, ${where}.${slow}`;
+  const left = study.left.length ? ` Counts and geometry do not scatter: ${study.left.join(", ")}.` : "";
+  byId("drawn").textContent = `${study.samples} ${study.sampling} samples, seed ${study.seed}, ${where}.${left}${slow}`;
   byId("scattering").replaceChildren(...table({ columns: [["input", false], ["scatters", false]], rows: study.inputs }));
   byId("scatter-toml").textContent = study.toml;
 }

@@ -2,7 +2,6 @@
 import { byId, element, table } from "./dom.js";
 import { Lines } from "./ask.js";
 import { drawLines } from "./bars.js";
-import { numberOf } from "./controls.js";
 
 const asking = { critical: new Lines("study/critical"), sweep: new Lines("study/sweep"), slopes: new Lines("study/slopes") };
 const HEADS = [["input", false], ["Ω rises by", true], ["over a tenth of its slider", true]];
@@ -47,10 +46,10 @@ export async function sweep(control, view, redraw) {
 
 export const traceOf = (gear) => traced?.places[gear] || [];
 
-export function drawTrace(value, shown) {
+export function drawTrace(numberAt, shown) {
   const figure = byId("trace");
   if (!traced) { figure.hidden = true; return; }
-  const { control } = traced, number = numberOf(control.input, value(control.keys[0]));
+  const { control } = traced, number = numberAt(control.keys[0]);
   const here = new Map();
   for (const bar of shown.bars) if (bar.here !== null) here.set(`stage ${bar.stage}`, Math.max(bar.here, here.get(`stage ${bar.stage}`) || 0));
   drawLines(figure, "trace", { x: traced.x, lines: new Map(Object.entries(traced.lines).map(([stage, values]) => [`stage ${stage}`, values])),

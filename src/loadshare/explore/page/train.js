@@ -3,7 +3,7 @@ import { INK, SOFT, WARNING, Labels, around, broadArrow, path, picture, shape } 
 
 const ROOM = 520, EDGE = 14, HEAD = 24;
 const DASH = "4 3", CENTRE = "10 3 2 3", WIDEST = 9;
-let drawn = null, largest = 0;
+let drawn = null, strongest = 0; // the force that is drawn as wide as arrows get [N]
 
 export function drawTrain(figure, shapes) {
   for (const old of figure.querySelectorAll("svg")) old.remove();
@@ -56,29 +56,22 @@ function ring(gear, one, at, scale, more) {
   return shape("circle", { cx: x, cy: y, r: one * scale, ...style });
 }
 
-export function drawForces(forces) {
-  const sizes = Object.values(forces || {}).map(Math.abs);
-  largest = Math.max(largest, ...sizes, 0);
+// One arrow for every flank that carries. The scale stays as long as the largest force is near it.
+export function drawForces(forces = []) {
+  const largest = Math.max(0, ...forces.map((one) => one.force));
+  if (largest > strongest || largest < 0.4 * strongest) strongest = largest;
   for (const one of drawn || []) {
-    const arrows = [];
-    for (const mesh of one.view.meshes) {
-      const force = (forces || {})[mesh.name];
-      if (!force || !mesh.push || !largest) continue;
-      const way = Math.sign(force), size = Math.hypot(...mesh.push);
-      const title = shape("title", {}, `mesh ${mesh.name}: ${force.toPrecision(4)} N`);
-      const [x, y] = one.at(mesh.at), stroke = WIDEST * Math.abs(force) / largest;
-      if (size < 0.05) {
-        arrows.push(shape("circle", { cx: x, cy: y, r: Math.max(stroke / 2, 0.5) + 1, fill: WARNING }, title));
-        continue;
-      }
-      const [u, v] = [way * mesh.push[0], -way * mesh.push[1]];
-      const length = 0.11 * one.size, tip = [x + length * u, y + length * v], back = [x - 0.35 * length * u, y - 0.35 * length * v];
-      const made = path(broadArrow(back, tip, Math.max(stroke, 0.5)), { fill: WARNING, opacity: 0.85, "data-mesh": mesh.name }, true);
-      made.append(title);
-      arrows.push(made);
-    }
-    one.forces.replaceChildren(...arrows);
+    const places = new Map(one.view.meshes.map((mesh) => [mesh.name, mesh.at]));
+    one.forces.replaceChildren(...forces.filter(({ mesh }) => places.has(mesh)).map((force) => forceArrow(one, force, one.at(places.get(force.mesh)))));
   }
 }
 
-export const forgetForces = () => { largest = 0; };
+function forceArrow(one, { mesh, force, push, text }, [x, y]) {
+  const title = shape("title", {}, text), stroke = (WIDEST * force) / strongest;
+  const [u, v] = one.view.frame.map((axis) => axis.reduce((sum, part, k) => sum + part * push[k], 0));
+  if (Math.hypot(u, v) < 0.05) return shape("circle", { cx: x, cy: y, r: Math.max(stroke / 2, 0.5) + 1, fill: WARNING }, title);
+  const length = 0.11 * one.size, tip = [x + length * u, y - length * v], back = [x - 0.35 * length * u, y + 0.35 * length * v];
+  const made = path(broadArrow(back, tip, Math.max(stroke, 0.5)), { fill: WARNING, opacity: 0.85, "data-mesh": mesh }, true);
+  made.append(title);
+  return made;
+}

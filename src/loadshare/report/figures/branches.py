@@ -147,7 +147,10 @@ def stages_of(result: Result) -> dict[str, tuple[str, ...]]:
 def _figure(
     name: str, title: str, result: Result, reading: Reading, unit: Unit, rows: Sequence[Row]
 ) -> Figure:
-    """One panel for each stage, side by side; a mesh of no stage has no share."""
+    """One panel for each stage, side by side; a mesh of no stage has no share.
+
+    Where a branch has no share at some positions, as nothing is carried there, its line is broken.
+    """
     palette = palette_of(result)
     hover = marks.hover(
         "mesh:N",
@@ -158,7 +161,8 @@ def _figure(
     )
     panels = []
     for stage, meshes in stages_of(result).items():
-        own = [r for r in rows if r["mesh"] in meshes and r[reading.field] is not None]
+        known = {r["mesh"] for r in rows if r[reading.field] is not None} & {*meshes}
+        own = [r for r in rows if r["mesh"] in known]
         if not own:
             continue
         looks = {mesh: palette.mesh(mesh) for mesh in meshes}
@@ -184,18 +188,20 @@ def _same_everywhere(result: Result, rows: Sequence[Row], field: str) -> str:
 
 
 def _alike(rows: Sequence[Row], field: str) -> bool:
-    by_mesh: dict[str, list[float]] = {}
+    by_mesh: dict[str, list[float | None]] = {}
     for row in rows:
-        if row[field] is not None:
-            by_mesh.setdefault(row["mesh"], []).append(row[field])
-    size = max((abs(v) for values in by_mesh.values() for v in values), default=0.0)
-    return all(max(v) - min(v) <= ALIKE * size for v in by_mesh.values())
+        by_mesh.setdefault(row["mesh"], []).append(row[field])
+    known = [[v for v in values if v is not None] for values in by_mesh.values()]
+    if any(0 < len(some) < len(v) for some, v in zip(known, by_mesh.values(), strict=True)):
+        return False
+    size = max((abs(v) for values in known for v in values), default=0.0)
+    return all(max(v) - min(v) <= ALIKE * size for v in known if v)
 
 
 def _lines(
     rows: list[Row], looks: Mapping[str, Look], reading: Reading, hover: list[Any]
 ) -> Drawing:
-    values = [row[reading.field] for row in rows]
+    values = [row[reading.field] for row in rows if row[reading.field] is not None]
     if reading.reference is not None:
         values.append(reading.reference)
     field, domain = f"{reading.field}:Q", marks.padded(min(values), max(values), reading.least)

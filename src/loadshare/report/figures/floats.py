@@ -14,6 +14,7 @@ from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
 from loadshare.report.figures.marks import Drawing, Panel, Point, Row, circle, hover, path_rows
 from loadshare.report.figures.region import Journey, Region
+from loadshare.report.flanks import reaction_size
 from loadshare.report.numbers import significant
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
 from loadshare.report.units import MICROMETRE, engineering
@@ -194,8 +195,8 @@ class _Panel(Panel):
     def _shaft(self) -> list[Point]:
         """Path of the reaction's arrow; empty without a reaction."""
         reaction = self.journey.hardest_rest.reaction
-        size = math.hypot(*reaction)
-        if size <= 0.0:
+        size = reaction_size(self.journey.positions[self.journey.hardest], self.journey.gear)
+        if not size:
             return []
         x, y = self.places[self.journey.hardest]
         length = 0.45 * self.half

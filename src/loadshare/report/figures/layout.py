@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from loadshare.case.checks.fit import TOLERANCE
 from loadshare.case.content import Sections
 from loadshare.case.line_of_action import line_of_action
 from loadshare.case.place import axis_of
+from loadshare.report.flanks import Flank
 from loadshare.train import Train
 from loadshare.train.gear import Vector, transverse_frame
 from loadshare.train.ring import transverse
@@ -77,8 +78,8 @@ class Pair:
         [m].
     pitch_point : ndarray, shape (3,)
         [m].
-    push : ndarray, shape (3,), or None
-        Direction in which the driver pushes the driven gear.
+    pushes : tuple of ndarray, shape (3,)
+        Directions in which flanks push the driven gear.
     distance, needed : float
         Distance of the centres across the axes, or height of a pinion over its face gear, as it is
         and as the radii need it [m].
@@ -90,7 +91,7 @@ class Pair:
     angle: float
     pitch_radii: tuple[float, float]
     pitch_point: Vector
-    push: Vector | None
+    pushes: tuple[Vector, ...]
     distance: float
     needed: float
 
@@ -160,7 +161,7 @@ class Layout:
         return found, {"base circle": body.base_radius}
 
 
-def layout_of(case: Sections, train: Train | None) -> Layout:
+def layout_of(case: Sections, train: Train | None, flanks: Iterable[Flank] | None = None) -> Layout:
     """Arrange a case for a drawing.
 
     Parameters
@@ -169,6 +170,8 @@ def layout_of(case: Sections, train: Train | None) -> Layout:
         A draft leaves out what could not be read.
     train : Train or None
         Of the case, for running senses and directions of push; None where there is none yet.
+    flanks : iterable of Flank, optional
+        Those that carry; without them the drive flanks are taken.
     """
     centres = case.centres()
     # In the order of the train, by which all pictures colour their gears.
@@ -179,7 +182,14 @@ def layout_of(case: Sections, train: Train | None) -> Layout:
         if name in centres
     }
     shafts = tuple(s.ends for s in case.shafts.values() if set(s.ends) <= set(bodies))
-    return Layout(bodies, tuple(_pairs(case, bodies, centres, train)), shafts)
+    pushes: dict[str, list[Vector]] = {}
+    if train:
+        wanted = [(name, True) for name in train.meshes] if flanks is None else flanks
+        for name, drive, *_ in wanted:
+            mesh = train.meshes[name]
+            normal = mesh.drive_normal if drive else mesh.coast_normal
+            pushes.setdefault(name, []).append(normal)
+    return Layout(bodies, tuple(_pairs(case, bodies, centres, pushes)), shafts)
 
 
 def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | None) -> Body:
@@ -223,7 +233,7 @@ def _pairs(
     case: Sections,
     bodies: Mapping[str, Body],
     centres: Mapping[str, tuple[float, float, float]],
-    train: Train | None,
+    pushes: Mapping[str, Sequence[Vector]],
 ) -> Iterator[Pair]:
     for name, mesh in case.meshes.items():
         if mesh.driver not in bodies or mesh.driven not in bodies or mesh.driver == mesh.driven:
@@ -241,7 +251,7 @@ def _pairs(
             angle=line.pressure_angle,
             pitch_radii=radii,
             pitch_point=point,
-            push=train.meshes[name].drive_normal if train else None,
+            pushes=tuple(pushes.get(name, ())),
             distance=distance,
             needed=needed,
         )

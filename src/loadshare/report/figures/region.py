@@ -17,6 +17,7 @@ import numpy as np
 from loadshare.certify import FloatState
 from loadshare.contact.radial import spline_law
 from loadshare.report.figures.marks import Point, circle
+from loadshare.report.flanks import least_force
 from loadshare.report.numbers import significant
 from loadshare.report.units import MICROMETRE
 from loadshare.report.words import boundary_name, rest_lines, spline_lines
@@ -267,13 +268,14 @@ class Journey:
     @property
     def subtitle(self) -> list[str]:
         """Where the float rests, and how the picture is drawn, in words."""
+        least = max(map(least_force, self.positions))
         factor = MILLIMETRES / 1e3 / (2.0 * self.view[1])
         enlarged = float(f"{factor:.2g}")
         stages = [n if n in self.circles else f"{n} (not shown)" for n in self._stages]
         outside = ", ".join(self._outside)
         return [
-            *rest_lines(self.rests, [p.position for p in self.positions]),
-            *spline_lines(self.rests),
+            *rest_lines(self.rests, [p.position for p in self.positions], least),
+            *spline_lines(self.rests, least),
             *([", ".join(stages)] if stages else []),
             *([f"outside the picture: {outside}"] if outside else []),
             f"enlarged about {enlarged:,.0f} : 1 at a width of {MILLIMETRES:g} mm",

@@ -25,10 +25,12 @@ from loadshare.report.figures.marks import (
     hover,
     path_rows,
 )
+from loadshare.report.flanks import carrying
 from loadshare.report.numbers import significant
 from loadshare.report.palette import INK, SOFT, WARNING, Palette
 from loadshare.report.units import MILLIMETRE
 from loadshare.report.words import direction_name
+from loadshare.results import Position, Result
 from loadshare.train import Train, build_train
 from loadshare.train.gear import Vector, transverse_frame
 
@@ -47,7 +49,7 @@ CENTRE_LINES: dict[str, dict[str, Any]] = {
 }
 
 
-def train(case: Sections) -> Figure:
+def train(case: Sections, result: Result | None = None) -> Figure:
     """Draw the train to scale, in mm.
 
     Parameters
@@ -55,6 +57,9 @@ def train(case: Sections) -> Figure:
     case : Case or Draft
         A case, or what could be read of one: what does not fit is drawn in red, running senses and
         lines of action are left out.
+    result : Result, optional
+        Of the case: its first position says which flanks carry. Without it, straight arrows are
+        those of the drive flanks, whichever way the load acts.
 
     Returns
     -------
@@ -68,7 +73,8 @@ def train(case: Sections) -> Figure:
     LoadshareError
         If no gear could be placed.
     """
-    layout = layout_of(case, _train_of(case))
+    first = result.positions[0] if result else None
+    layout = layout_of(case, _train_of(case), list(carrying(first)) if first else None)
     if not layout.bodies:
         raise LoadshareError("no gear has a centre that could be read, so nothing can be drawn")
     ends = {pair.name: (pair.driver, pair.driven) for pair in layout.pairs}
@@ -84,7 +90,7 @@ def train(case: Sections) -> Figure:
     subtitle = [
         case.title,
         "full circles: pitch circles; dashed: base circles; bent arrows: running sense",
-        "straight arrows: push on the driven gear, along the line of action",
+        _pushes_text(first),
         "centres: filled on a bearing, diamond on an elastic bearing, ring floating",
         *(_misfit_text(pair) for pair in layout.pairs if not pair.fits),
     ]
@@ -98,6 +104,12 @@ def _train_of(case: Sections) -> Train | None:
         return build_train(case)
     except CaseError:
         return None
+
+
+def _pushes_text(first: Position | None) -> str:
+    which = "drive flanks" if first is None else "flanks that carry"
+    where = f" at position {first.position}" if first and first.train.count > 1 else ""
+    return f"straight arrows: push of the {which}{where} on the driven gear"
 
 
 def _misfit_text(pair: Pair) -> str:
@@ -217,21 +229,18 @@ class _View(Panel):
         """Lines of action between their points of contact with the base circles."""
         rows: list[Row] = []
         head = 0.012 * (self.high[0] - self.low[0])
-        for pair in self.layout.pairs:
-            if pair.push is None:
-                continue
+        pushes = [(pair, push) for pair in self.layout.pairs for push in pair.pushes]
+        for pair, push in pushes:
             parts = [r * math.sin(pair.angle) for r in pair.pitch_radii]
             kinds = {self.layout.bodies[name].kind for name in (pair.driver, pair.driven)}
             if kinds != {"external"}:
                 # A face gear has no base circle, and an internal one touches the line on the same
                 # side as the pinion: the pinion's part is drawn both ways.
                 parts = [min(parts)] * 2
-            ends = np.array(
-                [pair.pitch_point - parts[0] * pair.push, pair.pitch_point + parts[1] * pair.push]
-            )
-            tail, tip = self._flat(ends)
+            ends = [pair.pitch_point - parts[0] * push, pair.pitch_point + parts[1] * push]
+            tail, tip = self._flat(np.array(ends))
             shaft = arrow(tail, tip, head)
-            rows += path_rows(shaft, part=pair.name)
+            rows += path_rows(shaft, part=pair.name if push is pair.pushes[0] else pair.name + "'")
             self.labels.avoid(shaft)
         return self.line(rows, "part", color=INK, strokeWidth=1.5)
 

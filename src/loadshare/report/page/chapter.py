@@ -161,7 +161,7 @@ def chapter(
         problems=problems,
         case=case,
         result=result,
-        drawing=draw(case),
+        drawing=draw(case, result),
         figures=tuple(_figures(result)) if result else (),
         summary=tuple(verdict_tables(result)) if result else (),
         trust=trust(result) if result else {},

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from loadshare.report import records
+from loadshare.report.flanks import carrying, least_force, reaction_size
 from loadshare.report.numbers import NONE, significant, small
 from loadshare.report.records import Cell, Record, Table, table
 from loadshare.report.units import engineering
@@ -13,6 +14,7 @@ from loadshare.report.words import advice, rest_lines, spline_lines, undetermine
 from loadshare.results import Result
 from loadshare.results.laws import law_lines
 
+K_GAMMA = "Kγ"
 DIGITS = 4
 """Significant digits of forces and torques on the first screen."""
 
@@ -33,27 +35,46 @@ def verdict_tables(result: Result) -> Iterator[Table]:
     )
 
 
+def measure_of(result: Result) -> str:
+    """Return what the largest Ω of a result is: K_γ only if all positions of the case are in it."""
+    count, found = result.positions[0].train.count, result.positions
+    if len(found) >= count:
+        return K_GAMMA
+    return (
+        f"Ω at position {found[0].position}"
+        if len(found) == 1
+        else (f"Ω at {len(found)} of {count}")
+    )
+
+
 def sharing(result: Result) -> Table:
-    """Largest Ω of every stage; over the mean of the stage it is K_γ of ISO 6336-1."""
+    """Largest Ω of every stage.
+
+    Over the mean of the stage and over all positions it is K_γ of ISO 6336-1.
+    """
     rows = list(records.omegas(result))
     alike = all(row["over stage"].text == row["over group"].text for row in rows)
     figures = ("over stage",) if alike else ("over stage", "over group")
-    heads = {"over stage": "Ω = Kγ", "over group": "Ω over group", "stage at": "reached at"}
+    measure = measure_of(result)
+    over_stage = f"Ω = {K_GAMMA}" if measure == K_GAMMA else measure
+    heads = {"over stage": over_stage, "over group": "Ω over group", "stage at": "reached at"}
     return table("Load sharing by stage", rows, ("stage", "stage at"), figures, heads)
 
 
 def resting(result: Result) -> Table:
     """Where every float rests, in words."""
     numbers = [p.position for p in result.positions]
+    least = max(map(least_force, result.positions))
     rows = []
     for gear in result.positions[0].floats:
         rests = [p.floats[gear] for p in result.positions]
-        most = max(math.hypot(*rest.reaction) for rest in rests)
+        lines = [*rest_lines(rests, numbers, least), *spline_lines(rests, least)]
+        most = max(reaction_size(p, gear) for p in result.positions)
         unit = engineering([most], "N")
         rows.append(
             {
                 "gear": Cell(gear),
-                "rests": Cell("; ".join([*rest_lines(rests, numbers), *spline_lines(rests)])),
+                "rests": Cell("; ".join(lines)),
                 "reaction": Cell(f"{significant(unit.of(most), DIGITS)} {unit.name}", most),
             }
         )
@@ -63,27 +84,31 @@ def resting(result: Result) -> Table:
 
 def largest_forces(result: Result) -> Iterator[Record]:
     """Yield the largest force of a flank, force on a bearing, and torque of a shaft."""
-    loads = [(p.position, p.loads) for p in result.positions]
+    positions = result.positions
+    force = max(map(least_force, positions))
+    torque = force * max(gear.base_radius for gear in positions[0].train.gears.values())
+    loads = [(p.position, p.loads) for p in positions]
+    bearings = [(math.hypot(*f), f"gear {g}", k) for k, x in loads for g, f in x.bearings.items()]
+    shafts = [(abs(t), f"shaft {s}", k) for k, x in loads for s, t in x.shafts.items()]
+    flanks = [(f.force, f.where, p.position) for p in positions for f in carrying(p)]
     kinds = {
-        "flank": ("mesh", "N", [(abs(f), m, k) for k, x in loads for m, f in x.meshes.items()]),
-        "bearing or pin": (
-            "gear",
-            "N",
-            [(math.hypot(*f), g, k) for k, x in loads for g, f in x.bearings.items()],
-        ),
-        "shaft": ("shaft", "N·m", [(abs(t), s, k) for k, x in loads for s, t in x.shafts.items()]),
+        "flank": ("N", force, flanks or [(0.0, NONE, 1)]),
+        "bearing or pin": ("N", force, bearings),
+        "shaft": ("N·m", torque, shafts),
     }
-    for what, (part, of, found) in kinds.items():
+    for what, (of, least, found) in kinds.items():
         if not found:
             continue
-        value, name, position = max(found, key=lambda f: f[0])
+        value, where, position = max(found, key=lambda f: f[0])
+        # What the certificate does not distinguish from nothing is none.
+        value = value if value > least else 0.0
         unit = engineering([value], of)
-        where = f"{part} {name}"
-        if len(loads) > 1 and not records.alike(result):
+        texts = [significant(unit.of(v), DIGITS) for v, other, _ in found if other == where]
+        if len(texts) < len(positions) or len({*texts}) > 1:
             where += f", position {position}"
         yield {
             "what": Cell(what),
-            "where": Cell(where if value > 0.0 else NONE),
+            "where": Cell(where if value else NONE),
             "value": Cell(f"{significant(unit.of(value), DIGITS)} {unit.name}", value),
         }
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job.answer import Answer
+from loadshare.results.share import carries, flank_torques, largest_of
 from loadshare.scene.scene import Array
 from loadshare.settings import SENSITIVITY
 from loadshare.study.parameter import Value
@@ -61,6 +62,8 @@ class Corner:
     neighbourhood : Neighbourhood
     torque : dict of mesh to float
         On the driver [N·m].
+    largest_torque : float
+        On any flank [N·m].
     remarks : list of Remark
         What was found about the inputs differentiated by so far.
     """
@@ -73,6 +76,7 @@ class Corner:
         self.structure = setting.structure
         self.neighbourhood = Neighbourhood(setting, self._answer)
         self.torque = torques_of(train, self._answer)
+        self.largest_torque = largest_of(flank_torques(train, self._answer.flank_force))
         self.remarks: list[Remark] = []
         self._caught: dict[str, None] = {}
 
@@ -216,7 +220,7 @@ class Corner:
         """Yield groups that carry, and dΩ over dT (group, meshes)."""
         for group in groups:
             mean = sum(self.torque[m] for m in group) / len(group)
-            if not mean:
+            if not carries(mean, self.largest_torque):
                 continue
             weights = np.zeros((len(group), len(order)))
             for row, m in zip(weights, group, strict=True):

@@ -169,7 +169,7 @@ def _largest(
         groups = [stage.meshes] if kind == "share" else stage.groups
         near: list[Slope] = []
         for corner in corners:
-            shares = coefficients(corner.torque, groups)
+            shares = coefficients(corner.torque, groups, corner.largest_torque)
             here = rates[corner.position, key, side]
             slopes, errors = getattr(here, kind), getattr(here.error, kind)
             near += [Slope(s, slopes[m], errors[m]) for m, s in shares.items() if s is not None]

@@ -6,10 +6,10 @@ the next place is a step of the answer, no derivative.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 
+from loadshare.results.share import flank_torques
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import SENSITIVITY
@@ -40,7 +40,7 @@ class Variation:
     def __init__(self, trains: Trains, value: Value, position: int, structure: Structure) -> None:
         self._trains, self.value, self.position = trains, value, position
         self._structure = structure
-        self.cycle = trains.at(value.number).mesh_positions(position)
+        self.cycle = trains.at(value.number).flank_positions(position)
         self._setting = lru_cache(maxsize=None)(self._at)
         self._changes: dict[tuple[WorkingSet, bytes], Derivative] = {}
 
@@ -49,9 +49,9 @@ class Variation:
 
     def _at(self, number: float) -> Setting:
         train, structure = standing(self._trains.at(number), self.position), self._structure
-        if train.mesh_positions(self.position) == self.cycle:
+        if train.flank_positions(self.position) == self.cycle:
             return Setting(train, structure, self._trains.numbers(train, self.position, structure))
-        return Setting.at(held(train, self.cycle), self.position, structure)
+        return Setting.at(replace(train, held_at=self.cycle), self.position, structure)
 
     def setting(self, amount: float) -> Setting:
         """Return the train with the input moved by an amount [SI]."""
@@ -93,27 +93,19 @@ class Variation:
         """Meshes that pass to another place of their cycle right next to the value."""
         least = min(step, SENSITIVITY.beside * max(abs(self.value.si), step))
         for amount in (step, least):
-            there = self._trains.at(self._number(sign * amount)).mesh_positions(self.position)
-            passing = tuple(m for m, k in there.items() if k != self.cycle[m])
+            train = self._trains.at(self._number(sign * amount))
+            there = train.flank_positions(self.position)
+            passing = tuple(
+                mesh.name
+                for mesh in train.meshes.values()
+                if any(there[f] != self.cycle[f] for f in map(mesh.flank_name, mesh.flanks))
+            )
             if not passing:
                 return ()
         return passing
 
 
-def held(train: Train, cycle: Mapping[str, int]) -> Train:
-    """Return a train whose meshes have the laws and gaps of one place of their cycle only."""
-    return replace(
-        train,
-        meshes={
-            name: replace(mesh, laws=(mesh.law(cycle[name]),), gaps=(mesh.gap(cycle[name], True),))
-            for name, mesh in train.meshes.items()
-        },
-    )
-
-
 def torques_of(train: Train, found: Equilibrium) -> dict[str, float]:
     """Torque of every mesh of an equilibrium, drive flank less coast flank [N·m]."""
-    return {
-        name: sum(mesh.lever(d) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks)
-        for name, mesh in train.meshes.items()
-    }
+    flanks = flank_torques(train, found.flank_force)
+    return {name: sum(both) for name, both in flanks.items()}

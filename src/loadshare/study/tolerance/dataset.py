@@ -54,7 +54,7 @@ def dataset(found: Tolerance) -> xr.Dataset:
         ends = gathered(
             lambda o: np.reshape([(e.value, e.low, e.high) for e in get(o)], (*shape, 3)), *shape, 3
         )
-        for k, ending in enumerate(("", "_low", "_high")):
+        for k, ending in enumerate(ENDS):
             variables[name + ending] = ((*base, *axis), ends[..., k])
 
     estimates("mean", lambda o: [o.summary.mean])
@@ -77,7 +77,7 @@ def dataset(found: Tolerance) -> xr.Dataset:
     }
     if found.limit is not None:
         attributes["limit"] = found.limit
-    return xr.Dataset(
+    arrays = xr.Dataset(
         variables,
         coords={
             "over": overs,
@@ -88,6 +88,33 @@ def dataset(found: Tolerance) -> xr.Dataset:
         },
         attrs=attributes,
     )
+    return _named(arrays)
+
+
+COEFFICIENT = "largest load-sharing coefficient"
+NAMES = {
+    "mean": f"mean of the {COEFFICIENT}",
+    "deviation": f"standard deviation of the {COEFFICIENT}",
+    "lowest": f"lowest {COEFFICIENT} of all samples",
+    "highest": f"highest {COEFFICIENT} of all samples",
+    "quantile": f"quantile of the {COEFFICIENT}",
+    "exceedance": f"part of the samples whose {COEFFICIENT} is beyond the limit",
+    "count": "samples in a bin of the histogram",
+    "edge": "edges of the bins of the histogram",
+    "level": "part of the samples at or below the quantile",
+    "first_order": f"part of the variance of the {COEFFICIENT} that is due to the input alone",
+    "total_order": f"part of the variance of the {COEFFICIENT} in which the input takes part",
+}
+"""What each figure is; all are plain numbers."""
+ENDS = {"": "", "_low": ", lower end of its interval", "_high": ", upper end of its interval"}
+
+
+def _named(arrays: xr.Dataset) -> xr.Dataset:
+    for name, text in NAMES.items():
+        for ending, end in ENDS.items():
+            if name + ending in arrays.variables:
+                arrays[name + ending].attrs.update(units="1", long_name=text + end)
+    return arrays
 
 
 _NONE = Estimate(np.nan, np.nan, np.nan)

@@ -143,15 +143,15 @@ def _figures(block: Block) -> dict[str, Array]:
 
 def _at_position(answers: Equilibria) -> dict[str, Array]:
     train = answers.names.train
-    torque, meshes = mesh_torques(answers)
-    order = {mesh: m for m, mesh in enumerate(meshes)}
+    torques = mesh_torques(train, answers.flank_force)
+    order = {mesh: m for m, mesh in enumerate(torques.meshes)}
     found: dict[str, Array] = {}
     for kind in KINDS:
-        omega = shares(torque, meshes, train.stages, pairs=kind == "pair_omega")
+        omega = shares(torques, train.stages, pairs=kind == "pair_omega")
         of = {s.name: _largest(omega, [order[m] for m in s.meshes]) for s in train.stages}
         found |= {f"{kind}.{stage}": values for stage, values in of.items()}
         found[f"{kind}.{SYSTEM}"] = np.fmax.reduce(list(of.values()))
-    found |= {f"torque.{mesh} [N*m]": torque[:, m] for mesh, m in order.items()}
+    found |= {f"torque.{mesh} [N*m]": torques.net[:, m] for mesh, m in order.items()}
     gears = {gear: g for g, gear in enumerate(train.gears)}
     for gear in train.floating:
         way = np.linalg.norm(answers.displacement[:, gears[gear]], axis=1)

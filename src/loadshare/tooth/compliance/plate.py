@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
+from math import ceil
 
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
 
+from loadshare.errors import Refused
 from loadshare.tooth.compliance.smooth import SmoothMiddle
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import cross, dot
 
 HEIGHT_DEGREE = 6
 """Degree of the polynomials along the tooth's height."""
+FEWEST, STRAIGHT, MOST = 6, 18, 128
+"""Degrees of the polynomials over the width: the least, the largest for straight teeth, whose load
+is even, and the largest of all."""
+PER_PITCH = 6
+"""Degrees for each axial pitch of the face width: the load of a helical face varies as often."""
 ROOT_TANGENT = 60.0
 """Angle [degrees] between fillet and chord at the root section: the standard's 30° tangent."""
 OVER = 2
@@ -64,15 +71,21 @@ class Plate:
     middle : SmoothMiddle
         From the root section up.
     width_degree : int, optional
-        Degree of the polynomials over the width; by default the width over the height decides.
+        Degree of the polynomials over the width; by default the width over the height and the
+        number of axial pitches decide.
+
+    Raises
+    ------
+    Refused
+        If the face has more axial pitches than the polynomials can follow.
     """
 
     def __init__(self, middle: SmoothMiddle, width_degree: int | None = None) -> None:
         self.middle = middle
         ends = middle.points(np.array([[middle.waist, 0.0], [middle.waist, 1.0]]))
         slenderness = float(np.linalg.norm(ends[1] - ends[0])) / middle.whole_height
-        default = int(np.clip(np.ceil(3.0 + 2.0 * slenderness), 6, 18))
-        self._degrees = HEIGHT_DEGREE, width_degree or default
+        width = width_degree or _width_degree(slenderness, middle.body.axial_pitches)
+        self._degrees = HEIGHT_DEGREE, width
         self.bending, self.compression = self._yielding()
 
     def station(self, zw: Array) -> Station:
@@ -196,6 +209,19 @@ class Plate:
             for root in lower
         )
         return bending, compression
+
+
+def _width_degree(slenderness: float, axial_pitches: float) -> int:
+    """Degree over a face of some heights of the tooth and some axial pitches."""
+    follows = max(STRAIGHT, ceil(PER_PITCH * axial_pitches))
+    degree = int(np.clip(ceil(3.0 + 2.0 * slenderness), FEWEST, follows))
+    if degree > MOST:
+        raise Refused(
+            f"a face of {axial_pitches:.3g} axial pitches is wider than slices can follow; "
+            f"allowed: up to {MOST // PER_PITCH}; take a part of the face, with as much load per "
+            "width"
+        )
+    return degree
 
 
 def _gauss(low: float, high: float, count: int) -> tuple[Array, Array]:

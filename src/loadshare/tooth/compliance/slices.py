@@ -47,7 +47,8 @@ class Slices(Compliance):
     side : {+1, −1}
         The flank that carries load.
     width_degree : int, optional
-        Degree of the polynomials over the width; by default the width over the height decides.
+        Degree of the polynomials over the width; by default the width over the height and the
+        number of axial pitches decide.
     rigid_body : bool
         Whether the teeth are on half-planes instead of the gear's body: Weber and Banaschek's
         plane theory.

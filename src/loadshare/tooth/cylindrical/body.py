@@ -42,6 +42,11 @@ class HelicoidBody(ToothBody):
         """Face width [m]."""
         return self.gear.face_width
 
+    @property
+    def axial_pitches(self) -> float:
+        """Axial pitches over the face width."""
+        return self.face_width * abs(self.gear.twist) * self.gear.teeth / (2.0 * math.pi)
+
     @cached_property
     def _root(self) -> Curve:
         return root_curve(self.gear)

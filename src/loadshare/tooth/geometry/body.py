@@ -120,6 +120,11 @@ class ToothBody(ABC):
     def face_width(self) -> float:
         """Face width, of one half for a herringbone gear [m]."""
 
+    @property
+    def axial_pitches(self) -> float:
+        """Axial pitches over the face width, ε_β of the whole face; 0 for straight teeth."""
+        return 0.0
+
     @abstractmethod
     def outline(self, u: ArrayLike, w: ArrayLike, side: int) -> Array:
         """Boundary of half of tooth 0 at a width station.

@@ -23,10 +23,13 @@ from loadshare.errors import CaseError, Refused
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.pair.file import PairFile
+from loadshare.tooth.pair.gears import PairGears, gears_of
 from loadshare.tooth.pair.model import Load, Number, Positions
 
 MISSED = 0.01
 """Part of the mean deflection that positions may miss silently."""
+UNKNOWN = "its law file does not say of which gears: written anew, they would be compared"
+"""What the basis adds where a law file lacks its gears."""
 _GEARS = {"driver": "driver", "driven": "driven gear"}
 Share = Annotated[float, Strict(), Field(ge=0, allow_inf_nan=False)]
 
@@ -90,6 +93,9 @@ class Stamp(Element):
     layers: int | None = None
     """Finite elements over the face width, where the pair file says [-]."""
 
+    gears: PairGears | None = None
+    """The gears, against which a case is compared; older files lack them."""
+
 
 class MeshLaw(Element):
     """Loaded deformation of a mesh at the driver, a + b T + c T^(2/3), by position."""
@@ -123,12 +129,16 @@ class MeshLaw(Element):
     """What it was computed from."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield the lists that are not as long as there are positions."""
+        """Yield lists that are not as long as there are positions, and where the mesh is rigid."""
         for key in ("a", "b", "c", "misfit"):
             found = len(getattr(self, key))
             if found != self.computed.positions:
                 message = f"has {count(found)}, computed.positions is {self.computed.positions}"
                 yield Rule(message, (key,))
+        for k, (b, c) in enumerate(zip(self.b, self.c, strict=False)):
+            if b.si == c.si == 0.0:
+                hint = "Write the file anew: loadshare ltca."
+                yield Rule("and c are both 0 here: the mesh would be rigid", ("b", k), hint=hint)
 
     @property
     def findings(self) -> tuple[str, ...]:
@@ -166,8 +176,11 @@ class MeshLaw(Element):
         made = self.computed
         means = ", means over the cycle" if made.sampling == "means" else ""
         taken = f"; assumed: {', '.join(assumed)}" if assumed else ""
+        unknown = "" if made.gears else f"; {UNKNOWN}"
         return {key: [value.text for value in getattr(self, key)] for key in "abc"} | {
-            "basis": f"LTCA, {made.compliance}{means}{taken}",
+            "sampling": made.sampling,
+            "basis": f"LTCA, {made.compliance}{means}{taken}{unknown}",
+            "misfit": max(self.misfit),
             "holds_from": f"{min(FIT_LOADS) * made.torque.si:.9g} N*m",
             "holds_to": f"{made.torque.si:.9g} N*m",
         }
@@ -193,6 +206,7 @@ def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
         **settings.model_dump(
             exclude_none=True, include={"points", "compliance", "sampling", "teeth", "layers"}
         ),
+        "gears": written(gears_of(pair.geometry)),
     }
     return MeshLaw.model_validate(
         {

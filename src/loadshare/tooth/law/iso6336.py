@@ -10,10 +10,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from loadshare.involute import contact_ratio
+from loadshare.settings import TEETH
 
 if TYPE_CHECKING:
     from loadshare.case import Gear
 
+SHIFTS = (-0.5, 2.0)
+"""Least and largest x1 + x2 to which the standard's series was fitted."""
 MEASURED = 0.8
 """C_M, the standard's."""
 LEAST_LOAD = 100e3
@@ -86,9 +89,10 @@ def formula_stiffness(
     ValueError
         If a value is outside what the formulas were fitted to.
     """
-    if not -0.5 <= sum(profile_shift) <= 2.0:
+    low, high = SHIFTS
+    if not low - TEETH.rounding <= sum(profile_shift) <= high + TEETH.rounding:
         raise ValueError(
-            f"x1 + x2 = {sum(profile_shift):.4g}: the formula holds for −0.5 ≤ x1 + x2 ≤ 2"
+            f"x1 + x2 = {sum(profile_shift):.10g}: the formula holds for −0.5 ≤ x1 + x2 ≤ 2"
         )
     if min(teeth) < 1 or contact_ratio <= 0.0 or abs(helix_angle) >= 0.5 * math.pi:
         raise ValueError(

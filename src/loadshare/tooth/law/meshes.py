@@ -123,6 +123,7 @@ def _read(
     from loadshare.tooth.law.file import load_law
     from loadshare.tooth.pair.agree import disagreements
     from loadshare.tooth.pair.file import load_pair
+    from loadshare.tooth.pair.gears import gears_of
 
     laws: dict[str, MeshLaw] = {}
     pairs: dict[str, PairFile] = {}
@@ -140,7 +141,9 @@ def _read(
         try:
             if source == "law_file":
                 laws[name] = load_law(file)
-                found = laws[name].computed.positions
+                gears, found = laws[name].computed.gears, laws[name].computed.positions
+                if gears is not None:
+                    problems |= dict.fromkeys(disagreements(case, name, gears, file.name))
                 if found != positions:
                     message = (
                         f"holds {count(found, 'position')}, operating.positions is {positions}"
@@ -151,7 +154,8 @@ def _read(
                 if file not in known:
                     known[file] = load_pair(file).revised(positions=positions)
                 pairs[name] = known[file]
-                problems |= dict.fromkeys(disagreements(case, name, pairs[name]))
+                gears = gears_of(pairs[name].geometry)
+                problems |= dict.fromkeys(disagreements(case, name, gears, pairs[name].name))
         except CaseError as error:
             problems |= dict.fromkeys(error.problems)
     return laws, pairs, list(problems)

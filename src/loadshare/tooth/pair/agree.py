@@ -1,85 +1,144 @@
-"""What a case says of two gears against what their pair file says."""
+"""What a case says of two gears against what the pair is of which their law is."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from loadshare.case.keys import dotted
-from loadshare.case.line_of_action import line_of_action
+from loadshare.case.line_of_action import facing, line_of_action
 from loadshare.errors import Problem
 from loadshare.settings import TEETH
-from loadshare.tooth.face.pair import FaceGearPair
-from loadshare.tooth.problems import degrees, millimetres
+from loadshare.tooth.problems import ANGLES, degrees, digits, millimetres, written
 
 if TYPE_CHECKING:
     from loadshare.case import Case, Gear
-    from loadshare.tooth.pair.file import PairFile
+    from loadshare.tooth.pair.gears import PairGear, PairGears
+
+OF_RADIUS = {"module", "teeth", "pressure_angle", "helix_angle"}
+"""Keys from which a base radius follows."""
+OF_SHAPE = ("profile_shift", "dedendum", "tip_radius")
+"""Keys of the shape of a tooth, in modules, that a case and a pair give alike."""
 
 
-def disagreements(case: Case, name: str, pair: PairFile) -> Iterator[Problem]:
-    """Yield what a case says otherwise of a mesh than the pair that it names.
+def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Iterator[Problem]:
+    """Yield what a case says otherwise of a mesh than the file that it names.
 
     Parameters
     ----------
     case : Case
     name : str
         Name of the mesh.
-    pair : PairFile
+    gears : PairGears
+        The gears of which the law is.
+    source : str
+        What messages call the file.
     """
-    mesh, geometry = case.meshes[name], pair.geometry
-    here = f"{pair.name} has"
-    arm = geometry.arm / math.cos(_base_helix(pair))
-    sides = (
-        (mesh.driver, arm, pair.content.driver.teeth, _type(pair, "driver")),
-        (mesh.driven, arm * geometry.ratio, pair.content.driven.teeth, _type(pair, "driven")),
-    )
-    for gear, radius, teeth, kind in sides:
-        yield from _gear(case, gear, here, radius, teeth, kind)
+    mesh = case.meshes[name]
+    here = f"{source} has"
+    cut = facing(mesh, case.gears, case.centres())
+    for gear, facing_it, own in zip(mesh.ends, cut, (gears.driver, gears.driven), strict=True):
+        yield from _gear(case, gear, here, gears, own)
+        yield from _face_width(case, gear, facing_it, here, gears, own)
     line = line_of_action(mesh, case.gears, case.centres())
     if line is None:
         return
-    angles = [("pressure_angle", line.pressure_angle, geometry.working_angle)]
+    angles = [("pressure_angle", line.pressure_angle, gears.working_angle.si)]
     if mesh.helix_angle is not None:
         # The helix is not needed for the law; a case that leaves it out says nothing of it.
-        angles.append(("helix_angle", line.helix_angle, _base_helix(pair)))
-    for key, own, wanted in angles:
-        if abs(abs(own) - wanted) > TEETH.angle:
+        angles.append(("helix_angle", line.helix_angle, gears.base_helix_angle.si))
+    for key, found, wanted in angles:
+        if abs(abs(found) - wanted) > TEETH.angle:
             given = getattr(mesh, key) is not None
-            path = dotted(("meshes", name, key if given else "geometry"))
+            source_key = "geometry" if mesh.geometry is not None else "law_file"
+            path = dotted(("meshes", name, key if given else source_key))
             message = f"{here} {degrees(wanted)}"
             if not given:
-                message = f"{here} the {key} {degrees(wanted)}; by the centres it is {degrees(own)}"
+                message = (
+                    f"{here} the {key} {degrees(wanted)}; by the centres it is {degrees(found)}"
+                )
             yield case.problem(path, message, degrees(wanted) if given else "")
 
 
-def _gear(
-    case: Case, name: str, here: str, radius: float, teeth: int, kind: str
-) -> Iterator[Problem]:
+def _gear(case: Case, name: str, here: str, gears: PairGears, own: PairGear) -> Iterator[Problem]:
     gear: Gear = case.gears[name]
-    if gear.type != kind:
-        yield case.problem(dotted(("gears", name, "type")), f"{here} a gear of type {kind}", kind)
-    elif abs(gear.acting_radius - radius) > TEETH.radius * radius:
-        keys = gear.given("base_radius", "inner_radius", "module")
+    if gear.type != own.type:
+        path = dotted(("gears", name, "type"))
+        yield case.problem(path, f"{here} a gear of type {own.type}", own.type)
+        return
+    found = set()
+    if gear.teeth is not None and gear.teeth != own.teeth:
+        found.add("teeth")
+        path = dotted(("gears", name, "teeth"))
+        yield case.problem(path, f"{here} {own.teeth} teeth", str(own.teeth))
+    for key, given, wanted in _dimensions(gear, gears, own):
+        if abs(given - wanted) > _allowed(key, wanted):
+            found.add(key)
+            text = written(key, wanted)
+            yield case.problem(
+                dotted(("gears", name, key)), f"{here} the {key.replace('_', ' ')} {text}", text
+            )
+    yield from _tip(case, name, here, own)
+    radius = own.base_radius.si
+    keys = gear.given("base_radius", "inner_radius", "module")
+    follows = keys == ["module"] and found & OF_RADIUS
+    if not follows and abs(gear.acting_radius - radius) > TEETH.radius * radius:
         message = f"{here} the base radius {millimetres(radius)}"
         if keys == ["inner_radius"]:
             message += f", and (L1 + L2)/2 is {millimetres(gear.acting_radius)}"
         path = dotted(("gears", name, keys[0]))
         yield case.problem(path, message, f'base_radius = "{millimetres(radius)}"')
-    if gear.teeth is not None and gear.teeth != teeth:
-        yield case.problem(dotted(("gears", name, "teeth")), f"{here} {teeth} teeth", str(teeth))
 
 
-def _base_helix(pair: PairFile) -> float:
-    geometry = pair.geometry
-    if isinstance(geometry, FaceGearPair):
-        return 0.0
-    return abs(geometry.driver_gear.base_helix_angle)
+def _dimensions(gear: Gear, gears: PairGears, own: PairGear) -> Iterator[tuple[str, float, float]]:
+    """Keys that the case gives, its value and that of the pair [m, rad or 1]."""
+    for key in gear.given("module", "pressure_angle", "helix_angle"):
+        wanted = getattr(own, key)
+        if wanted is not None:
+            values = getattr(gear, key).si, wanted.si
+            # Halves of a herringbone gear have either hand.
+            yield key, *(map(abs, values) if gears.helices == 2 else values)
+    for key in gear.given(*OF_SHAPE):
+        wanted = getattr(own, key)
+        if wanted is not None:
+            yield key, getattr(gear, key), wanted
 
 
-def _type(pair: PairFile, which: str) -> str:
-    gear = getattr(pair.content, which)
-    if isinstance(pair.geometry, FaceGearPair):
-        return "external" if which == "driver" else "face"
-    return "internal" if gear.internal else "external"
+def _allowed(key: str, wanted: float) -> float:
+    """How far two values of a key may be apart [m, rad or modules]."""
+    if key in ANGLES:
+        return TEETH.angle
+    return TEETH.radius * (abs(wanted) if key == "module" else 1.0)
+
+
+def _tip(case: Case, name: str, here: str, own: PairGear) -> Iterator[Problem]:
+    """Yield the addendum that, with the alteration of the tip, is not that of the pair."""
+    gear: Gear = case.gears[name]
+    keys = gear.given("tip_alteration", "addendum")
+    if not keys or gear.tooth is None or own.addendum is None:
+        return
+    if abs(gear.tooth.addendum - own.addendum) > TEETH.radius:
+        message = f"{here} the addendum {digits(own.addendum)}"
+        if keys[0] == "tip_alteration":
+            message += f"; with the alteration it is {digits(gear.tooth.addendum)}"
+        allowed = digits(own.addendum) if keys[0] == "addendum" else ""
+        yield case.problem(dotted(("gears", name, keys[0])), message, allowed)
+
+
+def _face_width(
+    case: Case, name: str, facing_it: Gear, here: str, gears: PairGears, own: PairGear
+) -> Iterator[Problem]:
+    """Yield a face width that is neither that of the pair nor cut to it where the faces overlap."""
+    gear: Gear = case.gears[name]
+    if gear.face_width is None or facing_it.face_width is None or own.face_width is None:
+        return
+    least = own.face_width.si
+    most = least + (gears.helix_gap.si if gears.helix_gap else 0.0)
+    slack = TEETH.radius * least
+    widths = gear.face_width.si, facing_it.face_width.si
+    if not any(least - slack <= width <= most + slack for width in widths):
+        message = f"{here} the face width {millimetres(least)}"
+        if gears.helices == 2:
+            message += f" in two halves, {millimetres(most)} with their gap"
+        path = dotted(("gears", name, "face_width"))
+        yield case.problem(path, message, millimetres(least))

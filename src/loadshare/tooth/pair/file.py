@@ -85,22 +85,26 @@ class PairFile:
 
     @cached_property
     def offset(self) -> float:
-        """Mean lead of the driver that only the misalignment causes [rad].
+        """Mean lead of the driver from the `offset` and `gear_shift` of a face gear [rad].
 
-        A misaligned pair as a whole is turned by a constant angle against the aligned one. In a
-        train that angle is a consequence of the errors of the gears, which the case states; the
-        law holds what is left, so that it is not counted twice.
+        They turn the pair by a constant angle. In a train they are installation errors of the face
+        gear, which the case states; the law leaves the angle out, so that it is not counted twice.
+        A tilt of the axes is no error that a case can state: its lead stays in the law. With
+        centre distance and axial shift of cylindrical gears the ideal pair moves along.
         """
-        none: Any = type(self.geometry.misalignment)()
-        if self.geometry.misalignment == none:
+        geometry = self.geometry
+        if isinstance(geometry, HelicoidPair):
             return 0.0
-        aligned = replace(self.geometry, misalignment=none)
+        without = replace(geometry.misalignment, offset=0.0, gear_shift=0.0)
+        if geometry.misalignment == without:
+            return 0.0
+        placed = replace(geometry, misalignment=without)
         count = self.analysis.positions
         means = self.analysis.sampling == "means"
-        parts = cells(count, self.geometry.changes) if means else None
+        parts = cells(count, geometry.changes) if means else None
         phases = [k / count for k in range(count)] if parts is None else parts.phase.tolist()
         leads = [
-            transmission_error(self.geometry, phase) - transmission_error(aligned, phase)
+            transmission_error(geometry, phase) - transmission_error(placed, phase)
             for phase in phases
         ]
         return sum(leads) / len(leads) if parts is None else float(parts.mean(leads).mean())
@@ -141,13 +145,14 @@ class PairFile:
         Raises
         ------
         Refused
-            If a position has no contact, or one that its certificate does not pass.
+            If a position has no contact, or one that its certificate does not pass, or the face is
+            wider than the model can follow.
         """
         chosen = self.analysis
-        compliance = pair_compliance(
-            self.geometry, chosen.compliance, teeth=chosen.teeth, layers=chosen.layers
-        )
         try:
+            compliance = pair_compliance(
+                self.geometry, chosen.compliance, teeth=chosen.teeth, layers=chosen.layers
+            )
             return ltca(
                 self.geometry,
                 self.torque,

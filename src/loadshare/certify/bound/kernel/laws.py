@@ -84,11 +84,11 @@ def flank_law(of, here, s, e, force, scale):  # type: ignore[no-untyped-def]
     up to which they hold [N]. A Hertz contact that is light may lose its force: its largest is the
     secant to none, which has no end where there is none.
     """
-    m, light = of.mesh[e], BOUND.light * scale
+    light = BOUND.light * scale
     if of.is_tabled[e]:
         r = row_of(here.table, s)
-        return _by_table(here.table[r, m, 0], here.table[r, m, 1], force, light)
-    bending, hertz = here.bending[row_of(here.bending, s), m], here.hertz[row_of(here.hertz, s), m]
+        return _by_table(here.table[r, e, 0], here.table[r, e, 1], force, light)
+    bending, hertz = here.bending[row_of(here.bending, s), e], here.hertz[row_of(here.hertz, s), e]
     if hertz == 0.0:
         return bending * force, bending, bending, np.inf
     root = np.cbrt(max(force, 0.0))

@@ -84,10 +84,9 @@ def put_lengths(of, work, width):  # type: ignore[no-untyped-def]
 def put_limits(of, here, s, work, v):  # type: ignore[no-untyped-def]
     """Take gaps and floats from the lengths [m]; returns the largest, and the largest approach."""
     limits, approach, length = 0.0, 0.0, work.length
-    rg, rj, rs = row_of(here.gap, s), row_of(here.backlash, s), row_of(here.stop, s)
+    rg, rs = row_of(here.gap, s), row_of(here.stop, s)
     for e in range(len(of.arm)):
-        m = of.mesh[e]
-        gap = here.gap[rg, m] if of.is_drive[e] else here.backlash[rj, m]
+        gap = here.gap[rg, e]
         length[e, v] -= gap
         work.at_rest[e, v] -= gap
         limits, approach = max(limits, abs(gap)), max(approach, length[e, v])

@@ -1,0 +1,96 @@
+"""What of a REXS model cannot be used, and what is not used."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from loadshare.errors import Problem
+from loadshare.exchange.rexs.beam import STIFF
+from loadshare.exchange.rexs.gearing import BEARINGS, COUPLINGS, READ, Gearing, transmits
+from loadshare.exchange.rexs.holding import radial
+from loadshare.exchange.rexs.model import Component, Unread
+
+
+def unread_values(path: Path, of: Gearing) -> list[Problem]:
+    """Return a problem for every value that a case needs and that is none; alike ones together."""
+    found: dict[tuple[str, str, str], list[tuple[Component, Unread]]] = {}
+    for component in of.model.components.values():
+        if component.type in READ or component.type == "material":
+            for name, value in component.attributes.items():
+                if isinstance(value, Unread):
+                    alike = name, value.message, value.allowed
+                    found.setdefault(alike, []).append((component, value))
+    problems = []
+    for (name, message, allowed), both in found.items():
+        component, value = both[0]
+        more = f" ({len(both) - 1} more like it)" if len(both) > 1 else ""
+        where = f"{component.type} {component.id}, {name}"
+        problems.append(Problem(str(path), where, value.given, f"{message}{more}", allowed))
+    return problems
+
+
+def unknown_gears(path: Path, of: Gearing) -> list[Problem]:
+    """Return a problem for every coupling that does not say whether it is engaged in the gear."""
+    problems = []
+    for coupling in of.model.of_type(*COUPLINGS):
+        given = coupling.attributes.get("is_engaged")
+        if isinstance(given, tuple) and len(given) != 1 and not 0 < of.shift <= len(given):
+            where = f"{coupling.type} {coupling.id}, is_engaged"
+            why = f"is for {len(given)} gears, gear_shift_index of the gear unit is {of.shift}"
+            problems.append(Problem(str(path), where, "", why))
+        elif given not in (None, "") and not isinstance(given, bool | tuple):
+            where = f"{coupling.type} {coupling.id}, is_engaged"
+            problems.append(Problem(str(path), where, str(given), "is neither true nor false"))
+    return problems
+
+
+def unused(of: Gearing, used: set[str]) -> list[str]:
+    """Return what of bearings, couplings and loads is not in the case.
+
+    Parameters
+    ----------
+    of : Gearing
+    used : set of str
+        Ids of the bearings and couplings that hold or join something in the case.
+    """
+    found = []
+    sides = {part.id: both for part, *both in of.joined(*BEARINGS, *COUPLINGS)}
+    for part in of.model.of_type(*BEARINGS, *COUPLINGS):
+        if part.id not in used:
+            found.append(f"{part.title()}: {_why_unused(of, part, sides.get(part.id, []))}")
+        elif part.number("maximum_normal_backlash"):
+            found.append(f"{part.title()}: its backlash")
+    for coupling, *both in of.coupled:
+        if coupling.id in used and _ties_across(of, coupling, both):
+            found.append(f"{coupling.title()}: its stiffness across the axis")
+    on_shafts = {load.id for _, load in of.loads()}
+    for load in of.model.of_type("external_load"):
+        if load.id not in on_shafts:
+            found.append(f"{load.title()}: it is on no shaft with gears")
+        if load.number("force_v_direction") or load.number("force_w_direction"):
+            found.append(f"{load.title()}: its force across the axis")
+    return found
+
+
+def _ties_across(of: Gearing, coupling: Component, sides: list[Component]) -> bool:
+    """Whether a coupling of torque ties two shafts across the axis, or a carrier softly."""
+    if all(of.on_shaft(side) for side in sides):
+        return radial(coupling) > 0.0
+    carrier = any(side.id in of.carrier_shafts for side in sides)
+    plate = any(side.type == "side_plate" for side in sides)
+    return carrier and plate and 0.0 < radial(coupling) < STIFF
+
+
+def _why_unused(of: Gearing, part: Component, sides: list[Component]) -> str:
+    """Why a bearing or coupling is in no case."""
+    if not sides:
+        return "it joins nothing"
+    if part.type in COUPLINGS and not of.is_engaged(part):
+        return "it is open"
+    if part.type in COUPLINGS and not transmits(part):
+        return "its torsional stiffness is zero, it transmits no torque"
+    if part.type in BEARINGS and radial(part) <= 0.0:
+        return "it bears no load across the axis"
+    if all(of.on_shaft(side) for side in sides):
+        return "it lies between two shafts that turn"
+    return "it neither holds nor joins gears or carriers"

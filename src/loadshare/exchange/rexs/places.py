@@ -1,0 +1,126 @@
+"""Where the components of a REXS model are, along their shafts and in the unit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.exchange.rexs.model import Component, Model
+
+LONG = 6
+"""References to the place of another component that follow one another."""
+FIRST = ("1", "1.0", "1.0.0")
+"""Versions that give where a gear begins along its shaft, not its middle."""
+GEARS = ("cylindrical_gear", "ring_gear")
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Places and directions in a model.
+
+    Attributes
+    ----------
+    model : Model
+    """
+
+    model: Model
+
+    def of(self, body: Component, depth: int = 0) -> Vector | None:
+        """Where a component is [m], its reference's place added if that is another's."""
+        here, other = body.vector("support_vector"), self._reference(body)
+        if here is None or other is None:
+            return here
+        start = self.of(other, depth + 1) if depth < LONG else None
+        if start is None:
+            return here
+        return (start[0] + here[0], start[1] + here[1], start[2] + here[2])
+
+    def is_referred(self, body: Component) -> bool:
+        """Whether a component's position is given relative to another component than the unit."""
+        return self._reference(body) is not None
+
+    def _reference(self, body: Component) -> Component | None:
+        reference = body.attributes.get("reference_component_for_position")
+        number = isinstance(reference, float) and reference.is_integer()
+        other = self.model.components.get(f"{reference:.0f}" if number else str(reference))
+        return None if other is None or other is body or other.type == "gear_unit" else other
+
+    def along(self, part: Component, shaft: Component, side: str = "") -> float | None:
+        """Where the middle of a part sits along a shaft [m], from the start of the shaft.
+
+        Parameters
+        ----------
+        part : Component
+            A gear, a load, a bearing or a coupling.
+        shaft : Component
+        side : str
+            Side of a bearing or coupling on which the shaft is: "inner" or "outer".
+
+        Returns
+        -------
+        float or None
+            From the places of both in the unit, which mean the same in all versions, where both
+            are given; else from the coordinate along the shaft. None without either.
+        """
+        here, start = self.of(part), self.of(shaft)
+        name = f"u_coordinate_on_shaft_{side}_side" if side else "u_coordinate_on_shaft"
+        coordinate = part.number(name)
+        referred = self.is_referred(part) or self.is_referred(shaft)
+        if here is not None and start is not None and (coordinate is None or not referred):
+            return _dot(_minus(here, start), self.axis(shaft))
+        if coordinate is not None and part.type in GEARS and self.model.version in FIRST:
+            return coordinate + 0.5 * (part.number("face_width") or 0.0)
+        return coordinate
+
+    def on_axis(self, shaft: Component, along: float) -> Vector | None:
+        """A place along a shaft, in the unit [m]; None if the place of the shaft is not given."""
+        start = self.of(shaft)
+        if start is None:
+            return None
+        x, y, z = (p + along * a for p, a in zip(start, self.axis(shaft), strict=True))
+        return (x, y, z)
+
+    def axis(self, *bodies: Component | None) -> Vector:
+        """Direction u, of length 1, of the first component that gives one; x if none does."""
+        for body in bodies:
+            axis = body.vector("u_axis_vector") if body is not None else None
+            if axis is not None and any(axis):
+                # Of a direction the unit says nothing.
+                size = math.hypot(*axis)
+                return (axis[0] / size, axis[1] / size, axis[2] / size)
+        return (1.0, 0.0, 0.0)
+
+    def way(self, one: Component, other: Component) -> float:
+        """1 if the axes of two components point the same way, -1 if against each other."""
+        return math.copysign(1.0, _dot(self.axis(one), self.axis(other)))
+
+    def across(self, *bodies: Component) -> tuple[np.ndarray, np.ndarray]:
+        """Directions v and w, of length 1 and square to u, of the first that gives w.
+
+        Without any, w is z, or x where u is nearer to z.
+        """
+        u = np.array(self.axis(*bodies))
+        given = [w for body in bodies if (w := body.vector("w_axis_vector")) is not None]
+        for w in (*given, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)):
+            square = np.array(w) - np.dot(w, u) * u
+            size = float(np.linalg.norm(square))
+            if size > 0.5 * math.hypot(*w) > 0.0:
+                return np.cross(square / size, u), square / size
+        raise AssertionError("one of two directions square to each other is square enough to u")
+
+
+def _dot(one: Vector, other: Vector) -> float:
+    return sum(a * b for a, b in zip(one, other, strict=True))
+
+
+def ahead(there: Vector, here: Vector, axis: Vector) -> float:
+    """How far a place lies ahead of another along an axis [m]."""
+    return _dot(_minus(there, here), axis)
+
+
+def _minus(one: Vector, other: Vector) -> Vector:
+    return (one[0] - other[0], one[1] - other[1], one[2] - other[2])

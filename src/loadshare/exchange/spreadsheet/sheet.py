@@ -1,0 +1,49 @@
+"""A sheet as rows of texts, wherever it was read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from loadshare.errors import CaseError, Problem
+
+FOUND = "result_"
+"""Beginning of the names of sheets that hold a result."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A sheet.
+
+    Attributes
+    ----------
+    name : str
+    place : str
+        File, and sheet of a workbook, for messages.
+    rows : list of list of str
+    problems : tuple of Problem
+        Why it cannot be read as a table of a case.
+    """
+
+    name: str
+    place: str
+    rows: list[list[str]]
+    problems: tuple[Problem, ...] = ()
+
+    def at(self, row: int, column: int) -> str:
+        """Where a cell is, in the words of a spreadsheet; row and column counted from 0."""
+        return cell_of(self.place, row, column)
+
+
+def cell_of(place: str, row: int, column: int) -> str:
+    """Where a cell of a sheet is, in the words of a spreadsheet; both counted from 0."""
+    letters, rest = "", column + 1
+    while rest:
+        rest, letter = divmod(rest - 1, 26)
+        letters = chr(ord("A") + letter) + letters
+    return f"{place}: row {row + 1}, column {letters}"
+
+
+def unread(path: Path, why: str, hint: str = "") -> CaseError:
+    """Return the error of a file that cannot be read at all."""
+    return CaseError([Problem(str(path), "", "", why, hint=hint)])

@@ -1,0 +1,166 @@
+"""The sheets of a workbook: values as a spreadsheet program shows them, or a problem."""
+
+from __future__ import annotations
+
+import re
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from io import BytesIO
+from itertools import islice
+from pathlib import Path
+from typing import IO, Any
+
+from loadshare.errors import Problem
+from loadshare.exchange.spreadsheet.sheet import FOUND, Sheet, cell_of, unread
+from loadshare.input import Unreadable, read_file
+from loadshare.settings import ALLOWED
+
+ENDING = ".xlsx"
+NOT_CALCULATED = re.compile(rb"""\sfullCalcOnLoad\s*=\s*["'](?:1|true)["']""")
+"""What programs that write formulas and calculate none ask of the one that opens the workbook."""
+
+
+def sheets_of_workbook(path: Path) -> list[Sheet]:
+    """Read the sheets of a workbook.
+
+    Raises
+    ------
+    CaseError
+        If it cannot be read.
+    """
+    try:
+        from openpyxl import load_workbook
+    except ImportError:
+        hint = (
+            "Install it with: pip install 'loadshare[spreadsheet]'. Or save every sheet as a CSV "
+            "file in one folder, and import the folder."
+        )
+        raise unread(path, "is a workbook, which needs openpyxl to be read", hint) from None
+    try:
+        content, calculated = _content(path)
+        book = load_workbook(content, read_only=True, data_only=True)
+        return [_sheet(path, sheet, calculated) for sheet in book.worksheets]
+    except OSError as error:
+        raise unread(path, (error.strerror or "cannot be read").lower()) from None
+    except Unreadable as error:
+        raise unread(path, str(error)) from None
+    except Exception as error:  # noqa: BLE001 -- whatever openpyxl raises of what is damaged
+        raise unread(path, f"is a damaged workbook ({type(error).__name__})") from None
+
+
+def _content(path: Path) -> tuple[BytesIO, bool]:
+    """What a workbook holds, and whether the values of its formulas are calculated.
+
+    It must not unpack into very much more.
+    """
+    content = BytesIO(read_file(path, ALLOWED.other_bytes))
+    with zipfile.ZipFile(content) as archive:
+        parts = archive.infolist()
+        if sum(part.file_size for part in parts) > 4 * ALLOWED.other_bytes:
+            raise Unreadable(f"unpacks into more than {4 * ALLOWED.other_bytes // 2**20} MiB")
+        heads = [archive.read(p) for p in parts if p.filename.endswith("workbook.xml")]
+    return content, not any(map(NOT_CALCULATED.search, heads))
+
+
+def _sheet(path: Path, sheet: Any, calculated: bool) -> Sheet:
+    name, place = sheet.title.strip().lower(), f"{path}: sheet {sheet.title}"
+    if name.startswith(FOUND):
+        return Sheet(name, place, [])
+    # The size that a file states may be one that its writer did not keep up to date.
+    sheet.reset_dimensions()
+    rows: list[list[str]] = []
+    for number, row in enumerate(sheet.iter_rows(values_only=True)):
+        texts = [_text(cell) for cell in row]
+        if any(texts):
+            if number > ALLOWED.entries:
+                raise Unreadable(f"has more than {ALLOWED.entries} rows in sheet {sheet.title}")
+            rows += [[] for _ in range(number - len(rows))]
+            rows.append(texts)
+    with sheet._get_source() as source:
+        notes = _Notes.read(source, calculated)
+    problems = [*_not_saved(place, notes), *_merged(place, rows, notes.merged)]
+    return Sheet(name, place, rows, tuple(problems))
+
+
+@dataclass(frozen=True)
+class _Notes:
+    """What a sheet holds besides values; rows and columns counted from 1.
+
+    Attributes
+    ----------
+    formulas : list of tuple (int, int)
+        Row and column of every formula without a value that a spreadsheet program saved.
+    merged : list of str
+        Ranges of cells that are merged.
+    """
+
+    formulas: list[tuple[int, int]]
+    merged: list[str]
+
+    @classmethod
+    def read(cls, source: IO[bytes], calculated: bool) -> _Notes:
+        """Read them from the XML of a sheet, which openpyxl shows with values or without."""
+        from openpyxl.utils.cell import coordinate_to_tuple
+        from openpyxl.xml.constants import SHEET_MAIN_NS
+        from openpyxl.xml.functions import iterparse
+
+        notes, row = cls([], []), 0
+        namespace = f"{{{SHEET_MAIN_NS}}}"
+        for _, element in iterparse(source):
+            if element.tag == f"{namespace}mergeCell":
+                notes.merged.append(element.get("ref", ""))
+            elif element.tag == f"{namespace}row":
+                row, column = int(float(element.get("r", row + 1))), 0
+                for cell in element:
+                    column += 1
+                    if cell.get("r"):
+                        column = coordinate_to_tuple(cell.get("r"))[1]
+                    if cell.find(f"{namespace}f") is None:
+                        continue
+                    # The value of a formula may be a text without letters.
+                    saved = cell.findtext(f"{namespace}v") or cell.get("t") == "str"
+                    if not (calculated and saved):
+                        notes.formulas.append((row, column))
+                element.clear()
+        return notes
+
+
+def _not_saved(place: str, notes: _Notes) -> Iterator[Problem]:
+    hint = "Open the workbook in a spreadsheet program and save it, or write the value."
+    for row, column in islice(notes.formulas, ALLOWED.problems):
+        where = cell_of(place, row - 1, column - 1)
+        yield Problem(where, "", "", "is a formula whose value was not saved", hint=hint)
+
+
+def _merged(place: str, rows: list[list[str]], ranges: list[str]) -> Iterator[Problem]:
+    """Give every row of merged cells their value; yield those that lie across columns.
+
+    A head that is merged with cells below it stays one head.
+    """
+    from openpyxl.utils.cell import range_boundaries
+
+    filled, most = 0, sum(len(row) + 1 for row in rows)
+    for merged in ranges:
+        left, top, right, bottom = range_boundaries(merged)
+        row = rows[top - 1] if top <= len(rows) else []
+        value = row[left - 1] if left <= len(row) else ""
+        if left != right and value:
+            hint = "Unmerge them, and write the value into every cell that it is for."
+            yield Problem(f"{place}: {merged}", "", "", "is merged across columns", hint=hint)
+        elif left == right and top > 1:
+            below = rows[top:bottom]
+            filled += len(below)
+            if filled > most:
+                raise Unreadable("has merged cells that overlap")
+            for cells in below:
+                cells += [""] * (left - len(cells))
+                cells[left - 1] = value
+
+
+def _text(cell: object) -> str:
+    if cell is None:
+        return ""
+    if isinstance(cell, bool):
+        return str(cell).lower()
+    return f"{cell:.15g}" if isinstance(cell, float) else str(cell)

@@ -1,0 +1,137 @@
+"""The phases of the meshes of a case, and what does not meet, in the words of the case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loadshare import case as spec
+from loadshare.errors import CaseError, Problem
+from loadshare.train.gear import Gear
+from loadshare.train.phases import MEETS, Meeting, Misfit, phases
+from loadshare.train.ring import transverse
+
+if TYPE_CHECKING:
+    from loadshare.train.geometry import Pair
+
+
+def in_phase(case: spec.Case, pairs: Mapping[str, Pair], walk: Sequence[str]) -> dict[str, Pair]:
+    """Return the meshes with their phases.
+
+    Raises
+    ------
+    CaseError
+        If teeth that are given completely do not meet.
+    """
+
+    def half(gear: Gear, pair: Pair) -> float:
+        tooth = case.gears[gear.name].tooth
+        if tooth is None:
+            return math.pi / (2.0 * (gear.teeth or math.inf))
+        return tooth.half_angle_at(pair.line.pressure_angle)
+
+    meetings = {
+        name: Meeting(
+            p.driver,
+            p.driven,
+            (half(p.driver, p), half(p.driven, p)),
+            p.counted,
+            _twists(case, p.driver, p.driven),
+        )
+        for name, p in pairs.items()
+    }
+    found, misfits = phases(meetings, walk)
+    problems = [
+        _misfit_problem(case, pairs, m)
+        for m in misfits
+        if all(case.gears[g].tooth is not None for g in case.meshes[m.mesh].ends)
+    ]
+    problems += _phases_against(case, found)
+    if problems:
+        raise CaseError(problems)
+    return {n: replace(p, phases=found.get(n, p.phases)) for n, p in pairs.items()}
+
+
+def _twists(case: spec.Case, driver: Gear, driven: Gear) -> tuple[float, float]:
+    """Angles [rad] by which teeth stand further in the middle of the common face (see `Meeting`).
+
+    Where gears stand at different heights and one gives no face width, the other's face is the
+    common one; where neither does, its middle is halfway.
+    """
+    ends = driver, driven
+    heights = [float(g.centre @ driver.axis) for g in ends]
+    widths = [case.gears[g.name].face_width for g in ends]
+    halves = [math.inf if w is None else 0.5 * w.si for w in widths]
+    low, high = (
+        pick(h + way * b for h, b in zip(heights, halves, strict=True))
+        for pick, way in ((max, -1.0), (min, 1.0))
+    )
+    middle = 0.5 * (low + high) if math.isfinite(high - low) else 0.5 * sum(heights)
+
+    def twist(gear: Gear, height: float) -> float:
+        tooth = case.gears[gear.name].tooth
+        up = float(gear.axis @ driver.axis) * (middle - height)
+        return 0.0 if tooth is None else math.tan(tooth.helix_angle) / tooth.radius * up
+
+    return twist(driver, heights[0]), twist(driven, heights[1])
+
+
+def _phases_against(case: spec.Case, found: Mapping[str, tuple[float, float]]) -> Iterator[Problem]:
+    """Yield phases that are given although there is a layout from which others follow."""
+    if case.operating.phases != "layout":
+        return
+    for name, (layout, _) in found.items():
+        given = case.meshes[name].phase
+        if given is not None and abs((given - layout + 0.5) % 1.0 - 0.5) > MEETS:
+            path, allowed = ("meshes", name, "phase"), f"{layout:.4g}, or left out"
+            hint = 'With operating.phases = "together" any phases may be given.'
+            yield case.problem(path, "contradicts the teeth and their places", allowed, hint)
+
+
+def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:
+    """Say by how much teeth miss each other, and where a planet between two gears would fit."""
+    pair = pairs[misfit.mesh]
+    message = (
+        f"cannot be put together: its teeth miss each other by {abs(misfit.pitches):.2g} of a "
+        "pitch where all others meet"
+    )
+    return case.problem(("meshes", misfit.mesh), message, hint=_spacing_hint(case, pairs, pair))
+
+
+def _spacing_hint(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str:
+    """Say how far apart planets fit that lead from one gear to another about the same axis.
+
+    A planet that is turned on from one to the next by its pitch shifts the two gears against each
+    other by z₁ + z₂ parts of a revolution where they run against each other as seen from it, by
+    their difference where they run alike.
+    """
+    gears = {g.name: g for p in pairs.values() for g in (p.driver, p.driven)}
+    meshing: dict[str, list[str]] = {name: [] for name in gears}
+    for mesh in case.meshes.values():
+        for one, other in (mesh.ends, mesh.ends[::-1]):
+            meshing[one].append(other)
+
+    def about(one: str, other: str) -> bool:
+        between = transverse(gears[one].centre - gears[other].centre, gears[other].axis)
+        return bool(np.linalg.norm(between) <= MEETS * gears[other].base_radius)
+
+    for planet, last in ((pair.driver, pair.driven), (pair.driven, pair.driver)):
+        near = [n for n in meshing[planet.name] if n != last.name]
+        through = [n for n in near if not about(n, last.name)]
+        beyond = [n for other in through for n in meshing[other] if n != planet.name]
+        first = next((gears[n] for n in (*near, *beyond) if about(n, last.name)), None)
+        if first is None or about(planet.name, last.name):
+            continue
+        teeth = [round(g.teeth or 0) for g in (first, last)]
+        alike = first.sense * last.sense * float(first.axis @ last.axis) > 0.0
+        whole = abs(teeth[0] - teeth[1]) if alike else sum(teeth)
+        if whole:
+            return (
+                f"Gears about the same axis fit at angles {360.0 / whole:.6g} deg "
+                f"apart, and evenly spaced if their number divides {whole}."
+            )
+    return ""
