@@ -251,3 +251,47 @@ def test_coast_flanks_are_a_tooth_thickness_behind():
     """Half a pitch for teeth without profile shift, whatever comes before them."""
     for mesh in build_train(with_play(idlers(phases="layout"))).meshes.values():
         assert (mesh.phase - mesh.coast_phase) % 1.0 == pytest.approx(0.5, abs=1e-9)
+
+
+def test_a_brake_is_where_its_coast_flanks_put_the_teeth():
+    """Thin teeth come to the pitch point later from mesh to mesh; named or not, it is one play."""
+    teeth, places = (20, 31, 40, 25), [(0.0, 0.0)]
+    for one, other, angle in zip(teeth, teeth[1:], (0.3, -0.5, 0.4), strict=False):
+        reach, (x, y) = 1.5 * (one + other), places[-1]
+        places.append((x + reach * math.cos(angle), y + reach * math.sin(angle)))
+    gears = {
+        name: {
+            "teeth": count,
+            "module": "3 mm",
+            "face_width": "20 mm",
+            "thickness_allowance": "-0.2 mm",
+            "centre": [f"{place!r} mm" for place in centre],
+        }
+        for name, count, centre in zip("abcd", teeth, places, strict=True)
+    }
+    law = {"b": [f"{1e-6 * (2.0 + math.sin(0.3 * k))!r} rad/(N*m)" for k in range(21)]}
+
+    def brake(**mesh: Any) -> ls.Case:
+        return ls.Case(
+            {
+                "operating": {
+                    "input": "a",
+                    "output": "d",
+                    "torque": "-100 N*m",
+                    "positions": 21,
+                    "phases": "layout",
+                },
+                "gears": gears,
+                "meshes": {name: {"law": law, **mesh} for name in ("a-b", "b-c", "c-d")},
+            }
+        )
+
+    with_play, without = brake(backlash="teeth"), brake()
+    turned = build_train(without).meshes
+    for name, mesh in build_train(with_play).meshes.items():
+        assert mesh.coast_phase == pytest.approx(turned[name].phase, abs=1e-12)
+    rotations = [
+        np.array([p.rotation["a"] for p in ls.solve(case).positions])
+        for case in (with_play, without)
+    ]
+    np.testing.assert_allclose(*(r - r.mean() for r in rotations), rtol=0.0, atol=1e-12)

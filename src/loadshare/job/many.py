@@ -29,6 +29,7 @@ from loadshare.job.table import KEPT, Table, checked
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.columns import Columns, columns_of
 from loadshare.train.samples import Samples, samples_of
+from loadshare.train.shape import shape_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,7 +95,7 @@ _recent: Recent[Machine] = Recent()
 def _machine(case: Case, samples: Samples) -> Machine:
     """Return the machine of samples that share one; what varies in them is no part of it."""
     fixed = [(c.path, c.text(0)) for c in samples.columns if c.path not in samples.values]
-    which = (frozenset(samples.values), *fixed)
+    which = (frozenset(samples.values), shape_of(samples.train), *fixed)
     machine, known = Machine(samples.train), _recent.of(case, which)
     if known is None:
         return _recent.keep(case, machine, which)

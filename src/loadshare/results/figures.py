@@ -16,7 +16,7 @@ from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import RESIDUALS, pushed_by_rings, scaled_residuals
 from loadshare.certify.state import ClaimedState
 from loadshare.certify.validity import measuring
-from loadshare.results.share import MeshTorques, shares
+from loadshare.results.share import MeshTorques, carries, shares
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Range
@@ -216,7 +216,9 @@ class Figures:
 
         At its force; of both flanks where both carry, 0 where none does.
         """
-        return self._over_meshes(self._tangents.flanks)
+        force = self.answers.flank_force
+        carry = carries(force, force.max(axis=1, initial=0.0)[:, None])
+        return self._over_meshes(np.where(carry, self._tangents.flanks, 0.0))
 
     @cached_property
     def mesh_torsional_stiffness(self) -> Array:

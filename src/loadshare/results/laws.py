@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from loadshare.case import Case, Gear
 from loadshare.case.line_of_action import facing
+from loadshare.results.share import carries
 
 GIVEN = "given"
 """Basis of a law in numbers of which the case says no more."""
@@ -54,13 +55,14 @@ def laws_of(case: Case, torques: Sequence[Mapping[str, float]]) -> dict[str, Law
         On the driver, position by position [N·m].
     """
     found, centres = {}, case.centres()
+    most = max((abs(torque) for each in torques for torque in each.values()), default=0.0)
     for name, mesh in case.meshes.items():
         law = mesh.power_law
         sizes = [abs(each[name]) for each in torques]
         least, largest = min(sizes, default=0.0), max(sizes, default=0.0)
         load = _line_load(facing(mesh, case.gears, centres), largest)
         note = ""
-        if law is not None and law.holds_from is not None and largest > 0.0:
+        if law is not None and law.holds_from is not None and carries(largest, most):
             note = _below(least, largest, law.holds_from.si)
         if law is not None and law.holds_to is not None and not note:
             note = _above(largest, law.holds_to.si)

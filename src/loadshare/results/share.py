@@ -67,7 +67,7 @@ def largest_of(flanks: Mapping[str, Iterable[float]]) -> float:
 
 
 def carries(mean: Torque, largest: Torque) -> Any:
-    """Whether a group with a mean torque carries, given the largest torque on any flank.
+    """Whether a mesh or a group with a mean torque carries, given the largest on any flank.
 
     Flanks may press against one another, and branches brace one another, where next to nothing
     passes through: a coefficient over a mean that is round-off says nothing.

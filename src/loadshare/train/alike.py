@@ -13,6 +13,7 @@ from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of
 from loadshare.train.columns import Column
 from loadshare.train.geometry import Geometry
+from loadshare.train.pressed import turned_meshes
 from loadshare.train.train import Train
 
 _NUMBER = re.compile(NUMBER)
@@ -22,7 +23,7 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
     """Return the train of a case, built from that of a case before; None if they differ in more.
 
     In more, that is, than in numbers that become arrays in a table of samples (see `array_keys`):
-    then the geometry is the same.
+    then the geometry is the same, unless loads press other flanks.
 
     Parameters
     ----------
@@ -35,13 +36,18 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
     CaseError
         As `build_train`.
     """
-    for path, before, after in case.differences(base[0]):
+    differences = list(case.differences(base[0]))
+    for path, before, after in differences:
         if path[0] in ABOUT:
             continue
         numbers = [_number(value) for value in (before, after)]
         if None in numbers:
             return None
         if array_unit(case, Column(path, "", np.array(numbers, dtype=float))) is None:
+            return None
+    if any(path[0] == "operating" for path, _, _ in differences):
+        turned = turned_meshes(case, base[1].gears)
+        if any(turned[name] != pair.turned for name, pair in base[1].pairs.items()):
             return None
     return train_of(case, base[1], (base[0], base[2]))
 

@@ -39,6 +39,7 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
     case : Case
         With a value for every key that varies.
     column : Column
+        Loads may press other flanks than those of the case: see `turned_meshes`.
     """
     match column.path:
         case ("operating", "external", _):
@@ -48,7 +49,7 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
         case ("operating", "gravity", int()):
             return "m/s^2"
         case ("operating", "torque" | "power" as what):
-            return None if _changes_flanks(case, column) else {"torque": "N*m", "power": "W"}[what]
+            return {"torque": "N*m", "power": "W"}[what]
         case ("errors", gear, "installation", "amount" | "direction" as what):
             polar = isinstance(case.errors[str(gear)].installation, spec.Offset)
             return (_LENGTH if what == "amount" else "rad") if polar else None
@@ -88,15 +89,6 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
             words = isinstance(case.gears[str(gear)].support, str)
             return "N/m" if column.is_positive and not words else None
     return None
-
-
-def _changes_flanks(case: spec.Case, column: Column) -> bool:
-    """Whether loads of both signs press now one, now the other flank of meshes with only one.
-
-    Meshes without a backlash have the flank that the torque presses, see `build`.
-    """
-    one_flank = any(not m.given("backlash", "normal_backlash") for m in case.meshes.values())
-    return one_flank and column.is_partly_negative
 
 
 def _mesh_unit(case: spec.Case, mesh: str, tail: tuple[str, ...], column: Column) -> str | None:

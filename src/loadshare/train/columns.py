@@ -54,12 +54,6 @@ class Column:
         return self.values.dtype.kind in "fiu"
 
     @property
-    def is_partly_negative(self) -> bool:
-        """Whether some of the values are numbers below zero, and others are not."""
-        negative = self.has_numbers and self.values.astype(np.float64) < 0.0
-        return bool(np.any(negative)) and not bool(np.all(negative))
-
-    @property
     def is_positive(self) -> bool:
         """Whether the values are numbers, and all above zero."""
         return self.has_numbers and bool((self.values.astype(np.float64) > 0.0).all())

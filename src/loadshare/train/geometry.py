@@ -15,7 +15,6 @@ import numpy as np
 from loadshare import case as spec
 from loadshare.case.line_of_action import LineOfAction, backlash_of_teeth, line_of_action
 from loadshare.case.place import axis_of
-from loadshare.case.power_flow import against_the_names, has_sets
 from loadshare.case.teeth import tooth_counts
 from loadshare.case.words import count
 from loadshare.errors import CaseError
@@ -26,7 +25,7 @@ from loadshare.train.layout import in_phase
 from loadshare.train.mesh import running_contact
 from loadshare.train.period import Period, period_of
 from loadshare.train.phases import WHOLE
-from loadshare.train.willis import Links
+from loadshare.train.pressed import turned_meshes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -194,37 +193,16 @@ def _gear(
     )
 
 
-def _pressed(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, int]:
-    """Which flanks of a train with planetary sets the load presses (see `Links.pressed`)."""
-    if not has_sets(case.gears):
-        return {}
-    links = Links.of(
-        gears,
-        {name: mesh.ends for name, mesh in case.meshes.items()},
-        {name: shaft.ends for name, shaft in case.shafts.items()},
-    )
-    operating = case.operating
-    torques = {n: t.si * math.copysign(1.0, gears[n].ratio) for n, t in operating.external.items()}
-    driving = next((t for t in operating.input_torque if t), 0.0)
-    torques[operating.input] = torques.get(operating.input, 0.0) + driving
-    free = [n for n, g in gears.items() if not g.held and n != operating.output]
-    return links.pressed(torques, free)
-
-
 def _pairs(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pair]:
     """Meshes with the flanks that the torque presses, whichever way it runs through them."""
-    flows = against_the_names(case.operating, case.gears, case.meshes, case.shafts)
-    against = all(flows or (False,))
-    pressed = _pressed(case, gears)
+    every = turned_meshes(case, gears)
     found, centres = {}, case.centres()
     for name, mesh in case.meshes.items():
         line = line_of_action(mesh, case.gears, centres)
         if line is None:
             raise ValueError(f"no line of action: {name}")
         driver, driven = gears[mesh.driver], gears[mesh.driven]
-        # Where the load presses neither, the names tell.
-        coast = pressed[name] < 0 if pressed.get(name) else against
-        turned = coast and not mesh.given("backlash", "normal_backlash")
+        turned = bool(every[name])
         contact, counted = running_contact(driver, driven)
         if turned:
             # The other flank of the same two gears, whichever senses they are counted in.

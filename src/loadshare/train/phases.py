@@ -118,8 +118,18 @@ def phases(
     """
     order = {gear: k for k, gear in enumerate(walk)}
     known = {name: m for name, m in meetings.items() if _is_whole(m.driver) and _is_whole(m.driven)}
+    # Which flanks touch decides where teeth are: one walk for those of each side.
+    drive, misfits = _walked(known, order, drive=True)
+    coast, _ = _walked(known, order, drive=False)
+    return {n: (_of_cycle(drive[n]), _of_cycle(coast[n])) for n in drive}, tuple(misfits)
+
+
+def _walked(
+    known: Mapping[str, Meeting], order: Mapping[str, int], *, drive: bool
+) -> tuple[dict[str, float], list[Misfit]]:
+    """Phases of all meshes whose flanks of one side touch, and what does not meet."""
     teeth: dict[str, float] = {}
-    found: dict[str, Both] = {}
+    found: dict[str, float] = {}
     misfits: list[Misfit] = []
     for meeting in known.values():
         if meeting.driver.name in teeth or meeting.driven.name in teeth:
@@ -131,17 +141,17 @@ def phases(
         while queue:
             here = queue.popleft()
             for name, other, there in _meshes_of(here, known):
-                phase, coast = (there.passed(here, teeth[here], d) % 1.0 for d in (True, False))
+                phase = there.passed(here, teeth[here], drive) % 1.0
                 if other not in teeth:
-                    teeth[other] = there.tooth(other, phase)
+                    teeth[other] = there.tooth(other, phase, drive)
                     queue.append(other)
-                    found[name] = phase, coast
+                    found[name] = phase
                 elif name not in found:
-                    found[name] = phase, coast
-                    off = (there.passed(other, teeth[other]) - phase + 0.5) % 1.0 - 0.5
+                    found[name] = phase
+                    off = (there.passed(other, teeth[other], drive) - phase + 0.5) % 1.0 - 0.5
                     if abs(off) > MEETS:
                         misfits.append(Misfit(name, off))
-    return {n: (_of_cycle(d), _of_cycle(c)) for n, (d, c) in found.items()}, tuple(misfits)
+    return found, misfits
 
 
 def _of_cycle(phase: float) -> float:

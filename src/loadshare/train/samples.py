@@ -23,6 +23,7 @@ from loadshare.train.build import train_of, with_laws
 from loadshare.train.columns import Column, columns_of
 from loadshare.train.geometry import Geometry, geometry_of
 from loadshare.train.placed import standing
+from loadshare.train.pressed import turned_meshes
 from loadshare.train.situations import Situations, situations_of
 from loadshare.train.train import Train
 
@@ -107,16 +108,36 @@ def samples_of(
     others = [c for c in columns if c.path not in arrays]
     groups = []
     parts = _groups(others, len(columns[0].values))
-    for rows in parts:
-        some = rows if len(parts) > 1 else slice(None)
+    while parts:
+        rows = parts.pop(0)
+        whole = len(rows) == len(columns[0].values)
+        some = slice(None) if whole else rows
         mine = tuple(replace(c, values=c.values[some]) for c in columns)
         own = first if rows[0] == 0 else first.replace({dotted(c.path): c.text(0) for c in mine})
         base = with_laws(own)
         geometry = geometry_of(base)
         values = {path: si[some] for path, si in arrays.items()}
+        alike = _pressed_alike(base, geometry, values, len(rows))
+        if not alike.all():
+            # The others press other flanks than the first of them.
+            parts[:0] = [rows[alike], rows[~alike]]
+            continue
         group = Samples(base, geometry, train_of(base, geometry), mine, values)
         groups.append((rows, group))
     return groups
+
+
+def _pressed_alike(
+    case: spec.Case, geometry: Geometry, values: Mapping[Path, Array], count: int
+) -> NDArray[np.bool_]:
+    """Whether samples press the flanks that the geometry has, (count,)."""
+    loads = {path: si for path, si in values.items() if path[0] == "operating"}
+    alike = np.ones(count, dtype=bool)
+    if loads:
+        turned = turned_meshes(_with(case, loads), geometry.gears)
+        for name, pair in geometry.pairs.items():
+            alike &= turned[name] == pair.turned
+    return alike
 
 
 def _with(part: Any, values: Mapping[Path, Any]) -> Any:

@@ -17,7 +17,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from loadshare.train.gear import Gear
 from loadshare.train.mesh import running_contact
@@ -101,22 +101,28 @@ class Links:
         speeds = np.where(still, 0.0, found / found[names.index(driving)]).tolist()
         return dict(zip(names, speeds, strict=True)), bool(rank == len(names))
 
-    def pressed(self, torques: Mapping[str, float], free: Iterable[str]) -> dict[str, int]:
-        """Tell which flank of every mesh the load presses: 1 drive, −1 coast, 0 neither.
+    def pressed(
+        self, torques: Mapping[str, ArrayLike], free: Iterable[str]
+    ) -> dict[str, NDArray[np.intp]]:
+        """Tell which flank of every mesh loads press: 1 drive, −1 coast, 0 neither.
 
         Parameters
         ----------
-        torques : mapping of str to float
-            External torques [N·m].
+        torques : mapping of str to array_like
+            External torques [N·m], of one shape.
         free : iterable of str
             Gears that turn, without those that the housing or the load holds.
         """
         order = {name: k for k, name in enumerate(self.gears)}
         turning = [order[name] for name in free]
-        load = np.array([torques.get(name, 0.0) for name in self.gears])[turning]
-        force = np.linalg.lstsq(self.matrix[:, turning].T, load, rcond=1e-9)[0]
-        force[np.abs(force) <= NOISE * np.abs(force).max(initial=0.0)] = 0.0
-        return dict(zip(self.names, np.sign(force).astype(int).tolist(), strict=True))
+        every = np.broadcast_arrays(*(torques.get(name, 0.0) for name in self.gears))
+        load = np.stack(every)[turning]
+        force = np.linalg.pinv(self.matrix[:, turning].T, rcond=1e-9) @ load.reshape(
+            len(turning), -1
+        )
+        force[np.abs(force) <= NOISE * np.abs(force).max(axis=0, initial=0.0)] = 0.0
+        signs = np.sign(force).astype(np.intp).reshape(-1, *load.shape[1:])
+        return dict(zip(self.names, signs, strict=True))
 
 
 def seen_from(gears: Mapping[str, Gear], driver: str, driven: str) -> str | None:

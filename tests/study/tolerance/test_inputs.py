@@ -228,7 +228,7 @@ def test_what_the_case_reader_finds_is_reported_at_once():
         "is missing",
         "does not apply to a uniform",
         "at most 1",
-        "above 0",
+        "at least 1e-40",
     ):
         assert part in message, part
 

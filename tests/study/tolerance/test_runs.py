@@ -502,3 +502,17 @@ def test_what_has_no_folder_is_not_kept(monkeypatch, processes):
     monkeypatch.setattr(local, "solve_there", dying)
     with pytest.raises(ls.LoadshareError, match="Nothing is kept: the study has no folder"):
         run(None, samples=64)
+
+
+def test_torques_of_a_drive_that_brakes_are_the_largest(tmp_path):
+    """Three planets on a floating sun take a third each: of -900 N·m, the most negative load."""
+    torque = ["-800 N*m", "-500 N*m", "-900 N*m"]
+    case = shipped("star/floating_sun_3").replace(
+        {"operating.torque": torque, "operating.positions": 3}
+    )
+    gap = {"distribution": "uniform", "low": "0 urad", "high": "20 urad"}
+    inputs = {'meshes."sun-planet1".gap': gap}
+    ls.tolerance(case, inputs, samples=16, indices=0, worst=False, seed=1, out=tmp_path / "study")
+    (part,) = (tmp_path / "study").glob("part-*.parquet")
+    found = parquet.read_table(part)["torque.sun-planet2 [N*m]"].to_numpy()
+    np.testing.assert_allclose(found, -300.0, rtol=1e-9)

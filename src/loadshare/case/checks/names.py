@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 from loadshare.case.content import ABOUT, ENDS, FLOATS
@@ -146,9 +146,10 @@ def _texts_at(draft: Draft, path: Path) -> Iterator[tuple[Path, str]]:
 
 
 def check_stage_groups(draft: Draft) -> Iterator[Problem]:
-    """Yield meshes that a stage names twice, and groups that do not split the stage."""
+    """Yield what a stage names twice, or in series, and groups that do not split the stage."""
     for name, stage in draft.stages.items():
         path = ("stages", name)
+        yield from _in_series(draft, path, stage.meshes)
         twice = [mesh for mesh, count in Counter(stage.meshes).items() if count > 1]
         if twice:
             yield draft.problem((*path, "meshes"), f"names {', '.join(twice)} more than once")
@@ -163,6 +164,18 @@ def check_stage_groups(draft: Draft) -> Iterator[Problem]:
         left = [mesh for mesh in dict.fromkeys(stage.meshes) if mesh not in grouped]
         if left:
             yield draft.problem((*path, "groups"), f"{', '.join(left)} is in no group")
+
+
+def _in_series(draft: Draft, path: Path, meshes: Iterable[str]) -> Iterator[Problem]:
+    """Yield a gear that meshes of a stage name on both sides: their torques are not alike."""
+    ends = {name: draft.meshes[name].ends for name in meshes if name in draft.meshes}
+    first = {pair[0]: name for name, pair in ends.items()}
+    second = {pair[1]: name for name, pair in ends.items()}
+    for gear in sorted(g for g in first.keys() & second.keys() if first[g] != second[g]):
+        message = f"has gear {gear} first in {first[gear]} and second in {second[gear]}"
+        hint = "A stage has one mesh of every branch, each with the gear first that is alike."
+        yield draft.problem((*path, "meshes"), message, hint=hint)
+        return
 
 
 SYSTEM = "system"

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 
 from loadshare.errors import Problem
 from loadshare.exchange.rexs.beam import STIFF
-from loadshare.exchange.rexs.gearing import BEARINGS, COUPLINGS, READ, Gearing, transmits
+from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.holding import radial
+from loadshare.exchange.rexs.kinds import BEARINGS, COUPLINGS, GEARS, READ, transmits
 from loadshare.exchange.rexs.model import Component, Unread
+from loadshare.exchange.rexs.routes import applied_loads
+
+OVERLOOKED = ("normal_backlash", "runout", "angular_misalignment")
+"""Words in the names of attributes that would matter to load sharing."""
 
 
 def unread_values(path: Path, of: Gearing) -> list[Problem]:
     """Return a problem for every value that a case needs and that is none; alike ones together."""
     found: dict[tuple[str, str, str], list[tuple[Component, Unread]]] = {}
     for component in of.model.components.values():
-        if component.type in READ or component.type == "material":
+        if component.type in READ:
             for name, value in component.attributes.items():
                 if isinstance(value, Unread):
                     alike = name, value.message, value.allowed
@@ -26,6 +32,40 @@ def unread_values(path: Path, of: Gearing) -> list[Problem]:
         more = f" ({len(both) - 1} more like it)" if len(both) > 1 else ""
         where = f"{component.type} {component.id}, {name}"
         problems.append(Problem(str(path), where, value.given, f"{message}{more}", allowed))
+    return problems
+
+
+def unplaced(of: Gearing) -> list[str]:
+    """Return what of couplings and loads sits at the start of its shaft for want of a place."""
+    parts = [
+        (coupling, shaft, side, other.id not in of.casing)
+        for coupling, inner, outer in of.coupled
+        for shaft, side, other in ((inner, "inner", outer), (outer, "outer", inner))
+    ]
+    parts += [(each.load, each.shaft, "", False) for each in applied_loads(of)]
+    return [
+        f"{part.title()}: at the start of {shaft.title()}, no place along it is given"
+        for part, shaft, side, twists in parts
+        if of.places.along(part, shaft, side) is None
+        and (bodies := len(of.on_shaft(shaft)))
+        and (bodies > 1 or (twists and of.sections(shaft)))
+    ]
+
+
+def contradictions(path: Path, of: Gearing) -> list[Problem]:
+    """Return a problem for every gear that is on several shafts or has part of a tooth."""
+    problems = []
+    pairs = list(of.model.related("assembly", "assembly", "part"))
+    for gear in of.gears:
+        where = f"{gear.type} {gear.id}"
+        shafts = {whole.id for whole, part in pairs if part is gear and whole.type == "shaft"}
+        if len(shafts) > 1:
+            why = f"is on {len(shafts)} shafts: {', '.join(sorted(shafts))}"
+            problems.append(Problem(str(path), where, "", why, "one shaft"))
+        teeth = gear.number("number_of_teeth")
+        if teeth is not None and abs(teeth - round(teeth)) > 1e-6:
+            where = f"{where}, number_of_teeth"
+            problems.append(Problem(str(path), where, f"{teeth:g}", "is no whole number"))
     return problems
 
 
@@ -53,7 +93,12 @@ def unused(of: Gearing, used: set[str]) -> list[str]:
     used : set of str
         Ids of the bearings and couplings that hold or join something in the case.
     """
-    found = []
+    found = [
+        f"stage {stage.id}: {one.title()} or {other.title()} turns loose, its coupling is open"
+        for stage, one, other in of.loose
+    ]
+    loads = applied_loads(of)
+    used = used | {joint.part.id for each in loads for joint in each.route}
     sides = {part.id: both for part, *both in of.joined(*BEARINGS, *COUPLINGS)}
     for part in of.model.of_type(*BEARINGS, *COUPLINGS):
         if part.id not in used:
@@ -63,13 +108,25 @@ def unused(of: Gearing, used: set[str]) -> list[str]:
     for coupling, *both in of.coupled:
         if coupling.id in used and _ties_across(of, coupling, both):
             found.append(f"{coupling.title()}: its stiffness across the axis")
-    on_shafts = {load.id for _, load in of.loads()}
+    found += _overlooked(of)
+    on_shafts = {each.load.id for each in loads}
     for load in of.model.of_type("external_load"):
         if load.id not in on_shafts:
             found.append(f"{load.title()}: it is on no shaft with gears")
         if load.number("force_v_direction") or load.number("force_w_direction"):
             found.append(f"{load.title()}: its force across the axis")
     return found
+
+
+def _overlooked(of: Gearing) -> list[str]:
+    """Attributes that matter to load sharing and that a case from REXS does not have."""
+    kinds = Counter(
+        (name, component.type)
+        for component in of.model.of_type(*GEARS, *BEARINGS, "cylindrical_stage")
+        for name, value in component.attributes.items()
+        if any(word in name for word in OVERLOOKED) and value not in (0.0, "", ())
+    )
+    return [f"{name} of {count} {kind}" for (name, kind), count in sorted(kinds.items())]
 
 
 def _ties_across(of: Gearing, coupling: Component, sides: list[Component]) -> bool:

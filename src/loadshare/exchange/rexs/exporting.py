@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,7 +15,8 @@ from loadshare.errors import CaseError, Problem
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.holding import borne_by
 from loadshare.exchange.rexs.model import Component
-from loadshare.exchange.rexs.reading import read_model, tables
+from loadshare.exchange.rexs.reading import read_model
+from loadshare.exchange.rexs.writing import Values, into_json, into_xml
 from loadshare.input import read_file
 from loadshare.results import Result
 from loadshare.settings import ALLOWED
@@ -28,17 +29,17 @@ ERROR = "custom_loadshare_transmission_error"
 PUSHED = "custom_loadshare_force_on_bearings"
 MOVED = "custom_loadshare_displacement"
 Array = NDArray[np.float64]
-Value = tuple[float | list[float], str]
-Values = dict[str, dict[str, Value]]
 
 
 def export_rexs(result: Result, unit: str | Path) -> str:
     """Return a REXS file with what was found, all else as it was.
 
-    Of every cylindrical stage the mesh load factor K_γ, the largest Ω of its mesh over the
-    positions, where the mesh is in a stage of the case; the stiffness over the positions, force
+    It is in the components, or, if the file has load cases, in the first of these, of which the
+    loads are. Of every cylindrical stage the mesh load factor K_γ, the largest Ω of its mesh over
+    the positions, where the mesh is in a stage of the case; the stiffness over the positions, force
     over compression along the line of action; normal force and transmission error over the
-    positions. Of every bearing of a shaft the force on both its sides, of every gear and carrier
+    positions. If several meshes share one stage, it has the largest K_γ alone. Of every bearing of
+    a shaft, and every seat of a pin, the force on both its sides, of every gear and carrier
     displacement and force on what holds it, each at the position at which it is largest. What has
     no name in REXS has one that begins with ``custom_loadshare``.
 
@@ -63,14 +64,14 @@ def export_rexs(result: Result, unit: str | Path) -> str:
     if content[:2] == b"PK":
         raise CaseError([Problem(str(unit), "", "", "is an archive: unpack it first")])
     if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":
-        return _into_json(json.loads(content.decode("utf-8-sig")), found)
+        return into_json(json.loads(content.decode("utf-8-sig")), found)
     parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
     try:
         root = ElementTree.fromstring(content, parser)
     except ElementTree.ParseError as error:
         # Prefixes without a namespace are read, as the import asks for none, but cannot be written.
         raise CaseError([Problem(str(unit), "", "", f"is not valid XML: {error}")]) from None
-    return _into_xml(root, found)
+    return into_xml(root, found)
 
 
 def _found(result: Result, gearing: Gearing) -> Values:
@@ -82,23 +83,28 @@ def _found(result: Result, gearing: Gearing) -> Values:
 
 
 def _of_meshes(result: Result, gearing: Gearing) -> Values:
-    """Return what is written for stages."""
+    """Return what is written for stages; of one with several meshes the largest factor alone."""
     made: Values = {}
     positions, meshes = result.positions, result.positions[0].train.meshes
+    several = Counter(stage.id for stage, *_ in gearing.stages)
+    factors: dict[str, list[float]] = {}
     for stage, one, other in gearing.stages:
         ends = gearing.names[one.id], gearing.names[other.id]
         name = next((n for n in map("-".join, (ends, ends[::-1])) if n in meshes), None)
         if name is None:
             continue
         shares = [p.share.get(name) for p in positions]
-        known = [share for share in shares if share is not None]
-        made[stage.id] = {
-            STIFFNESS: (_stiffness(result, name), "N / mm"),
-            FORCE: ([p.loads.meshes[name] for p in positions], "N"),
-            ERROR: ([1e6 * p.elastic.mesh_transmission_error[name] for p in positions], "mum"),
-        }
+        factors.setdefault(stage.id, []).extend(s for s in shares if s is not None)
+        made[stage.id] = {}
+        if several[stage.id] == 1:
+            made[stage.id] = {
+                STIFFNESS: (_stiffness(result, name), "N / mm"),
+                FORCE: ([p.loads.meshes[name] for p in positions], "N"),
+                ERROR: ([1e6 * p.elastic.mesh_transmission_error[name] for p in positions], "mum"),
+            }
+    for id_, known in factors.items():
         if known:
-            made[stage.id][FACTOR] = (max(known), "none")
+            made[id_][FACTOR] = (max(known), "none")
     return made
 
 
@@ -167,30 +173,3 @@ def _stiffness(result: Result, name: str) -> list[float]:
         yielded = law.compression(force)
         values.append(1e-3 * force / yielded if yielded > 0.0 else 0.0)
     return values
-
-
-def _into_xml(root: ElementTree.Element, found: Values) -> str:
-    for component in root.iterfind("components/component"):
-        for key, (value, unit) in found.get(component.get("id", ""), {}).items():
-            for old in [a for a in component.iterfind("attribute") if a.get("id") == key]:
-                component.remove(old)
-            attribute = ElementTree.SubElement(component, "attribute", id=key, unit=unit)
-            if isinstance(value, list):
-                array = ElementTree.SubElement(attribute, "array")
-                for one in value:
-                    ElementTree.SubElement(array, "c").text = repr(one)
-            else:
-                attribute.text = repr(value)
-    ElementTree.indent(root)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, "unicode") + "\n"
-
-
-def _into_json(root: dict[str, Any], found: Values) -> str:
-    for component in tables(root["model"]["components"]):
-        new = found.get(str(component.get("id", "")), {})
-        kept = [a for a in tables(component.get("attributes")) if str(a.get("id")) not in new]
-        for key, (value, unit) in new.items():
-            kind = "floating_point_array" if isinstance(value, list) else "floating_point"
-            kept.append({"id": key, "unit": unit, kind: value})
-        component["attributes"] = kept
-    return json.dumps(root, indent=1, ensure_ascii=False) + "\n"

@@ -2,40 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from loadshare.exchange.rexs.kinds import BEARINGS, COUPLINGS, FIXED, GEARS, may_turn, transmits
+from loadshare.exchange.rexs.loose import Stage, loose_stages
 from loadshare.exchange.rexs.model import Component, Model
-from loadshare.exchange.rexs.places import GEARS, Places, Vector, ahead
-
-COUPLINGS = ("coupling", "switchable_coupling", "rigid_connection", "involute_spline_connection")
-BEARINGS = (
-    "concept_bearing",
-    "rolling_bearing_with_catalog_geometry",
-    "rolling_bearing_with_detailed_geometry",
-    "plain_bearing",
-    "radial_plain_bearing",
-)
-READ = {
-    *GEARS,
-    *COUPLINGS,
-    *BEARINGS,
-    "gear_unit",
-    "gear_casing",
-    "shaft",
-    "shaft_section",
-    "cylindrical_stage",
-    "planetary_stage",
-    "planet_carrier",
-    "external_load",
-    "flank_geometry",
-    "cylindrical_gear_flank",
-    "stage_gear_data",
-    "cylindrical_stage_gear_data",
-}
-"""Types of components of which something is read, or that hold nothing by themselves."""
+from loadshare.exchange.rexs.places import Places, Vector, ahead, dot
 
 
 class Joint(NamedTuple):
@@ -64,8 +40,31 @@ class Gearing:
         return Places(self.model)
 
     @cached_property
-    def stages(self) -> list[tuple[Component, Component, Component]]:
-        """Meshes: stage, and both gears."""
+    def stages(self) -> list[Stage]:
+        """Meshes that carry load: stage, and both gears."""
+        return [stage for stage in self._pairs if stage not in self.loose]
+
+    @cached_property
+    def loose(self) -> list[Stage]:
+        """Meshes of gears that turn loose."""
+        pairs = list(self.model.related("assembly", "assembly", "part"))
+        held = {
+            shaft.id for coupling, *both in self.coupled if transmits(coupling) for shaft in both
+        }
+        held |= {shaft.id for shaft, load in pairs if may_turn(load)}
+        held |= {part.id for whole, part in pairs if whole.type == "planet_carrier"}
+        held |= {g.id for whole, g in pairs if whole.type in FIXED and g.type in GEARS}
+        held |= {*self._on_carriers("planet_shaft"), *self._on_carriers("planet_carrier_shaft")}
+        opened = {
+            shaft.id
+            for coupling, *both in self.joined(*COUPLINGS)
+            if not self.is_engaged(coupling)
+            for shaft in both
+        }
+        return loose_stages(self._pairs, self.shaft_of, held, opened)
+
+    @cached_property
+    def _pairs(self) -> list[Stage]:
         return [
             (stage, one, other)
             for stage, one, other in self.model.related("stage", "stage", "gear_1", "gear_2")
@@ -127,8 +126,16 @@ class Gearing:
 
     @cached_property
     def pins(self) -> set[str]:
-        """Ids of the shafts on which planets sit."""
-        return {s.id for _, s in self.model.related("planet_pin", "planetary_stage", "shaft")}
+        """Ids of the shafts on which planets sit: as the file says, or by their bearings."""
+        found = {s.id for _, s in self.model.related("planet_pin", "planetary_stage", "shaft")}
+        riders = {self.shaft_of[planet].id for planet in self.carrier_of}
+        geared = {self.shaft_of[g.id].id for g in self.gears if g.id in self.shaft_of}
+        others = geared | set(self._on_carriers("planet_carrier_shaft"))
+        for _, *both in self.joined(*BEARINGS):
+            for pin, rider in (both, both[::-1]):
+                if rider.id in riders and pin.type == "shaft" and pin.id not in others:
+                    found.add(pin.id)
+        return found
 
     @cached_property
     def carrier_shafts(self) -> dict[str, Component]:
@@ -149,7 +156,7 @@ class Gearing:
     @cached_property
     def casing(self) -> set[str]:
         """Ids of what stands still."""
-        return {c.id for c in self.model.of_type("gear_casing", "gear_unit")}
+        return {c.id for c in self.model.of_type(*FIXED)}
 
     # Places ---------------------------------------------------------------------------------------
 
@@ -227,8 +234,17 @@ class Gearing:
         return place
 
     def axis(self, body: Component) -> Vector:
-        """Direction of a body's axis; its shaft's, or x, if it gives none."""
-        return self.places.axis(body, *self.shafts_of(body))
+        """Direction of a body's axis: its shaft's if that gives one; x if nothing does.
+
+        Speeds and torques are about axes of shafts, and so are places along them.
+        """
+        planets = [self.model.components[g] for g, c in self.carrier_of.items() if c is body]
+        return self.places.axis(*self.shafts_of(body), body, *planets)
+
+    def sense(self, shaft: Component, name: str) -> float:
+        """1 if a shaft's axis points as that of a body on it, -1 if against it."""
+        body = next(b for b in (*self.gears, *self.carriers) if self.names[b.id] == name)
+        return math.copysign(1.0, dot(self.places.axis(shaft, body), self.axis(body)))
 
     def ahead(self, part: Component, shaft: Component, side: str, body: Component) -> float | None:
         """How far a part of a shaft lies ahead of the middle of a body, along its axis [m].
@@ -294,16 +310,3 @@ class Gearing:
         """The gear in which the unit is, from 1."""
         given = [unit.number("gear_shift_index") for unit in self.model.of_type("gear_unit")]
         return next((round(number) for number in given if number is not None), 1)
-
-    def loads(self) -> list[tuple[Component, Component]]:
-        """Shafts with gears or carriers, and the loads on them."""
-        return [
-            (shaft, load)
-            for shaft, load in self.model.related("assembly", "assembly", "part")
-            if shaft.type == "shaft" and load.type == "external_load" and self.on_shaft(shaft)
-        ]
-
-
-def transmits(coupling: Component) -> bool:
-    """Whether a coupling transmits torque: not with a torsional stiffness of zero."""
-    return coupling.number("rotational_stiffness") != 0.0

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from loadshare.exchange.rexs.beam import NEAR, STIFF, beam, is_one
-from loadshare.exchange.rexs.gearing import BEARINGS, Gearing, Joint
+from loadshare.exchange.rexs.gearing import Gearing, Joint
+from loadshare.exchange.rexs.kinds import BEARINGS
 from loadshare.exchange.rexs.model import Component
 
 CLEARANCES = (
@@ -85,16 +86,30 @@ def holding_of(of: Gearing, body: Component, assumed: list[str]) -> Holding:
     if len(links) > 1 or yields:
         assumed.append("supports: each gear by the bearings of its shaft, as a rigid beam")
     parts = frozenset(link.part.id for link in (*links, *seats))
-    offset = _offset(of, links)
+    offset = _offset(of, [*_shared(links), *_shared(seats)])
     if any(offset) and body.id in of.carrier_of:
         assumed.append("planets: the misalignment of their bearings stays as it is when they turn")
-    gaps = [link.part.number(*CLEARANCES) or 0.0 for link in links if link.part.type in BEARINGS]
-    gap = sum(gaps) / len(gaps) if gaps else 0.0
+    own, below = _clearance(links, assumed), _clearance(seats, assumed)
+    gap = own + below
     if gap > 0.0:
-        assumed.append(f"{name}: half of its bearings' mean radial clearance to every side")
+        more = ", and half of that of what carries its shaft" if below else ""
+        assumed.append(f"{name}: half of its bearings' mean radial clearance to every side{more}")
         clearance = {"clearance": f"{0.5e6 * gap:.12g} um", "stiffness": stiffness}
         return Holding({}, clearance, offset, parts)
     return Holding({"support": stiffness}, {}, offset, parts)
+
+
+def _clearance(links: list[Link], assumed: list[str]) -> float:
+    """Mean radial clearance of bearings [m]; of those with preload none."""
+    gaps = []
+    for part in (link.part for link in links if link.part.type in BEARINGS):
+        given = part.number(*CLEARANCES) or 0.0
+        if given < 0.0:
+            assumed.append(
+                f"{part.title()}: its clearance of {1e6 * given:g} um is preload, 0 is assumed"
+            )
+        gaps.append(max(given, 0.0))
+    return sum(gaps) / len(gaps) if gaps else 0.0
 
 
 def borne_by(of: Gearing, body: Component) -> list[tuple[Link, float]]:
@@ -104,12 +119,15 @@ def borne_by(of: Gearing, body: Component) -> list[tuple[Link, float]]:
     -------
     list of (Link, float)
         What holds its shaft, and the part of the body's force that it takes; all parts add up to
-        one.
+        one. So do those of the seats of its pin.
     """
-    links, _ = _links(of, body, [])
-    if not links:
-        return []
-    return list(zip(links, _beam(links)[0].tolist(), strict=True))
+    links, seats = _links(of, body, [])
+    return [*_shared(links), *_shared(seats)]
+
+
+def _shared(links: list[Link]) -> list[tuple[Link, float]]:
+    """Links, and the part of a force at the body that each takes."""
+    return list(zip(links, _beam(links)[0].tolist(), strict=True)) if links else []
 
 
 def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link], list[Link]]:
@@ -120,6 +138,7 @@ def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link]
     name = of.names[body.id]
     firm: list[Joint] = []
     pinned: list[tuple[Joint, list[Joint]]] = []
+    riding: list[Joint] = []
     for joint in _joints(of, of.shafts_of(body)):
         other = joint.other
         if other.id in fixed:
@@ -131,6 +150,17 @@ def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link]
             elif other.id in of.pins:
                 assumed.append("pins of which no seat is given are rigid in their carriers")
                 firm.append(joint)
+        elif other.type == "shaft" and other.id not in of.carrier_shafts:
+            riding.append(joint)
+    turns = body in of.gears and body.id not in of.carrier_of
+    if turns and not firm and not pinned and len({joint.other.id for joint in riding}) == 1:
+        bearer = riding[0].other
+        seats = [seat for seat in _joints(of, [bearer]) if seat.other.id in fixed]
+        if seats:
+            pinned = [(joint, seats) for joint in riding]
+            assumed.append(
+                f"{name}: it rides on {bearer.title()}, whose other gears do not move it"
+            )
     # One pin yields in series; beside other supports that would need the tilting of both shafts.
     seats = pinned[0][1] if pinned else []
     if firm or len({joint.other.id for joint, _ in pinned}) > 1:
@@ -194,15 +224,15 @@ def _yields(links: list[Link]) -> float:
     return _beam(links)[1]
 
 
-def _offset(of: Gearing, links: list[Link]) -> tuple[float, float, float]:
+def _offset(of: Gearing, borne: list[tuple[Link, float]]) -> tuple[float, float, float]:
     """By how much bearings that are out of place move a body without load (3,) [m].
 
     A bearing's misalignment is the offset of its outer ring where that is mounted: a shaft inside
     moves along, a shaft outside moves the other way. As the shaft is rigid, each bearing moves the
-    body by the part of the body's force that it would take.
+    body by the part of the body's force that it would take; so does each seat of its pin.
     """
     total = np.zeros(3)
-    for link, part in zip(links, _beam(links)[0].tolist(), strict=True):
+    for link, part in borne:
         v, w = of.places.across(link.part, link.shaft)
         moved = (link.part.number("misalignment_in_v_direction") or 0.0) * v
         moved += (link.part.number("misalignment_in_w_direction") or 0.0) * w

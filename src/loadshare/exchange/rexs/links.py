@@ -7,9 +7,10 @@ from itertools import pairwise
 from typing import Any
 
 from loadshare.exchange.rexs.beam import NEAR
-from loadshare.exchange.rexs.gearing import Gearing, transmits
+from loadshare.exchange.rexs.gearing import Gearing, Joint
 from loadshare.exchange.rexs.model import Component
-from loadshare.exchange.rexs.shafts import torsion_between
+from loadshare.exchange.rexs.routes import Route, nearest_to, opposite, routes_from
+from loadshare.exchange.rexs.shafts import twist_between
 
 RIGID = 1e15
 """Torsional stiffness from which on a link counts as rigid [N·m/rad]."""
@@ -39,18 +40,15 @@ def links_of(of: Gearing, assumed: list[str]) -> Links:
     links = Links()
     for shaft in of.model.of_type("shaft"):
         _add_neighbours(links, of, shaft, assumed)
-    for coupling, inner, outer in of.coupled:
-        if not transmits(coupling):
-            continue
-        if of.on_shaft(inner) and of.on_shaft(outer):
-            _add_coupling(links, of, (coupling, inner, outer), assumed)
-        for shaft, fixed, side in ((inner, outer, "inner"), (outer, inner, "outer")):
-            if fixed.id in of.casing and of.on_shaft(shaft):
-                name, _ = of.nearest(shaft, coupling, side)
-                links.held.append(name)
-                links.used.add(coupling.id)
-                if coupling.number("rotational_stiffness"):
-                    assumed.append(f"{name}: its coupling to the casing is rigid")
+    for route in _routes(of):
+        if route[-1].other.id in of.casing:
+            name, _ = of.nearest(route[0].shaft, route[0].part, route[0].side)
+            links.held.append(name)
+            links.used.update(joint.part.id for joint in route)
+            if any(joint.part.number("rotational_stiffness") for joint in route):
+                assumed.append(f"{name}: its coupling to the casing is rigid")
+        else:
+            _add_route(links, of, route, assumed)
     for whole, part in of.model.related("assembly", "assembly", "part"):
         if whole.id in of.casing and part in of.gears:
             links.held.append(of.names[part.id])
@@ -68,21 +66,51 @@ def _add_neighbours(links: Links, of: Gearing, shaft: Component, assumed: list[s
         links.used.add(coupling.id)
 
 
-def _add_coupling(
-    links: Links, of: Gearing, joined: tuple[Component, Component, Component], assumed: list[str]
-) -> None:
-    """Add a coupling between the bodies nearest to it on two shafts."""
-    coupling, inner, outer = joined
-    one, to_one = of.nearest(inner, coupling, "inner")
-    other, to_other = of.nearest(outer, coupling, "outer")
+def _routes(of: Gearing) -> list[Route]:
+    """Ways between bodies through couplings, and from bodies to the casing, each once."""
+    found: dict[frozenset[str], Route] = {}
+    for coupling, *both in of.coupled:
+        for shaft in both:
+            for route in routes_from(of, shaft) if of.on_shaft(shaft) else ():
+                if route[0].part is coupling:
+                    found.setdefault(frozenset(joint.part.id for joint in route), route)
+    return list(found.values())
+
+
+def _add_route(links: Links, of: Gearing, route: Route, assumed: list[str]) -> None:
+    """Add what twists between the bodies at both ends of a way through couplings."""
+    first, last = route[0], route[-1]
+    one, to_one = of.nearest(first.shaft, first.part, first.side)
+    other, to_other = nearest_to(of, route)
     if one == other or {f"{one}-{other}", f"{other}-{one}"} & set(links.shafts):
         return
-    yields = _compliance(coupling, assumed)
-    for shaft, name, way in ((inner, one, to_one), (outer, other, to_other)):
-        yields += _way(of, shaft, (name, way), coupling, assumed)
+    yields = sum(_compliance(joint.part, assumed) for joint in route)
+    yields += sum(_between(of, *pair, assumed) for pair in pairwise(route))
+    for shaft, name, way, part in (
+        (first.shaft, one, to_one, first.part),
+        (last.other, other, to_other, last.part),
+    ):
+        yields += _way(of, shaft, (name, way), part, assumed)
         yields += _seat(of, shaft, name, assumed)
     links.shafts[f"{one}-{other}"] = {"stiffness": _stiffness(yields)}
-    links.used.add(coupling.id)
+    links.used.update(joint.part.id for joint in route)
+
+
+def _between(of: Gearing, one: Joint, other: Joint, assumed: list[str]) -> float:
+    """What a shaft without gears twists between two couplings [rad/(N·m)]."""
+    shaft = other.shaft
+    places = (
+        of.places.along(one.part, shaft, opposite(one.side)),
+        of.places.along(other.part, shaft, other.side),
+    )
+    start, stop = sorted(place or 0.0 for place in places)
+    if None in places or stop - start < NEAR:
+        why = (
+            "no places along it are given" if None in places else "both couplings are at one place"
+        )
+        assumed.append(f"{shaft.title()}: rigid between its couplings, {why}")
+        return 0.0
+    return _twist(of, shaft, (start, stop), f"{shaft.title()} between its couplings", assumed)
 
 
 def _seat(of: Gearing, shaft: Component, name: str, assumed: list[str]) -> float:
@@ -121,11 +149,10 @@ def _twist(
     of: Gearing, shaft: Component, between: tuple[float, float], what: str, assumed: list[str]
 ) -> float:
     """What a shaft twists between two places along it [rad/(N·m)]."""
-    stiffness = torsion_between(of, shaft, *between)
-    if stiffness is None:
-        assumed.append(f"{what}: rigid, its sections do not tell")
-        return 0.0
-    return 1.0 / stiffness
+    twist = twist_between(of, shaft, *between)
+    if twist.assumed:
+        assumed.append(f"{what}: {twist.assumed}")
+    return twist.compliance
 
 
 def _compliance(coupling: Component, assumed: list[str]) -> float:

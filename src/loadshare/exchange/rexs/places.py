@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.exchange.rexs.kinds import GEARS
 from loadshare.exchange.rexs.model import Component, Model
 
 LONG = 6
 """References to the place of another component that follow one another."""
 FIRST = ("1", "1.0", "1.0.0")
 """Versions that give where a gear begins along its shaft, not its middle."""
-GEARS = ("cylindrical_gear", "ring_gear")
 
 Vector = tuple[float, float, float]
 
@@ -71,7 +71,7 @@ class Places:
         coordinate = part.number(name)
         referred = self.is_referred(part) or self.is_referred(shaft)
         if here is not None and start is not None and (coordinate is None or not referred):
-            return _dot(_minus(here, start), self.axis(shaft))
+            return dot(_minus(here, start), self.axis(shaft))
         if coordinate is not None and part.type in GEARS and self.model.version in FIRST:
             return coordinate + 0.5 * (part.number("face_width") or 0.0)
         return coordinate
@@ -94,9 +94,9 @@ class Places:
                 return (axis[0] / size, axis[1] / size, axis[2] / size)
         return (1.0, 0.0, 0.0)
 
-    def way(self, one: Component, other: Component) -> float:
-        """1 if the axes of two components point the same way, -1 if against each other."""
-        return math.copysign(1.0, _dot(self.axis(one), self.axis(other)))
+    def are_parallel(self, one: Component, other: Component) -> bool:
+        """Whether two components have parallel axes; so do those of which one gives none."""
+        return abs(dot(self.axis(one, other), self.axis(other, one))) > 1.0 - 1e-9
 
     def across(self, *bodies: Component) -> tuple[np.ndarray, np.ndarray]:
         """Directions v and w, of length 1 and square to u, of the first that gives w.
@@ -113,13 +113,14 @@ class Places:
         raise AssertionError("one of two directions square to each other is square enough to u")
 
 
-def _dot(one: Vector, other: Vector) -> float:
+def dot(one: Vector, other: Vector) -> float:
+    """Scalar product of two vectors."""
     return sum(a * b for a, b in zip(one, other, strict=True))
 
 
 def ahead(there: Vector, here: Vector, axis: Vector) -> float:
     """How far a place lies ahead of another along an axis [m]."""
-    return _dot(_minus(there, here), axis)
+    return dot(_minus(there, here), axis)
 
 
 def _minus(one: Vector, other: Vector) -> Vector:

@@ -32,6 +32,14 @@ OTHERS = {
 }
 """Files that are no gear unit, by their endings."""
 
+FIRST_NAMES = {
+    "side_1": "inner_part",
+    "side_2": "outer_part",
+    "u_coordinate_on_shaft_side_1": "u_coordinate_on_shaft_inner_side",
+    "u_coordinate_on_shaft_side_2": "u_coordinate_on_shaft_outer_side",
+}
+"""Roles and attributes of couplings in version 1.0, and their later names."""
+
 DAMAGED = (
     zipfile.BadZipFile,
     zlib.error,
@@ -105,7 +113,7 @@ def _from_xml(content: bytes) -> Model:
     if root.tag != "model":
         raise _NoRexs(f"is no REXS: its first element is {root.tag}, not model")
     relations = [
-        Relation(
+        _relation(
             r.get("type", ""), {ref.get("role", ""): ref.get("id", "") for ref in r.iter("ref")}
         )
         for r in root.iterfind("relations/relation")
@@ -167,7 +175,15 @@ def _component(element: ElementTree.Element) -> Component:
     )
 
 
+def _relation(kind: str, roles: dict[str, str]) -> Relation:
+    """Return a relation, couplings as later versions name them."""
+    if kind == "coupling" and "side_1" in roles:
+        return Relation("side", {FIRST_NAMES.get(role, role): id_ for role, id_ in roles.items()})
+    return Relation(kind, roles)
+
+
 def _put(attributes: dict[str, Value], name: str, value: Value, unit: str) -> None:
+    name = FIRST_NAMES.get(name, name)
     read = in_si(name, value, unit)
     if read is not None:
         attributes[name] = read
@@ -212,7 +228,7 @@ def _from_json(content: bytes) -> Model:
     if not isinstance(model, Mapping):
         raise _NoRexs("is no REXS: it has no model")
     relations = [
-        Relation(
+        _relation(
             str(r.get("type", "")),
             {str(ref.get("role", "")): str(ref.get("id", "")) for ref in tables(r.get("refs"))},
         )

@@ -3,40 +3,66 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.model import Component, Model
 
 STEEL = 79.3e9
 """Shear modulus of steel [Pa]."""
+POISSON = 0.3
 PARTS = 16
 """Parts into which a section is cut, for sections that taper."""
+SLACK = 1e-6
+"""Up to this, sections neither overlap nor leave a gap [m]."""
 
 
-def torsion_between(of: Gearing, shaft: Component, start: float, stop: float) -> float | None:
-    """Return the torsional stiffness [N·m/rad] between two places along a shaft [m].
+class Twist(NamedTuple):
+    """How far a shaft twists between two places [rad/(N·m)], and what was assumed for it."""
 
-    1/K = ∫ du / (G I_p) with I_p = π (D⁴ − d⁴)/32. None where sections do not cover the way.
+    compliance: float
+    assumed: str = ""
+
+
+def twist_between(of: Gearing, shaft: Component, start: float, stop: float) -> Twist:
+    """Return how far a shaft twists between two places along it [m].
+
+    ∫ du / (G I_p) with I_p = π (D⁴ − d⁴)/32. It is rigid where sections do not cover the way, or
+    where they overlap: then they do not say which of them is the shaft.
     """
-    covered, yields = 0.0, 0.0
-    for section in of.sections(shaft):
-        at, length = section.number("u_coordinate_on_shaft"), section.number("length")
-        if at is None or not length or length < 0.0:
-            continue
+    reached, yields, notes = start, 0.0, set()
+    for at, length, section in _in_order(of, shaft):
         low, high = max(at, start), min(at + length, stop)
         if high <= low:
             continue
-        covered += high - low
+        if low > reached + SLACK:
+            break
+        if low < reached - SLACK:
+            return Twist(0.0, "rigid, its sections overlap")
+        shear, assumed = _shear_modulus(of.model, section, shaft)
+        notes.add(assumed)
         step = (high - low) / PARTS
         for k in range(PARTS):
             part = (low + (k + 0.5) * step - at) / length
             polar = math.pi / 32.0 * (_outer(section, part) - _inner(section, part))
             if polar <= 0.0:
-                return None
-            yields += step / (_shear_modulus(of.model, shaft) * polar)
-    if covered < (stop - start) * (1.0 - 1e-6) or yields <= 0.0:
-        return None
-    return 1.0 / yields
+                return Twist(0.0, "rigid, a section has no diameter, or a bore that is as large")
+            yields += step / (shear * polar)
+        reached = high
+    if reached < stop - SLACK or yields <= 0.0:
+        return Twist(0.0, "rigid, its sections do not cover it")
+    return Twist(yields, "; ".join(sorted(notes - {""})))
+
+
+def _in_order(of: Gearing, shaft: Component) -> list[tuple[float, float, Component]]:
+    """Sections of a shaft from its start: where each begins, its length [m]."""
+    found = [
+        (at, length, section)
+        for section in of.sections(shaft)
+        if (at := section.number("u_coordinate_on_shaft")) is not None
+        and (length := section.number("length") or 0.0) > 0.0
+    ]
+    return sorted(found, key=lambda each: each[:2])
 
 
 def _outer(section: Component, part: float) -> float:
@@ -50,13 +76,23 @@ def _inner(section: Component, part: float) -> float:
     return float((begin + part * (end - begin)) ** 4)
 
 
-def _shear_modulus(model: Model, shaft: Component) -> float:
-    for origin, material in model.related("reference", "origin", "referenced"):
-        if origin is shaft and material.type == "material":
-            shear, young = material.number("shear_modulus"), material.number("elastic_modulus")
-            poisson = material.number("poisson_ratio")
-            if shear and shear > 0.0:
-                return shear
-            if young and young > 0.0 and poisson is not None and poisson > -1.0:
-                return young / (2.0 * (1.0 + poisson))
-    return STEEL
+def _shear_modulus(model: Model, section: Component, shaft: Component) -> tuple[float, str]:
+    """Shear modulus of a section [Pa], and what was assumed for it."""
+    material = material_of(model, section) or material_of(model, shaft)
+    if material is None:
+        return STEEL, "steel, G = 79.3 GPa, no material is given"
+    shear, young = material.number("shear_modulus"), material.number("elastic_modulus")
+    poisson = material.number("poisson_ratio")
+    if shear and shear > 0.0:
+        return shear, ""
+    if not young or young <= 0.0:
+        return STEEL, "steel, G = 79.3 GPa, its material gives no modulus"
+    if poisson is not None and poisson > -1.0:
+        return young / (2.0 * (1.0 + poisson)), ""
+    return young / (2.0 * (1.0 + POISSON)), "its material gives no Poisson's ratio, 0.3 is assumed"
+
+
+def material_of(model: Model, part: Component) -> Component | None:
+    """Return the material of a shaft, a section or a gear, if it is given."""
+    related = model.related("reference", "origin", "referenced")
+    return next((m for origin, m in related if origin is part and m.type == "material"), None)

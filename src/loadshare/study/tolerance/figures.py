@@ -138,7 +138,12 @@ def _figures(block: Block) -> dict[str, Array]:
         for name, values in _at_position(answers).items():
             every.setdefault(name, []).append(values)
     # fmax leaves a stage out at a position where it carries nothing.
-    return {name: np.fmax.reduce(values) for name, values in every.items()}
+    found = {name: np.fmax.reduce(values) for name, values in every.items()}
+    for name in (name for name in every if name.startswith("torque.")):
+        # Of a drive that brakes the largest torque is the most negative.
+        least = np.fmin.reduce(every[name])
+        found[name] = np.where(-least > found[name], least, found[name])
+    return found
 
 
 def _at_position(answers: Equilibria) -> dict[str, Array]:

@@ -74,7 +74,9 @@ def _round_off(job: Job, columns: Mapping[str, Array]) -> dict[str, float]:
     A stop that a gear just touches carries nothing, or what rounding makes of that.
     """
     train, known = job.solver.train, job.solver.tolerance
-    torque = {m: np.fmax.reduce(columns[f"torque.{m} [N*m]"], initial=0.0) for m in train.meshes}
+    torque = {
+        m: np.fmax.reduce(np.abs(columns[f"torque.{m} [N*m]"]), initial=0.0) for m in train.meshes
+    }
     force = [found / train.meshes[mesh].radii[0] for mesh, found in torque.items()]
     return {"[N*m]": known * max(torque.values()), "[N]": known * max(force)}
 

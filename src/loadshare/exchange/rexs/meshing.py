@@ -1,0 +1,121 @@
+"""Meshes of a REXS unit: which gear drives, the law, and where load is shared."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter, deque
+
+from loadshare.exchange.imported import Data
+from loadshare.exchange.rexs.gearing import Gearing
+from loadshare.exchange.rexs.links import Links
+from loadshare.exchange.rexs.model import Component
+from loadshare.exchange.rexs.shafts import material_of
+
+STEEL = 206e9
+"""Modulus of elasticity of the law "iso" [Pa]."""
+LIKE_STEEL = 0.05
+
+
+def meshes_of(of: Gearing, first: str, links: Links, assumed: list[str]) -> Data:
+    """Return the meshes, the driver first as the torque comes from the input.
+
+    Where both gears are equally far from the input, a central gear counts as before a planet, so
+    that all its meshes have one sense.
+    """
+    reached = _reached(of, first, links)
+    made: Data = {}
+    for stage, one, other in of.stages:
+        driver, driven = sorted(
+            (one, other), key=lambda gear: (reached[of.names[gear.id]], gear.id in of.carrier_of)
+        )
+        made[f"{of.names[driver.id]}-{of.names[driven.id]}"] = _law(of, stage, driver, driven)
+    if any("law" in law for law in made.values()):
+        assumed.append('meshes: their law is "iso", ISO 6336-1 method B')
+        assumed += _not_of_steel(of)
+    return made
+
+
+def stages_of(of: Gearing, meshes: Data) -> Data:
+    """Where a gear drives, or is driven by, several others: there the load is shared.
+
+    Not at a planet: what sun and ring take from it follows from their numbers of teeth.
+    """
+    planets = {of.names[planet] for planet in of.carrier_of}
+    made: Data = {}
+    for side, what in ((0, "from"), (1, "to")):
+        ends = Counter(name.split("-")[side] for name in meshes)
+        for gear, count in ends.items():
+            if count > 1 and gear not in planets:
+                branches = [name for name in meshes if name.split("-")[side] == gear]
+                made[f"{what}_{gear}"] = {"meshes": branches}
+    return made
+
+
+def first_number(components: list[Component], *names: str) -> float | None:
+    """Return the first of some numbers that one of some components gives."""
+    found = (component.number(*names) for component in components)
+    return next((value for value in found if value is not None), None)
+
+
+def _reached(of: Gearing, first: str, links: Links) -> dict[str, int]:
+    """Steps from the input to every body, as seen from carriers.
+
+    There the torque of a carrier comes from, or goes to, the held gear of its set: a driven
+    carrier turns its planets on it. Nothing goes from one held gear to another.
+    """
+    names = of.names
+    pairs = [(names[a.id], names[b.id]) for _, a, b in of.stages]
+    shafts = [(one, other) for one, other in (name.split("-") for name in links.shafts)]
+    held = set(links.held)
+    while more := {end for pair in shafts if held & set(pair) for end in pair} - held:
+        held |= more
+    for carrier in of.carriers:
+        planets = {names[p] for p, c in of.carrier_of.items() if c is carrier}
+        meet = {end for pair in pairs if planets & set(pair) for end in pair}
+        pairs += [(names[carrier.id], end) for end in sorted(meet & held or planets)]
+    pairs += [pair for pair in shafts if not held & set(pair)]
+    steps, queue = {first: 0}, deque([first])
+    while queue:
+        here = queue.popleft()
+        for pair in pairs:
+            if here in pair:
+                other = pair[1] if here == pair[0] else pair[0]
+                if other not in steps:
+                    steps[other] = steps[here] + 1
+                    queue.append(other)
+    return {name: steps.get(name, len(names)) for name in names.values()}
+
+
+def _law(of: Gearing, stage: Component, driver: Component, driven: Component) -> Data:
+    density = stage.number("mesh_stiffness_for_load_distribution_along_face_width")
+    width = stage.number("common_face_width") or min(
+        driver.number("face_width") or 0.0, driven.number("face_width") or 0.0
+    )
+    angle = first_number([*of.flanks(driver), driver], "normal_pressure_angle")
+    radius = _base_radius(driver, angle or math.radians(20.0))
+    if density and width and radius:
+        return {"stiffness": f"{density * width * radius**2:.12g} N*m/rad"}
+    return {"law": "iso"}
+
+
+def _not_of_steel(of: Gearing) -> list[str]:
+    """Gears of which the law "iso", which is for steel, does not know the material."""
+    found = []
+    for gear in of.gears:
+        material = material_of(of.model, gear)
+        young = material.number("elastic_modulus") if material is not None else None
+        if young is not None and abs(young / STEEL - 1.0) > LIKE_STEEL:
+            found.append(
+                f"{of.names[gear.id]}: as steel in its meshes, not E = {young / 1e9:g} GPa"
+            )
+    return found
+
+
+def _base_radius(gear: Component, angle: float) -> float | None:
+    """Base radius [m] from teeth."""
+    teeth, module = gear.number("number_of_teeth"), gear.number("normal_module")
+    helix = gear.number("helix_angle_reference_diameter") or 0.0
+    if not teeth or not module or abs(helix) >= 0.5 * math.pi:
+        return None
+    transverse = math.atan(math.tan(angle) / math.cos(helix))
+    return abs(teeth) * abs(module) / (2.0 * math.cos(helix)) * math.cos(transverse)

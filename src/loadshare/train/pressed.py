@@ -1,0 +1,86 @@
+"""Which flanks the load presses: meshes without a backlash have that flank only.
+
+Loads may be arrays of samples, so that those that press the same flanks can be told from others.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare import case as spec
+from loadshare.case.power_flow import from_the_other_end, has_sets
+from loadshare.errors import CaseError
+from loadshare.train.gear import Gear
+from loadshare.train.willis import Links
+
+Flags = NDArray[np.bool_]
+
+
+def turned_meshes(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Flags]:
+    """Tell which meshes have the one flank that their names do not.
+
+    Parameters
+    ----------
+    case : Case
+        Its loads may be arrays of S samples.
+    gears : mapping of str to Gear
+        With their speeds.
+
+    Returns
+    -------
+    dict of mesh to ndarray of bool, shape (1,) or (S,)
+
+    Raises
+    ------
+    CaseError
+        If a mesh without a backlash is pressed on one flank at some positions, and on the other at
+        others.
+    """
+    torque = np.stack(np.broadcast_arrays(*map(np.atleast_1d, case.operating.input_torque)))
+    names = {n for n, m in case.meshes.items() if not m.given("backlash", "normal_backlash")}
+    against = _against_the_names(case, torque)
+    pressed = _pressed(case, gears, torque) if names and has_sets(case.gears) else {}
+    problems = []
+    found = {}
+    for name in case.meshes:
+        signs = pressed.get(name, np.zeros((1, 1)))
+        coast, drive = (signs < 0).any(axis=0), (signs > 0).any(axis=0)
+        if name in names and (coast & drive).any():
+            message = "is missing: the load presses now one flank, now the other"
+            hint = "How much play the mesh has decides when its other flank carries."
+            problems.append(case.problem(("meshes", name, "backlash"), message, "a length", hint))
+        # Where the load presses neither, the names tell.
+        found[name] = np.where(coast | drive, coast, against) & (name in names)
+    if problems:
+        raise CaseError(problems)
+    return found
+
+
+def _against_the_names(case: spec.Case, torque: NDArray[np.float64]) -> Flags:
+    """Whether torques (positions, S) run against the names of the meshes: all that are not 0."""
+    other_end = from_the_other_end(case.operating, case.gears, case.meshes, case.shafts)
+    against = np.where(torque != 0.0, (torque < 0.0) != other_end, True)
+    return np.asarray(against.all(axis=0) & (torque != 0.0).any(axis=0))
+
+
+def _pressed(
+    case: spec.Case, gears: Mapping[str, Gear], torque: NDArray[np.float64]
+) -> dict[str, NDArray[np.intp]]:
+    """Signs of the torques of meshes (positions, S), by statics (see `Links.pressed`)."""
+    links = Links.of(
+        gears,
+        {name: mesh.ends for name, mesh in case.meshes.items()},
+        {name: shaft.ends for name, shaft in case.shafts.items()},
+    )
+    operating = case.operating
+    torques: dict[str, Any] = {
+        n: t.si * math.copysign(1.0, gears[n].ratio) for n, t in operating.external.items()
+    }
+    torques[operating.input] = torques.get(operating.input, 0.0) + torque
+    free = [n for n, g in gears.items() if not g.held and n != operating.output]
+    return links.pressed(torques, free)

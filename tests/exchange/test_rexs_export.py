@@ -1,0 +1,102 @@
+"""Results in REXS files with load cases, with shared stages and with pins."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from tests.exchange.units import at, bearing, joint, planetary, rexsj, two_stages, xml
+
+import loadshare as ls
+from loadshare.exchange.rexs import export_rexs, import_rexs
+from loadshare.exchange.rexs.reading import read_model
+
+FACTOR, PUSHED = "mesh_load_factor_iso_6336_2019", "force_acting_on_inner_component_v"
+
+
+def with_cases(form: str) -> bytes:
+    """Two stages with two load cases, both with results of another program."""
+    components, relations = two_stages()
+    old = {PUSHED: (111.0, "N")}
+    cases = [
+        [
+            (30, "external_load", "", {"torque_around_u_axis": (torque, "N m")}),
+            (63, "concept_bearing", "", old),
+        ]
+        for torque in (70.0, 80.0)
+    ]
+    if form == "xml":
+        return xml(components, relations, cases=cases)
+    held = json.loads(rexsj(components, relations, "2.0"))
+    parts = [json.loads(rexsj(case, [], "2.0"))["model"]["components"] for case in cases]
+    held["model"]["load_spectrum"] = {
+        "id": 1,
+        "load_cases": [{"id": k, "components": part} for k, part in enumerate(parts)],
+    }
+    return json.dumps(held).encode()
+
+
+@pytest.mark.parametrize("form", ["xml", "json"])
+def test_results_are_those_of_the_first_load_case(written, form) -> None:
+    unit = written(with_cases(form), f"unit.{form}")
+    result = ls.solve(import_rexs(unit).case())
+    text = export_rexs(result, unit)
+    copy = written(text.encode(), f"copy.{form}")
+    found = read_model(copy).components
+    force = result.positions[0].loads.bearings["gear_23"][0]
+    assert found["63"].number(PUSHED) == pytest.approx(-force)
+    assert found["23"].attributes["custom_loadshare_displacement"] is not None
+    assert found["23"].type == "cylindrical_gear"
+    assert text.count("111.0") == 1, "the second load case keeps its own"
+    assert text.count("custom_loadshare_normal_force") == 2, "one for each stage, in one place"
+    assert import_rexs(copy).data["operating"] == import_rexs(unit).data["operating"]
+    assert export_rexs(result, copy) == text
+
+
+def test_a_stage_of_several_meshes_has_the_largest_factor(written) -> None:
+    components, relations = planetary()
+    for id_, shaft in ((401, 34), (402, 4), (403, 62)):
+        components.append((id_, "concept_bearing", "", bearing(1e9)))
+        relations.append(joint(id_, shaft, 2))
+    relations = [
+        (kind, {**roles, "stage": 211} if roles.get("stage") in (212, 213) else roles)
+        for kind, roles in relations
+    ]
+    unit = written(xml(components, relations))
+    result = ls.solve(import_rexs(unit).case())
+    found = read_model(written(export_rexs(result, unit).encode(), "copy.rexs")).components
+    shares = [result.positions[0].share[f"gear_53-gear_{k}"] for k in (247, 248, 249)]
+    assert max(shares) > min(shares) + 1e-3
+    assert found["211"].number(FACTOR) == pytest.approx(max(shares))
+    assert "meshing_stiffness_characteristic" not in found["211"].attributes
+    assert "meshing_stiffness_characteristic" in found["220"].attributes
+
+
+def test_seats_of_pins_take_the_force_of_their_planets(written) -> None:
+    """Seats 20 mm before and 60 mm behind the planet take 3/4 and 1/4."""
+    components, relations = planetary()
+    components.append((67, "side_plate", "", at(125.0, 0.0, 0.0)))
+    for k in range(3):
+        for number, place in ((500 + k, -20.0), (510 + k, 60.0)):
+            components.append((number, "coupling", "", bearing(1e9, place)))
+            relations.append(joint(number, 235 + k, 67))
+    unit = written(xml(components, relations))
+    result = ls.solve(import_rexs(unit).case())
+    found = read_model(written(export_rexs(result, unit).encode(), "copy.rexs")).components
+    for k in range(3):
+        force = np.array(result.positions[0].loads.bearings[f"gear_{247 + k}"])
+        for id_, part in ((500 + k, 0.75), (510 + k, 0.25), (300 + k, None)):
+            sides = {
+                side: [
+                    found[str(id_)].number(f"force_acting_on_{side}_component_{axis}")
+                    for axis in "vw"
+                ]
+                for side in ("inner", "outer")
+            }
+            # The pin is inside both of its seats and of the planet's bearing.
+            if part is None:
+                assert sides["inner"] == pytest.approx(force)
+            else:
+                assert sides["outer"] == pytest.approx(part * force)
+                assert sides["inner"] == pytest.approx(-part * force)

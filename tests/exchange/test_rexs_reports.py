@@ -1,0 +1,144 @@
+"""What the import of REXS files assumes, leaves out or refuses, and says so."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from tests.exchange.units import changed, section, teeth, two_pinions, two_stages, xml
+
+from loadshare.errors import CaseError
+from loadshare.exchange.rexs import import_rexs
+
+MM, NONE, MODULUS = "mm", "none", "N / mm^2"
+
+
+def made_of(part: int, **material: object):
+    """Two stages of which a part has a material."""
+    components, relations = two_stages()
+    components.append((88, "material", "", material))
+    return components, [*relations, ("reference", {"origin": part, "referenced": 88})]
+
+
+@pytest.mark.parametrize(
+    ("material", "shear", "word"),
+    [
+        (None, 79.3e9, "no material is given"),
+        ({}, 79.3e9, "gives no modulus"),
+        ({"elastic_modulus": (70000.0, MODULUS)}, 70e9 / 2.6, "0.3 is assumed"),
+        (
+            {"elastic_modulus": (70000.0, MODULUS), "poisson_ratio": (0.33, NONE)},
+            70e9 / 2.66,
+            None,
+        ),
+    ],
+)
+@pytest.mark.parametrize("part", [11, 50])
+def test_a_shear_modulus_that_is_assumed_is_reported(written, part, material, shear, word) -> None:
+    """Of a shaft's material, or its section's."""
+    parts = two_stages() if material is None else made_of(part, **material)
+    found = import_rexs(written(xml(*parts)))
+    polar = math.pi / 32.0 * (0.04**4 - 0.02**4)
+    stiffness = found.case().shafts["gear_21-gear_22"].stiffness.si
+    assert stiffness == pytest.approx(shear * polar / 0.1)
+    notes = [line for line in found.assumed if "shaft gear_21-gear_22" in line]
+    assert notes == [] if word is None else word in notes[0]
+    assert not any("material" in line for line in found.left_out)
+
+
+@pytest.mark.parametrize(("modulus", "reported"), [(70000.0, True), (210000.0, False)])
+def test_a_gear_that_is_not_of_steel_is_reported(written, modulus, reported) -> None:
+    found = import_rexs(written(xml(*made_of(20, elastic_modulus=(modulus, MODULUS)))))
+    assert any("gear_20: as steel" in line for line in found.assumed) is reported
+
+
+def flanked(left: dict, right: dict):
+    """Two stages of which gear 20 has two flanks."""
+    components, relations = two_stages()
+    components += [(901, "flank_geometry", "", left), (902, "flank_geometry", "", right)]
+    return components, [*relations, ("flank", {"gear": 20, "left": 901, "right": 902})]
+
+
+@pytest.mark.parametrize(
+    ("name", "left", "right"),
+    [
+        ("normal_pressure_angle", (20.0, "deg"), (25.0, "deg")),
+        ("profile_shift_coefficient", (0.1, NONE), (0.2, NONE)),
+    ],
+)
+def test_flanks_that_differ_are_reported(written, name, left, right) -> None:
+    for other, reported in ((right, True), (left, False)):
+        found = import_rexs(written(xml(*flanked({name: left}, {name: other}))))
+        assert any(f"gear_20: {name}" in line for line in found.assumed) is reported
+
+
+@pytest.mark.parametrize(
+    ("second", "rigid", "why"),
+    [
+        (section(200.0, 40.0), True, "overlap"),
+        (section(90.0, 40.0) | {"u_coordinate_on_shaft": (60.0, MM)}, True, "overlap"),
+        (section(90.0, 40.0) | {"u_coordinate_on_shaft": (110.0, MM)}, True, "cover"),
+        (section(90.0, 40.0) | {"u_coordinate_on_shaft": (100.0, MM)}, False, "steel"),
+    ],
+)
+def test_sections_that_overlap_do_not_say_what_the_shaft_is(written, second, rigid, why) -> None:
+    """The first covers the shaft up to 100 mm; the gears are at 25 and 125 mm."""
+    components, relations = changed(two_stages(), _50=section(100.0, 40.0))
+    components.append((51, "shaft_section", "", second))
+    relations = [*relations, ("assembly", {"assembly": 11, "part": 51})]
+    found = import_rexs(written(xml(components, relations)))
+    assert (found.case().shafts["gear_21-gear_22"].stiffness == "rigid") is rigid
+    assert any("shaft gear_21-gear_22" in line and why in line for line in found.assumed)
+
+
+def test_a_coupling_or_load_without_a_place_is_reported(written) -> None:
+    nowhere = {f"u_coordinate_on_shaft_{side}_side": None for side in ("inner", "outer")}
+    found = import_rexs(written(xml(*changed(two_pinions(), _70=nowhere)))).assumed
+    assert any("coupling 70 (flange): at the start of shaft 14 (pinions)" in s for s in found)
+    assert any("external_load 31: at the start of shaft 15 (out)" in s for s in found)
+    # The shaft of load 30 has but one gear and nothing that twists.
+    assert not any("external_load 30" in s for s in found)
+    found = import_rexs(written(xml(*two_pinions()))).assumed
+    assert not any("coupling 70 (flange): at the start" in s for s in found)
+
+
+def test_a_gear_has_whole_teeth_and_one_shaft(written) -> None:
+    components, relations = changed(two_stages(), _20={"number_of_teeth": (20.4, NONE)})
+    relations = [*relations, ("assembly", {"assembly": 12, "part": 22})]
+    with pytest.raises(CaseError) as caught:
+        import_rexs(written(xml(components, relations)))
+    message = str(caught.value)
+    assert "cylindrical_gear 20, number_of_teeth = 20.4: is no whole number" in message
+    assert "cylindrical_gear 22: is on 2 shafts: 11, 12" in message
+
+
+def test_preload_is_no_clearance(written) -> None:
+    """Of bearings with 40 um and with -20 um the mean clearance is 20 um."""
+    parts = changed(
+        two_stages(),
+        _61={"radial_clearance": (40.0, "mum")},
+        _62={"radial_clearance": (-20.0, "mum")},
+    )
+    found = import_rexs(written(xml(*parts)))
+    assert found.case().bearings["gear_21"].clearance.si == pytest.approx(10e-6)
+    assert any("concept_bearing 62" in line and "-20 um" in line for line in found.assumed)
+
+
+def test_what_would_matter_and_is_not_read_is_listed(written) -> None:
+    parts = changed(
+        two_stages(),
+        _20={"runout_deviation_iso_1328_2013": (30.0, "mum")},
+        _21=teeth(40, 2.0),
+        _40={"maximum_normal_backlash": (0.3, MM)},
+        _41={"maximum_normal_backlash": (0.0, MM)},
+        _60={"angular_misalignment_around_v_axis": (0.1, "deg")},
+    )
+    components = [*parts[0], (91, "stage_gear_data", "", {})]
+    left = import_rexs(written(xml(components, parts[1]))).left_out
+    for line in (
+        "maximum_normal_backlash of 1 cylindrical_stage",
+        "runout_deviation_iso_1328_2013 of 1 cylindrical_gear",
+        "angular_misalignment_around_v_axis of 1 concept_bearing",
+        "1 stage_gear_data",
+    ):
+        assert line in left
