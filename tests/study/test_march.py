@@ -1,5 +1,6 @@
 """Friction with memory: closed forms, conservation, and a certificate that knows the memory."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -192,3 +193,45 @@ def test_a_march_whose_displacements_are_too_large_is_refused():
         ls.solve(heavy)
     with pytest.raises(ls.Refused, match="displacements are too large"):
         ls.march(heavy)
+
+
+TWO_PATHS = {
+    "operating": {"input": "1", "output": "4", "torque": "1000 N*m"},
+    "gears": {
+        "1": {"base_radius": "45 mm", "centre": ["0 mm", "0 mm"], "support": "free"},
+        "2": {"base_radius": "100 mm", "centre": ["-150 mm", "0 mm"]},
+        "3": {"base_radius": "100 mm", "centre": ["150 mm", "0 mm"]},
+        "4": {"base_radius": "150 mm", "centre": ["0 mm", "-210 mm"]},
+    },
+    "meshes": {
+        "1-2": {"stiffness": "1e6 N*m/rad"},
+        "1-3": {"stiffness": "1e6 N*m/rad"},
+        "2-4": {"stiffness": "4e6 N*m/rad"},
+        "3-4": {"stiffness": "4e6 N*m/rad"},
+    },
+    "splines": {
+        "1": {"bending_stiffness": "2e7 N/m", "clearance": "300 um", "friction_force": "20 N"}
+    },
+    "errors": {"2": {"installation": ["0 um", "150 um"]}},
+}
+"""A pinion on a spline between two wheels, one of them out of place."""
+
+
+def test_a_load_that_stays_leaves_a_spline_that_has_slipped_in_its_place():
+    """Friction is used up, so that rounding tells whether it sticks: the torques do not care.
+
+    It slips until its friction holds what the stiffness of the meshes still pushes, which falls in
+    proportion to the slip.
+    """
+    slips = []
+    for friction in (1.0, 5.0, 20.0, 37.3, 100.0):
+        case = ls.Case(TWO_PATHS).replace({"splines.1.friction_force": f"{friction} N"})
+        found = ls.march(case, gear="1", revolutions=1.0, steps=4)
+        first, *others = found.result.positions
+        for step, position in zip(found.slips[1:], others, strict=True):
+            assert position.torque == pytest.approx(first.torque, rel=1e-12)
+            assert step["1"].dissipated == pytest.approx(0.0, abs=1e-12)
+        slips.append(math.hypot(*found.slips[0]["1"].slip))
+        assert found.slips[0]["1"].dissipated == pytest.approx(friction * slips[-1], rel=1e-9)
+    line = np.polyfit([1.0, 100.0], [slips[0], slips[-1]], 1)
+    np.testing.assert_allclose(slips, np.polyval(line, [1.0, 5.0, 20.0, 37.3, 100.0]), rtol=1e-9)

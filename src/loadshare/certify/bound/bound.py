@@ -279,7 +279,9 @@ class _Enclosure(Part):
             moved = np.hypot(lengths[:, self.at], lengths[:, self.at + 1])
             pushed = np.hypot(reach[:, self.at], reach[:, self.at + 1])
             lined = found.stiff_error[where] != 0.0
+            begins = found.begins[where]
             near = np.where(distance > 2.0 * moved, distance, np.nan)
+            near = np.where(begins, np.inf, near)
             bow = np.where(lined, moved**2 / near, 0.0)
             turn = np.where(
                 lined,
@@ -288,6 +290,10 @@ class _Enclosure(Part):
                 + found.stiff_error[where] * moved,
                 0.0,
             )
+            # A slip that begins follows its friction, whose direction is known but for its error.
+            begun = np.where(2.0 * pushed < size, pushed / np.where(begins, size, 1.0), np.inf)
+            bow = np.where(begins, 2.0 * begun * moved, bow)
+            turn = np.where(begins, begun * pushed + found.stiff_error[where] * moved, turn)
             # A torque that passes through zero turns what follows it around.
             claimed = self.torque[rows]
             turned = np.where(claimed > 0.0, 2.0 * np.maximum(torques - claimed, 0.0), torques)

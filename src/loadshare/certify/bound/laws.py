@@ -6,12 +6,15 @@ and yield as
 .. math:: \Delta o = \left(c_n\, u u^T \pm \frac{|d|}{F}\,(1 - u u^T)\right)\Delta F,
 
 u the direction and |d| the distance from the centre: a turn of the direction is a compliance too.
+Where a slip only begins, |d| = 0, u is the direction of the friction F. Whatever slips from there
+follows it, so that its direction is off by no more than 2 |ΔF|/F: it is held across u.
 Source: formulation, sections 3, 5, 6 and 16.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,6 +93,8 @@ class Elements:
         0 where it does not enter.
     spare : ndarray, shape (S, radials)
         Change with the torque of friction that is put aside [1/m].
+    begins : ndarray of bool, shape (S, pairs)
+        Slips that are zero so far: u is the direction of the friction.
     """
 
     act: Acts
@@ -111,6 +116,7 @@ class Elements:
     follows: Array
     shrinks: Array
     spare: Array
+    begins: Flags
 
 
 def first_acts(claim: Claim, noise: float = BOUND.noise) -> Acts:
@@ -142,11 +148,24 @@ def first_acts(claim: Claim, noise: float = BOUND.noise) -> Acts:
     return np.concatenate([scalar, radials], axis=1)
 
 
+def _unmoved(claim: Claim, distance: Array) -> Flags:
+    """Splines with memory, among the radial elements, whose slip has changed by rounding only."""
+    train, columns = claim.columns.train, claim.columns
+    found = np.zeros(distance.shape, dtype=bool)
+    for k, gear in enumerate(train.splines if train.slip is not None else ()):
+        before = np.linalg.norm((train.slip or {})[gear])
+        place = np.abs(claim.answers.displacement[:, columns.order[gear]]).max(axis=1)
+        at = len(train.rounds) + k
+        found[:, at] = distance[:, at] <= EPS * (before + place)
+    return found
+
+
 def _radial_acts(claim: Claim, noise: Array) -> Acts:
     columns = claim.columns
     pair = claim.forces[:, columns.radials].reshape(claim.count, -1, 2)
     where = claim.lengths[0].value[:, columns.radials].reshape(claim.count, -1, 2)
     size, distance = (np.sqrt((v**2).sum(axis=2)) for v in (pair, where))
+    distance = np.where(_unmoved(claim, distance), 0.0, distance)
     first, stick, level, reach, last = claim.graphs.transpose(2, 0, 1)
     with np.errstate(invalid="ignore"):
         end = np.where(stick > 0.0, first * stick, 0.0)
@@ -220,7 +239,8 @@ def elements(
     scalar = slice(0, columns.first_pair)
     width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
     force[:, scalar] = np.where(active[:, scalar], force[:, scalar], 0.0)
-    lines = [np.zeros((count, k)) for k in (*[pairs] * 6, len(claim.radial_gears))]
+    lines: list[Any] = [np.zeros((count, k)) for k in (*[pairs] * 6, len(claim.radial_gears))]
+    lines.append(np.zeros((count, pairs), dtype=bool))
     found = Elements(
         act,
         active,
@@ -361,6 +381,11 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     distance = np.sqrt((vector**2).sum(axis=2))
     line = vector / np.where(distance > 0.0, distance, 1.0)[:, :, None]
     size = np.sqrt((claimed**2).sum(axis=2))
+    # What begins to slip does so along its friction, across which it is held.
+    begins = np.zeros(distance.shape, dtype=bool)
+    begins[:, arcs:] = (act[:, arcs:] == Act.SLIP) & _unmoved(claim, distance[:, arcs:])
+    begins &= size > 0.0
+    line = np.where(begins[:, :, None], claimed / np.where(size > 0.0, size, 1.0)[:, :, None], line)
     # An arc pushes outwards: its force does work against the distance.
     sign = np.ones(where.shape[1])
     sign[:arcs] = -1.0
@@ -383,7 +408,9 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     off = np.where(act == Act.SLIP, 0.0, off)
     spread = EPS * (reach + yields * np.abs(size))
     most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
+    spread = spread + np.where(begins, distance, 0.0)
     across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
+    across = np.where(begins, 0.0, across)
     lateral = sign * np.minimum(across, softest * most[:, None])
     free = np.maximum(BOUND.yielding * most[:, None], 100.0 * np.abs(lateral))
     along = np.where(act == Act.SLIP, free, yields)
@@ -412,11 +439,13 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     found.rounding[:, columns.radials] += np.repeat(aside, 2, axis=1)
     found.active[:, first:] = np.repeat(on, 2, axis=1)
     found.line[:], found.distance[:], found.size[:] = line, distance, size
+    found.begins[:] = begins
     found.along[:] = yields
     if claim.rolls:
         _bends(claim, acts, found, arcs)
     true = np.where(size > 0.0, sign / across, 0.0)
-    wrong = np.abs(true - 1.0 / lateral) * (1.0 + EPS) + np.where(act == Act.SLIP, 1.0 / along, 0.0)
+    wrong = np.where(begins, 0.0, np.abs(true - 1.0 / lateral) * (1.0 + EPS))
+    wrong += np.where(act == Act.SLIP, 1.0 / along, 0.0)
     found.stiff_error[:] = np.where(lined, np.maximum(wrong, np.finfo(float).tiny), 0.0)
     _follow(claim, acts, yields[:, part], found.follows[:, part], found.shrinks[:, part])
     if found.follows.any() or found.shrinks.any():
