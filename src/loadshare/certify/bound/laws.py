@@ -381,17 +381,15 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     distance = np.sqrt((vector**2).sum(axis=2))
     line = vector / np.where(distance > 0.0, distance, 1.0)[:, :, None]
     size = np.sqrt((claimed**2).sum(axis=2))
+    begins = (act == Act.SLIP) & (size > 0.0)
+    begins[:, arcs:] &= _unmoved(claim, distance[:, arcs:])
     # What begins to slip does so along its friction, across which it is held.
-    begins = np.zeros(distance.shape, dtype=bool)
-    begins[:, arcs:] = (act[:, arcs:] == Act.SLIP) & _unmoved(claim, distance[:, arcs:])
-    begins &= size > 0.0
     line = np.where(begins[:, :, None], claimed / np.where(size > 0.0, size, 1.0)[:, :, None], line)
     # An arc pushes outwards: its force does work against the distance.
     sign = np.ones(where.shape[1])
     sign[:arcs] = -1.0
     size[:, :arcs] = claimed[:, :arcs, 0]
-    graph = claim.graphs.transpose(2, 0, 1)
-    stick_stiffness, stick, level, radius, last = graph
+    stick_stiffness, stick, level, radius, last = claim.graphs.transpose(2, 0, 1)
     acts = act[:, arcs:]
     size[:, arcs:] = np.where(acts == Act.SLIP, level, size[:, arcs:])
     part = slice(arcs, None)
@@ -406,9 +404,8 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     lined = (act == Act.STOP) | (act == Act.STEP) | (act == Act.SLIP)
     off = normal - sign * yields * (size - preload)
     off = np.where(act == Act.SLIP, 0.0, off)
-    spread = EPS * (reach + yields * np.abs(size))
+    spread = EPS * (reach + yields * np.abs(size)) + np.where(begins, distance, 0.0)
     most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
-    spread = spread + np.where(begins, distance, 0.0)
     across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
     across = np.where(begins, 0.0, across)
     lateral = sign * np.minimum(across, softest * most[:, None])
@@ -439,8 +436,7 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     found.rounding[:, columns.radials] += np.repeat(aside, 2, axis=1)
     found.active[:, first:] = np.repeat(on, 2, axis=1)
     found.line[:], found.distance[:], found.size[:] = line, distance, size
-    found.begins[:] = begins
-    found.along[:] = yields
+    found.begins[:], found.along[:] = begins, yields
     if claim.rolls:
         _bends(claim, acts, found, arcs)
     true = np.where(size > 0.0, sign / across, 0.0)
@@ -449,11 +445,16 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     found.stiff_error[:] = np.where(lined, np.maximum(wrong, np.finfo(float).tiny), 0.0)
     _follow(claim, acts, yields[:, part], found.follows[:, part], found.shrinks[:, part])
     if found.follows.any() or found.shrinks.any():
-        # A torque over a spline is the difference of forces that may be far larger.
-        torque = EPS * np.abs(claim.answers.flank_force) @ np.abs(columns.moments).T
-        lost = torque @ columns.splined.T
-        found.rounding[:, first:] += np.repeat(found.follows * lost, 2, axis=1)
-        found.width[:, first:] += np.repeat(found.shrinks * lost, 2, axis=1)
+        _lose_torque(claim, found)
+
+
+def _lose_torque(claim: Claim, found: Elements) -> None:
+    """Add the rounding of torques over splines: differences of forces that may be far larger."""
+    columns, first = claim.columns, claim.columns.first_pair
+    torque = EPS * np.abs(claim.answers.flank_force) @ np.abs(columns.moments).T
+    lost = torque @ columns.splined.T
+    found.rounding[:, first:] += np.repeat(found.follows * lost, 2, axis=1)
+    found.width[:, first:] += np.repeat(found.shrinks * lost, 2, axis=1)
 
 
 def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int) -> None:
