@@ -33,6 +33,9 @@ def toml_text(data: Mapping[str, Any]) -> str:
                 document.add(name, _item(value))
         elif name in ("operating", "march"):
             document.add(name, _table(value))
+        elif not all(isinstance(element, Mapping) for element in value.values()):
+            # What holds no elements is no section; whoever reads the case says so.
+            document.add(name, _item(value))
         elif value:
             section = tomlkit.table(is_super_table=True)
             for key, element in value.items():
