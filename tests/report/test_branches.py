@@ -108,17 +108,32 @@ def test_law_points_lie_on_the_law_of_the_case(all_elements, read, picture):
     assert found == len(all_elements.positions)
 
 
-def test_the_law_is_followed_by_the_torque_of_the_drive_flank_alone(read):
+def test_the_law_is_followed_by_the_torque_of_every_flank(read):
     """Where the coast flank pushes back, the drive flank carries more than the mesh transmits."""
     result = ls.solve(coasting(), positions=[1])
     p = result.positions[0]
     squeezed = [m for m, t in p.coast_torque.items() if t > 0.0]
     assert squeezed
-    rows = {r["mesh"]: r for r in read(result.plot.law().spec).rows("point", "torque")}
+    rows = read(result.plot.law().spec).rows("point", "torque")
+    torques = {(row["mesh"], row["flank"]): row["torque"] for row in rows}
     for mesh in squeezed:
-        assert rows[mesh]["torque"] == pytest.approx(
-            p.torque[mesh] + p.coast_torque[mesh], rel=1e-12
-        )
+        drive, coast = p.torque[mesh] + p.coast_torque[mesh], p.coast_torque[mesh]
+        assert torques[mesh, "coast flank"] == pytest.approx(coast, rel=1e-12)
+        assert torques[mesh, "drive flank"] == pytest.approx(drive, rel=1e-12)
+
+
+def test_a_brake_follows_the_law_on_its_coast_flanks(read):
+    """The backlash that they cross first is no part of it."""
+    case = shipped("fgfbstts/all_elements").replace({"operating.power": "-2000 kW"})
+    result = ls.solve(case, positions=[1])
+    rows = read(result.plot.law().spec).rows("point", "angle")
+    torque = result.positions[0].torque
+    law = case.meshes["7-10"].law
+    (row,) = (row for row in rows if row["mesh"] == "7-10")
+    assert row["torque"] == pytest.approx(-torque["7-10"], rel=1e-12)
+    a, b, c = (values[row["cycle"] - 1].si for values in (law.a, law.b, law.c))
+    expected = a - b * torque["7-10"] + c * (-torque["7-10"]) ** (2 / 3)
+    assert row["angle"] == pytest.approx(1e3 * expected, rel=1e-9)
 
 
 def test_curves_are_drawn_once_for_each_law(read, picture):

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections import Counter, deque
 
+from loadshare.case.gears import YOUNG
 from loadshare.exchange.imported import Data
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.links import Links
 from loadshare.exchange.rexs.model import Component
 from loadshare.exchange.rexs.shafts import material_of
 
-STEEL = 206e9
-"""Modulus of elasticity of the law "iso" [Pa]."""
 LIKE_STEEL = 0.05
+"""Part by which a modulus of elasticity may differ from that of steel unreported."""
 
 
 def meshes_of(of: Gearing, first: str, links: Links, assumed: list[str]) -> Data:
@@ -104,7 +104,7 @@ def _not_of_steel(of: Gearing) -> list[str]:
     for gear in of.gears:
         material = material_of(of.model, gear)
         young = material.number("elastic_modulus") if material is not None else None
-        if young is not None and abs(young / STEEL - 1.0) > LIKE_STEEL:
+        if young is not None and abs(young / YOUNG - 1.0) > LIKE_STEEL:
             found.append(
                 f"{of.names[gear.id]}: as steel in its meshes, not E = {young / 1e9:g} GPa"
             )

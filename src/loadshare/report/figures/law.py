@@ -11,6 +11,7 @@ from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.branches import stages_of
 from loadshare.report.figures.marks import Drawing, Row, axis, channels, chart, heading, hover
+from loadshare.report.flanks import Flank, carrying
 from loadshare.report.palette import SOFT, palette_of
 from loadshare.report.units import Unit, engineering
 from loadshare.results import Result
@@ -59,18 +60,25 @@ def law(result: Result, train: Train) -> Figure:
 
 
 def _working(result: Result, train: Train) -> Iterator[Row]:
-    """Drive-flank torque [N·m] and deformation at the driver [rad] of every mesh and position."""
+    """Torque [N·m] and deformation at the driver [rad] of every flank that carries.
+
+    A mesh of which none does is at the end of its drive flank's law.
+    """
     for p in result.positions:
-        at = train.mesh_positions(p.position)
-        for name, net in p.torque.items():
-            torque = abs(net) if train.meshes[name].turned else net + p.coast_torque[name]
-            angle = _deformation(train.meshes[name], at[name], torque)
+        at = train.flank_positions(p.position)
+        flanks = list(carrying(p))
+        idle = train.meshes.keys() - {flank.mesh for flank in flanks}
+        for flank in (*flanks, *(Flank(name, True, 0.0) for name in train.meshes if name in idle)):
+            mesh = train.meshes[flank.mesh]
+            position = at[mesh.flank_name(flank.drive)]
+            torque = flank.force * mesh.first_radius
             yield {
-                "mesh": name,
+                "mesh": flank.mesh,
+                "flank": flank.side,
                 "position": p.position,
-                "cycle": at[name] + 1,
+                "cycle": position + 1,
                 "torque": torque,
-                "angle": angle,
+                "angle": _deformation(mesh, position, torque, flank.drive),
             }
 
 
@@ -91,11 +99,12 @@ def _curves(train: Train, meshes: Sequence[str], reach: float) -> Iterator[Row]:
                 yield {"curve": curve, "torque": torque, "angle": angle}
 
 
-def _deformation(mesh: Mesh, position: int, torque: float) -> float:
-    """Δφ(T) = a + bT + cT^(2/3) [rad at the driver], a being the gap."""
+def _deformation(mesh: Mesh, position: int, torque: float, drive: bool = True) -> float:
+    """Δφ(T) = a + bT + cT^(2/3) [rad at the driver], a being the gap; without the backlash."""
     radius = mesh.first_radius
     compression = mesh.law(position).compression(torque / radius)
-    return (mesh.gap(position, True) + compression) / radius
+    gap = mesh.gap(position, drive) - (0.0 if drive else mesh.backlash)
+    return (gap + compression) / radius
 
 
 def _scaled(row: Row, torque: Unit, angle: Unit) -> Row:
@@ -115,7 +124,8 @@ def _panel(
         "mesh:N",
         "position:Q",
         ("cycle:Q", "position in the mesh cycle"),
-        ("torque:Q", torque.title("torque on the drive flank"), ".2f"),
+        ("flank:N", "flank"),
+        ("torque:Q", torque.title("torque on the flank"), ".2f"),
         ("angle:Q", angle.title("deformation"), ".3f"),
     )
     working = chart(points).mark_point(filled=True, size=44, opacity=0.9)
