@@ -256,7 +256,7 @@ def test_a_meaningless_equilibrium_is_refused_on_loading_too(small):
     judged = SimpleNamespace(equilibrium=found, certificate=certificate, effort=p.effort)
     position = position_of(train, 1, found.flank_force, judged)
     stamp = replace(small.stamp, case=soft.name, case_hash=soft.hash, positions=(1,))
-    made = result_from(soft, train, [position], lambda: stamp)
+    made = result_from(soft, soft, train, [position], lambda: stamp)
     assert "the displacements are too large for the geometry" in refusal_of(made.to_json())
 
 

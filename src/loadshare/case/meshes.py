@@ -80,6 +80,10 @@ class Law(Element):
     """By how much the law is off at loads other than those it was fitted to, at most, as a part of
     the elastic angle; results warn from 0.03 on [-]."""
 
+    teeth: str = Field(default="", exclude=True)
+    """Digest of the teeth that the numbers were computed from: while it is there, they are refused
+    for gears with other teeth."""
+
     def rules(self) -> Iterator[Rule]:
         """Yield the positions at which the mesh would be rigid."""
         b, c = values(self.b), values(self.c)

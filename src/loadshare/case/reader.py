@@ -41,6 +41,11 @@ _LONG_KEY = re.compile(
 """Text up to a key of more steps than tables may nest; comments and strings hold none."""
 
 
+def opened(case: Case | str | FilePath) -> Case:
+    """Return a case as it says, read from its file if a path is given."""
+    return case if isinstance(case, Case) else load_case(case)
+
+
 def load_case(path: str | FilePath, allow_outside: bool = False) -> Case:
     """Read a case file, with all that it inherits.
 

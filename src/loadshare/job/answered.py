@@ -117,20 +117,21 @@ class Answered:
     def result(self, sample: int) -> Result | None:
         """Return a sample as `solve` would: its certified positions, None if there are none."""
         answers: list[Answer] = []
-        case = train = None
+        case = solved = train = None
         for part, row in self.of(sample):
-            if case is None or train is None:
-                case = resolve(part.samples.one(row))
-                train = build_train(case)
+            if train is None:
+                case = part.samples.one(row)
+                solved = resolve(case)
+                train = build_train(solved)
             for k, index in part.numbers(row):
                 if k in part.others:
                     answers.append(part.others[k])
                 elif k not in part.refused:
                     answers.append(part.solved.answer(k, index, standing(train, index)))
-        if case is None or train is None or not answers:
+        if case is None or solved is None or train is None or not answers:
             return None
         options = Options(solver=AUTO)
-        return result_of(case, train, answers, options, CERTIFY.tolerance, self.positions)
+        return result_of(case, solved, train, answers, options, CERTIFY.tolerance, self.positions)
 
 
 def answer_samples(

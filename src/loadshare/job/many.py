@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loadshare.arguments import whole
-from loadshare.case import Case, load_case
+from loadshare.case import Case
+from loadshare.case.reader import opened
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.job.allocation import keep_freed_memory
 from loadshare.job.block import Block, solve_block
@@ -58,7 +59,7 @@ def solve_blocks(
     Block
     """
     tolerance, workers = checked_tolerance(tolerance), whole("workers", workers)
-    case = case if isinstance(case, Case) else load_case(case)
+    case = opened(case)
     keep_freed_memory()
     groups = samples_of(case, samples)
     total = sum(len(rows) for rows, _ in groups)
@@ -170,7 +171,7 @@ def solve_many(
     >>> bool(found.certified.all())
     True
     """
-    case = case if isinstance(case, Case) else load_case(case)
+    case = opened(case)
     table = {c.key: c.values for c in columns_of(samples)}  # Once: it may hold a generator.
     blocks = solve_blocks(
         case,

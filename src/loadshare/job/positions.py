@@ -13,7 +13,8 @@ from typing import Protocol
 
 from loadshare._version import __version__
 from loadshare.arguments import one_of
-from loadshare.case import Case, load_case
+from loadshare.case import Case
+from loadshare.case.reader import opened
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.contact.backends.backend import SOLVERS
 from loadshare.errors import Refused
@@ -101,7 +102,8 @@ def solve(
     True
     """
     tolerance = checked_tolerance(tolerance)
-    case, machine = prepared(case)
+    case = opened(case)
+    solved, machine = prepared(case)
     options, settle = _options(solver, method, reduce, engine)
     wanted = wanted_positions(machine.train, positions)
     answers: list[Answer] = []
@@ -117,7 +119,7 @@ def solve(
     requested = replace(options, solver=solver)
     result = None
     if answers:
-        result = result_of(case, machine.train, answers, requested, tolerance, wanted)
+        result = result_of(case, solved, machine.train, answers, requested, tolerance, wanted)
     if refusals or result is None:
         raise _together(refusals, result)
     return result
@@ -205,8 +207,7 @@ def prepared(case: Case | str | Path) -> tuple[Case, Machine]:
     What is reduced of a machine is that of the last one whose train had its shape. A case that
     differs in numbers from one before has its geometry.
     """
-    if not isinstance(case, Case):
-        case = load_case(case)
+    case = opened(case)
     found = _recent.of(case)
     if found is None:
         solved = with_laws(case)
@@ -275,6 +276,7 @@ def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]
 
 def result_of(
     case: Case,
+    solved: Case,
     train: Train,
     answers: list[Answer],
     options: Options,
@@ -286,7 +288,9 @@ def result_of(
     Parameters
     ----------
     case : Case
-        Its mesh laws computed.
+        As it was given.
+    solved : Case
+        The same, its mesh laws computed.
     train : Train
     answers : list of Answer
     options : Options
@@ -295,7 +299,9 @@ def result_of(
         1-based positions that were requested.
     """
     found = [position_of(a.train, a.index, a.flank_force, a) for a in answers]
-    return result_from(case, train, found, partial(_stamp, case, options, tolerance, wanted))
+    return result_from(
+        case, solved, train, found, partial(_stamp, solved, options, tolerance, wanted)
+    )
 
 
 def _stamp(case: Case, options: Options, tolerance: float, wanted: Sequence[int]) -> Stamp:

@@ -64,11 +64,11 @@ class Plots:
         LoadshareError
             If no gear floats.
         """
-        return rests.floats(self.result, build_train(self.result.case))
+        return rests.floats(self.result, build_train(self.result.solved))
 
     def law(self) -> Figure:
         """Deformation of the meshes over torque, with the points at which they work."""
-        return laws.law(self.result, build_train(self.result.case))
+        return laws.law(self.result, build_train(self.result.solved))
 
     def train(self) -> Figure:
         """Drawing of the train, with the push of the flanks that carry at the first position."""

@@ -43,14 +43,20 @@ def position_of(
 
 
 def result_from(
-    case: Case, train: Train, positions: Sequence[Position], stamped: Callable[[], Stamp]
+    case: Case,
+    solved: Case,
+    train: Train,
+    positions: Sequence[Position],
+    stamped: Callable[[], Stamp],
 ) -> Result:
     """Put positions together as a result.
 
     Parameters
     ----------
     case : Case
-        As it was solved, its mesh laws computed.
+        As it was given.
+    solved : Case
+        The same, its mesh laws computed.
     train : Train
         Of that case.
     positions : sequence of Position
@@ -70,5 +76,6 @@ def result_from(
         omega=largest([p.share for p in positions], stages),
         pair_omega=largest([p.pair_share for p in positions], stages),
         case=case,
+        solved=solved,
         stamped=stamped,
     )

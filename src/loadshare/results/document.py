@@ -59,7 +59,7 @@ def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
         "case": result.stamp.case,
         "version": result.stamp.version,
         "stamp": as_data(result.stamp),
-        "input": result.case.to_dict(),
+        "input": result.solved.to_dict(),
         "frames": as_data(result.frames),
         "stages": as_data(result.stages),
         "positions": [

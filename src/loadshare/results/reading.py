@@ -108,7 +108,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     _raise(_forgotten(train, positions), file)
     _raise(_loosened(positions, train), file)
     stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
-    result = result_from(case, train, positions, known(stamp))
+    result = result_from(case, case, train, positions, known(stamp))
     # The digest is of the very digits that are written there, whichever processor computed them.
     expected = to_document(result, document.get("format", 1)) | {DIGEST: document.get(DIGEST)}
     _raise(differences(expected, document, names=_elements(given, train)), file)

@@ -260,7 +260,9 @@ class Result:
     omega, pair_omega : mapping of stage to float or None
         Largest Ω of each stage and of the system, by stage mean and by group mean.
     case : Case
-        What was solved, its mesh laws computed.
+        As it was given to `solve`; of a result that was read from a file, as that holds it.
+    solved : Case
+        The same, its mesh laws as numbers.
     stamped : callable
         Returns the stamp, which holds the hash of the case.
     """
@@ -271,6 +273,7 @@ class Result:
     omega: Mapping[str, float | None]
     pair_omega: Mapping[str, float | None]
     case: Case
+    solved: Case
     stamped: Callable[[], Stamp] = field(repr=False)
 
     def __eq__(self, other: object) -> bool:
@@ -333,7 +336,7 @@ class Result:
     @cached_property
     def laws(self) -> Mapping[str, LawUse]:
         """What the law of every mesh is from, and under which loads it was used."""
-        return laws_of(self.case, [p.torque for p in self.positions])
+        return laws_of(self.solved, [p.torque for p in self.positions])
 
     @property
     def floats(self) -> tuple[Mapping[str, FloatState], ...]:

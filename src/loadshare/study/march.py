@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from loadshare.case import Case
+from loadshare.case.reader import opened
 from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
 from loadshare.job.answer import Answer
@@ -24,8 +25,8 @@ from loadshare.results import Result
 from loadshare.settings import CERTIFY, MARCH
 from loadshare.study.answers import BACKEND
 from loadshare.study.memory import stepped
-from loadshare.study.positions import loaded
 from loadshare.train import Train, build_train
+from loadshare.train.build import with_laws
 from loadshare.train.elements import Spline
 from loadshare.train.gear import Vector
 from loadshare.train.memory import slip_of
@@ -165,7 +166,7 @@ def march(
     >>> found.dissipated > 0.0
     True
     """
-    case = loaded(case)
+    case = opened(case)
     given = {"gear": gear, "revolutions": revolutions, "steps": steps}
     given = {key: value for key, value in given.items() if value is not None}
     if case.march is None and len(given) < 3:
@@ -174,14 +175,19 @@ def march(
         raise CaseError([case.problem("march", message, allowed)])
     if given:
         case = case.replace({f"march.{key}": value for key, value in given.items()})
-    return _marched(case, build_train(case), progress)
+    solved = with_laws(case)
+    return _marched(case, solved, build_train(solved), progress)
 
 
-def _marched(case: Case, train: Train, progress: Progress | None) -> March:
+def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) -> March:
     answers: list[Answer] = []
     slips: list[dict[str, Slip]] = []
     before: dict[str, Vector] = {gear: np.zeros(3) for gear in train.splines}
     steps = range(1, train.count + 1)
+
+    def result() -> Result:
+        return result_of(case, solved, train, answers, BACKEND, CERTIFY.tolerance, steps)
+
     for index in steps:
         remembering = standing(train.remembering(before), index)
         try:
@@ -191,7 +197,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
                 raise refused
         except Refused as refusal:
             if answers:
-                refusal.partial = result_of(case, train, answers, BACKEND, CERTIFY.tolerance, steps)
+                refusal.partial = result()
             raise
         after = {g: _slipped(answer, s, before[g]) for g, s in train.splines.items()}
         slips.append({g: _slip(answer, g, before[g], after[g]) for g in after})
@@ -202,7 +208,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
     assert train.march is not None
     reference, revolutions, count = train.march
     return March(
-        result=result_of(case, train, answers, BACKEND, CERTIFY.tolerance, steps),
+        result=result(),
         revolutions=tuple(revolutions * k / count for k in range(count)),
         gear=reference,
         slips=tuple(slips),

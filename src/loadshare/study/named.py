@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from loadshare.case import Case, Study
+from loadshare.case.reader import opened
 from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
-from loadshare.study.positions import opened
 
 if TYPE_CHECKING:
     from loadshare.job import Progress

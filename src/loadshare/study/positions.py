@@ -6,18 +6,14 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from loadshare.case import Case, load_case
+from loadshare.case import Case
 from loadshare.case.keys import Path as Key
-from loadshare.case.keys import covers, parse
+from loadshare.case.keys import covers, dotted, parse
+from loadshare.case.reader import opened
 from loadshare.study.parameter import split_outside
 from loadshare.tooth import bears_on_laws, resolve
 from loadshare.train.situations import VARYING, situation_of
 from loadshare.train.train import Train
-
-
-def opened(case: Case | str | Path) -> Case:
-    """Return a case as it says, read from its file if a path is given."""
-    return case if isinstance(case, Case) else load_case(case)
 
 
 def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
@@ -42,7 +38,11 @@ def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
         return resolve(case)
     numbers = [path[:3] for path in paths if len(path) > 3]
     own = {m for m in case.meshes if any(covers(p, ("meshes", m, "law")) for p in numbers)}
-    return resolve(case, leave=case.meshes.keys() - own)
+    solved = resolve(case, leave=case.meshes.keys() - own)
+    # A law of which a number varies is no longer that of the teeth.
+    laws = {name: solved.meshes[name].power_law for name in own}
+    given = [("meshes", name, "law", "teeth") for name, law in laws.items() if law and law.teeth]
+    return solved.replace({dotted(path): None for path in given}) if given else solved
 
 
 def alike(trains: Iterable[Train], positions: Iterable[int]) -> list[list[int]]:

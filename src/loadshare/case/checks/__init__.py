@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain, islice
 
-from loadshare.case.checks import carriers, fit, floats, flow, layout, loads, meshing, names
+from loadshare.case.checks import (
+    carriers,
+    fit,
+    floats,
+    flow,
+    law_origin,
+    layout,
+    loads,
+    meshing,
+    names,
+)
 from loadshare.case.draft import MORE, Draft
 from loadshare.errors import Problem
 from loadshare.settings import ALLOWED
@@ -21,6 +31,7 @@ CHECKS = (
     fit.check_racks,
     fit.check_fit,
     fit.check_formula_laws,
+    law_origin.check_law_origins,
     loads.check_masses,
     loads.check_temperatures,
     fit.check_backlash_of_teeth,

@@ -33,7 +33,7 @@ def comparison(names: Sequence[str], results: Sequence[Result]) -> list[Table]:
         Two or more; differences are against the first.
     """
     return [
-        _differing_inputs(names, [result.case for result in results]),
+        _differing_inputs(names, [result.solved for result in results]),
         _differing_figures(names, results),
         *_differing_rests(names, results),
     ]

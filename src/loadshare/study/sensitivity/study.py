@@ -11,13 +11,14 @@ import numpy as np
 
 from loadshare.case import Case
 from loadshare.case.keys import parse
+from loadshare.case.reader import opened
 from loadshare.errors import CaseError
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
 from loadshare.results.share import coefficients
 from loadshare.settings import SENSITIVITY
 from loadshare.study.answers import each_certified
-from loadshare.study.positions import loaded, opened
+from loadshare.study.positions import loaded
 from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
 from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity

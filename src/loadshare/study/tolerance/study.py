@@ -13,13 +13,14 @@ import numpy as np
 
 from loadshare.arguments import one_of, whole
 from loadshare.case import Case, Study
+from loadshare.case.reader import opened
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.engines import ENGINES, chosen
 from loadshare.job.positions import wanted_positions
 from loadshare.lock import alone_in
 from loadshare.settings import CERTIFY, JOB, TOLERANCE
-from loadshare.study.positions import loaded, opened
+from loadshare.study.positions import loaded
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.folder import WORST as WORST_FILE
 from loadshare.study.tolerance.folder import Folder

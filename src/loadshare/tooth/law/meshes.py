@@ -6,9 +6,10 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from loadshare.case.checks.fit import mm
+from loadshare.case.checks.law_origin import teeth_digest
 from loadshare.case.keys import Path as KeyPath
 from loadshare.case.keys import dotted, parse
 from loadshare.case.line_of_action import centre_distance, facing
@@ -82,6 +83,9 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     by_hash = _laws({pair.hash: pair for pair in pairs.values()}, progress)
     laws |= {name: by_hash[pair.hash] for name, pair in pairs.items()}
     found = {name: law.as_law(taken.get(name, ())) for name, law in laws.items()} | formulas
+    centres = case.centres()
+    for name, law in found.items():
+        law["teeth"] = teeth_digest(case.meshes[name], case.gears, centres)
     changes: dict[str, object] = {
         **{dotted(("meshes", name, source)): None for name, source in sources.items()},
         **{dotted(("meshes", name, "law")): law for name, law in found.items()},
@@ -163,12 +167,12 @@ def _read(
 
 def _by_formula(
     case: Case, names: Iterable[str]
-) -> tuple[dict[str, dict[str, str]], list[Problem]]:
+) -> tuple[dict[str, dict[str, Any]], list[Problem]]:
     """Laws at the driver by mesh, and what is wrong with their gears."""
     from loadshare.tooth.law.iso6336 import basis_of, least_torque, mesh_stiffness
 
     centres = case.centres()
-    found: dict[str, dict[str, str]] = {}
+    found: dict[str, dict[str, Any]] = {}
     problems: list[Problem] = []
     for name in names:
         mesh = case.meshes[name]

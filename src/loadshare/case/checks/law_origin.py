@@ -1,0 +1,58 @@
+"""The teeth that a mesh law was computed from, so that it is not taken for that of others."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+
+from loadshare.case.draft import Draft
+from loadshare.case.gears import OF_TEETH, Gear
+from loadshare.case.line_of_action import centre_distance
+from loadshare.case.meshes import Mesh
+from loadshare.case.place import Vector, axis_of, dot, minus
+from loadshare.case.quantity import Quantity
+from loadshare.errors import Problem
+
+WITHOUT_STIFFNESS = {"thickness_allowance", "tolerance_class", "density", "ovalisation"}
+"""Keys of teeth that no law follows from."""
+OF_LAWS = (
+    *("type", "teeth", "module", "base_radius", "inner_radius", "outer_radius"),
+    *(key for key in OF_TEETH if key not in WITHOUT_STIFFNESS),
+)
+"""Keys of a gear that its mesh laws follow from."""
+
+
+def teeth_digest(mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]) -> str:
+    """Return a digest of the teeth of a mesh and of where they meet.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    gears : mapping of str to Gear
+    centres : mapping of str to tuple of float
+        Centres of both gears [m].
+    """
+    pair = gears[mesh.driver], gears[mesh.driven]
+    offset = minus(centres[mesh.driven], centres[mesh.driver])
+    lengths = centre_distance(pair[0], offset), abs(dot(offset, axis_of(pair[0])))
+    # To the picometre: centres that are turned or moved as a whole differ by round-off.
+    content = [f"{length:.12f}" for length in lengths]
+    content += [f"{_number(getattr(gear, key))!r}" for gear in pair for key in OF_LAWS]
+    return hashlib.sha256("\n".join(content).encode()).hexdigest()[:16]
+
+
+def check_law_origins(draft: Draft) -> Iterator[Problem]:
+    """Yield laws that were computed from other teeth than those of their gears."""
+    centres = draft.centres()
+    for name, mesh in draft.meshes.items():
+        law = mesh.power_law
+        if law is None or not law.teeth or not {*mesh.ends} <= draft.gears.keys() & centres.keys():
+            continue
+        if law.teeth != teeth_digest(mesh, draft.gears, centres):
+            message = "its numbers were computed from other teeth than those of its gears"
+            hint = 'law = "iso" or "ltca" computes them from these; without law.teeth they stay.'
+            yield draft.problem(("meshes", name, "law"), message, hint=hint)
+
+
+def _number(value: object) -> object:
+    return value.si if isinstance(value, Quantity) else value

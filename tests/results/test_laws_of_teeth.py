@@ -1,0 +1,71 @@
+"""A law that was computed from teeth is not taken for that of other teeth, on any way back in."""
+
+from __future__ import annotations
+
+import pytest
+
+import loadshare as ls
+from loadshare.exchange.spreadsheet.exporting import export_tables
+from loadshare.exchange.spreadsheet.importing import import_tables
+
+CASE = "cases/planetary/four_planets.toml"
+GEARS = ("sun", "ring", "planet1", "planet2", "planet3", "planet4")
+NARROW = {f"gears.{gear}.face_width": "30 mm" for gear in GEARS}
+
+
+@pytest.fixture(scope="module")
+def found() -> ls.Result:
+    return ls.solve(CASE)
+
+
+def stiffness(result: ls.Result) -> float:
+    return result.positions[0].elastic.mesh_stiffness["sun-planet1"]
+
+
+def test_changed_teeth_of_a_result_s_case_have_their_own_law(found) -> None:
+    """The stiffness of ISO 6336-1 is per face width: half the width, half the stiffness."""
+    narrow = ls.solve(found.case.replace(NARROW))
+    assert stiffness(narrow) == pytest.approx(0.5 * stiffness(found), rel=1e-9)
+    assert narrow.omega == ls.solve(ls.load_case(CASE).replace(NARROW)).omega
+
+
+def test_a_march_gives_back_its_case() -> None:
+    made = ls.march(CASE, gear="sun", revolutions=0.1, steps=2)
+    assert made.result.case.meshes["sun-planet1"].law == "iso"
+
+
+def test_tables_of_a_result_hold_the_case_as_it_is_written(found, tmp_path) -> None:
+    for name, text in export_tables(found).items():
+        (tmp_path / f"{name}.csv").write_text(text, encoding="utf-8")
+    assert import_tables(tmp_path).case().hash == ls.load_case(CASE).hash
+
+
+def test_a_saved_result_refuses_other_teeth(found, tmp_path) -> None:
+    found.to_json(tmp_path / "found.json")
+    case = ls.load_result(tmp_path / "found.json").case
+    assert case.hash == found.stamp.case_hash
+    with pytest.raises(ls.CaseError, match="computed from other teeth") as refused:
+        case.replace(NARROW)
+    assert len(refused.value.problems) == len(case.meshes)
+    again = {f'meshes."{name}".law': "iso" for name in case.meshes}
+    assert stiffness(ls.solve(case.replace(NARROW | again))) == pytest.approx(
+        0.5 * stiffness(found), rel=1e-9
+    )
+    kept = {f'meshes."{name}".law.teeth': None for name in case.meshes}
+    assert stiffness(ls.solve(case.replace(NARROW | kept))) == pytest.approx(
+        stiffness(found), rel=1e-9
+    )
+
+
+def test_what_no_law_follows_from_may_change(found, tmp_path) -> None:
+    """Loads and allowances do not; nor does a train that is turned as a whole."""
+    found.to_json(tmp_path / "found.json")
+    case = ls.load_result(tmp_path / "found.json").case
+    torque = case.operating.torque.si
+    half = case.replace(
+        {"operating.torque": f"{0.5 * torque} N*m", "gears.sun.density": "7800 kg/m^3"}
+    )
+    assert ls.solve(half).passed
+    placed = {n: case.gears[n].centre.angle.si for n in GEARS if n.startswith("planet")}
+    turned = {f"gears.{n}.centre.angle": f"{a + 0.3} rad" for n, a in placed.items()}
+    assert ls.solve(case.replace(turned)).passed
