@@ -210,3 +210,33 @@ def test_a_measurement_changes_no_mechanics():
 def test_nothing_measured_is_reported():
     with pytest.raises(ls.CaseError, match="holds no measurement"):
         ls.compare(shipped("fgfbstts/limit_ring"))
+
+
+def test_the_entries_off_a_support_s_diagonal_are_one_unknown() -> None:
+    """Tied, they are found again from torques, though neither can vary alone."""
+    matrix = [["2e8 N/m", "0.6e8 N/m"], ["0.6e8 N/m", "3e8 N/m"]]
+    tied = ("gears.s.support[0][1]", "gears.s.support[1][0]")
+    case = ls.Case(
+        {
+            "operating": {"input": "s", "output": "o", "torque": "300 N*m"},
+            "gears": {
+                "s": {"base_radius": "50 mm", "centre": ["0 mm", "0 mm"], "support": matrix},
+                "i1": {"base_radius": "80 mm", "centre": ["0 mm", "140 mm"]},
+                "i2": {"base_radius": "80 mm", "centre": ["0 mm", "-140 mm"]},
+                "o": {"base_radius": "160 mm", "centre": ["215 mm", "0 mm"]},
+            },
+            "meshes": {
+                "s-i1": {"stiffness": "5e5 N*m/rad"},
+                "s-i2": {"stiffness": "4e5 N*m/rad", "gap": "0.1 mrad"},
+                "i1-o": {"stiffness": "5e5 N*m/rad"},
+                "i2-o": {"stiffness": "6e5 N*m/rad"},
+            },
+        }
+    )
+    torque = ls.solve(case).positions[0].torque
+    measured = {mesh: f"{value!r} N*m" for mesh, value in torque.items()}
+    data = {"position": 1, "torque": measured, "torque_uncertainty": "0.01 N*m"}
+    start = dict.fromkeys(tied, "0.4e8 N/m") | {"measured.rig": data}
+    found = ls.fit(case.replace(start), {tied: ("0.2e8 N/m", "0.9e8 N/m")})
+    assert found.chi_square < 1e-12
+    assert found.unknowns[0].value == pytest.approx(0.6e8, rel=1e-6)

@@ -452,3 +452,50 @@ def test_a_body_that_nothing_holds_is_reported_at_once(monkeypatch):
     assert set(messages) == set(SIDES)
     assert all("nothing balances the load on gear 1 x" in message for message in messages.values())
     assert all(math.isnan(v) for side in SIDES for v in found.rates[1, key, side].torque.values())
+
+
+def on_a_matrix(xx: float, xy: float, yy: float) -> ls.Case:
+    """A pair whose driver yields in its bearing under a force that statics gives."""
+    rows = [[f"{k!r} N/m" for k in row] for row in ([xx, xy], [xy, yy])]
+    return ls.Case(
+        {
+            "operating": {"input": "a", "output": "b", "torque": "1000 N*m"},
+            "gears": {
+                "a": {"base_radius": "50 mm", "centre": ["0 mm", "0 mm"], "support": rows},
+                "b": {"base_radius": "100 mm", "centre": ["160 mm", "0 mm"]},
+            },
+            "meshes": {"a-b": {"stiffness": "5e5 N*m/rad"}},
+        }
+    )
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        (2e8, 1e8, 3e8),
+        (2e8, 0.0, 2e8),
+        (2e8, 0.5e8, 2e8),
+        (1e8, 0.0, 3e8),
+        (3e8, 0.0, 1e8),
+        (2e8, -0.1e8, 2e8),
+    ],
+    ids=str,
+)
+def test_entries_of_a_support_s_matrix(matrix) -> None:
+    """K x = p, so that dx = −K⁻¹ dK x: also where its directions jump or are any."""
+    case, k = on_a_matrix(*matrix), np.array([matrix[:2], matrix[1:]])
+    x = np.array(ls.solve(case).positions[0].displacement["a"])
+    assert np.linalg.norm(k @ x) == pytest.approx(1000.0 / 0.05, rel=1e-12)
+    found = sensitivity(case, "gears.a.support")
+    entries = {"[0][0]": (0, 0), "[0][1]": (0, 1), "[1][1]": (1, 1)}
+    assert [i.key for i in found.inputs] == [f"gears.a.support{at}" for at in entries]
+    for at, (row, column) in entries.items():
+        change = np.zeros((2, 2))
+        change[row, column] = change[column, row] = 1.0
+        exact = -np.linalg.solve(k, change @ x)
+        for side in SIDES:
+            rates = found.rates[1, f"gears.a.support{at}", side]
+            off = np.abs(rates.displacement["a"] - exact)
+            assert (off <= rates.error.displacement["a"]).all()
+            assert off.max() <= 1e-6 * np.abs(exact).max()
+            assert abs(rates.torque["a-b"]) <= rates.error.torque["a-b"]

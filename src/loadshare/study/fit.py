@@ -32,6 +32,7 @@ from loadshare.study.parameter import (
 )
 from loadshare.study.positions import loaded
 from loadshare.study.sensitivity import Sensitivity, sensitivity
+from loadshare.study.sensitivity.inputs import twin_of
 from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
@@ -283,9 +284,13 @@ class _Problem:
     def jacobian(self, u: Array) -> Array:
         """Derivative of the residual with respect to the scaled unknowns."""
         case, result = self.solved(u)
-        keys = [key for parameter in self.parameters for key in parameter.keys]
-        rates = sensitivity(case, keys, positions=self.positions)
-        columns = [sum(self._column(rates, result, key) for key in p.keys) for p in self.parameters]
+        # What has a twin varies with it.
+        keys = [
+            [key for n, key in enumerate(p.keys) if twin_of(key) not in p.keys[:n]]
+            for p in self.parameters
+        ]
+        rates = sensitivity(case, [k for some in keys for k in some], positions=self.positions)
+        columns = [sum(self._column(rates, result, key) for key in some) for some in keys]
         scale = self.high - self.low
         return np.asarray(np.array(columns).T / self.spread[:, None] * scale)
 

@@ -29,6 +29,10 @@ from loadshare.train.train import Train
 
 Element = TypeVar("Element")
 
+JUMP = -2.0
+"""Twice the angle of a support's stiffest direction at which it is counted from the other side
+[rad]."""
+
 
 def build_train(case: spec.Case) -> Train:
     """Turn a case into a train.
@@ -190,10 +194,13 @@ def _supported(case: spec.Case, gear: Gear) -> Gear:
     if not isinstance(given, tuple) or not isinstance(given[0], tuple):
         return replace(gear, support=_support(case, gear.name))
     matrix = np.array([[k.si for k in row] for row in given if isinstance(row, tuple)])
-    stiffness, ways = np.linalg.eigh(0.5 * (matrix + matrix.T))
-    # Right-handed, as the plane is.
-    ways = ways if np.linalg.det(ways) > 0.0 else ways * [1.0, -1.0]
-    return replace(gear, support=stiffness, frame=ways.T @ gear.frame)
+    stiffness, _ = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    twice = math.atan2(matrix[0, 1] + matrix[1, 0], matrix[0, 0] - matrix[1, 1])
+    # The directions must jump somewhere as the entries change: not where an entry off the diagonal
+    # is zero, or two on it are the same.
+    angle = 0.5 * (twice if twice > JUMP else twice + 2.0 * math.pi)
+    ways = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    return replace(gear, support=stiffness[::-1], frame=ways @ gear.frame)
 
 
 def _each(

@@ -59,7 +59,9 @@ def differenced(
             why = str(fault)
             slopes.clear()
             continue
-        noise = SENSITIVITY.solved * np.maximum(_sizes(start), _sizes(there)) / amount
+        count = len(there) - 2 * len(varied.setting(0.0).train.gears)
+        noise = np.maximum(_sizes(start, count), _sizes(there, count))
+        noise *= SENSITIVITY.solved / amount
         slopes.append(((there - start) * sign / amount, noise))
     if len(slopes) < 3:
         raise NoDifference(why or "its equilibrium cannot be distinguished at steps that small")
@@ -101,5 +103,9 @@ def _stacked(train: Train, found: Equilibrium) -> Array:
     return np.concatenate([list(torques_of(train, found).values()), *moved])
 
 
-def _sizes(stacked: Array) -> Array:
-    return np.full(len(stacked), float(np.abs(stacked).max(initial=0.0)))
+def _sizes(stacked: Array, torques: int) -> Array:
+    """Largest of the torques, which come first, and of the displacements."""
+    sizes = np.abs(stacked)
+    sizes[:torques] = sizes[:torques].max(initial=0.0)
+    sizes[torques:] = sizes[torques:].max(initial=0.0)
+    return sizes

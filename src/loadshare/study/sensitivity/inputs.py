@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from loadshare.case import Case
 from loadshare.case.keys import Path, dotted, look_up, parse
@@ -30,7 +30,7 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
     """
     data = case.to_dict()
     if wanted is None:
-        return _below(data, ())
+        return _without_twins(_below(data, ()))
     inputs: list[Input] = []
     problems = []
     for pattern in [wanted] if isinstance(wanted, str) else wanted:
@@ -48,7 +48,30 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
         inputs += found
     if problems:
         raise CaseError(problems)
-    return list(dict.fromkeys(inputs))
+    return _without_twins(dict.fromkeys(inputs))
+
+
+def twin_of(key: str) -> str | None:
+    """Return the key of what must be the same: the entry across the diagonal of a support.
+
+    Parameters
+    ----------
+    key : str
+        Of a number.
+    """
+    match parse(key):
+        case ("gears", name, "support", int(row), int(column)) if row != column:
+            return dotted(("gears", name, "support", column, row))
+    return None
+
+
+def _without_twins(inputs: Iterable[Input]) -> list[Input]:
+    """Leave out what varies with an input before it."""
+    found: dict[str, Input] = {}
+    for item in inputs:
+        if twin_of(item.key) not in found:
+            found[item.key] = item
+    return list(found.values())
 
 
 def _numbers_at(data: object, key: str) -> list[Input]:
