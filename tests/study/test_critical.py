@@ -386,3 +386,50 @@ def test_an_end_without_an_equilibrium_is_refused():
     case = case.replace({"gears.6.support": "free"})
     with pytest.raises(ls.Refused, match="position 1"):
         ls.critical(case, "operating.power", "1000 kW", "2000 kW", positions=[1])
+
+
+def two_paths(support: str) -> ls.Case:
+    """Two paths without errors, of which one has the larger backlash, and idles when it brakes."""
+    backlash = {"backlash": "30 um"}
+    return ls.Case(
+        {
+            "operating": {"input": "s", "output": "o", "torque": "500 N*m"},
+            "gears": {
+                "s": {"base_radius": "50 mm", "centre": ["0 mm", "0 mm"]},
+                "i1": {"base_radius": "80 mm", "centre": ["0 mm", "140 mm"], "support": support},
+                "i2": {"base_radius": "80 mm", "centre": ["0 mm", "-140 mm"]},
+                "o": {"base_radius": "160 mm", "centre": ["215 mm", "0 mm"]},
+            },
+            "meshes": {
+                "s-i1": {"stiffness": "5e5 N*m/rad"} | backlash,
+                "s-i2": {"stiffness": "4e5 N*m/rad"} | backlash,
+                "i1-o": {"stiffness": "5e5 N*m/rad"} | backlash,
+                "i2-o": {"stiffness": "6e5 N*m/rad", "backlash": "50 um"},
+            },
+        }
+    )
+
+
+@pytest.mark.parametrize("support", ["rigid", "2e8 N/m"])
+@pytest.mark.parametrize("ends", [(-300, 300), (-300, 0), (-10, -0.0001), (-3, 3), (-0.02, 300)])
+def test_what_carries_nothing_does_not_change(support, ends) -> None:
+    """While an idler may turn freely, that it touches at the end of its window is no event."""
+    case = two_paths(support)
+    low, high = (f"{end} N*m" for end in ends)
+    found = ls.critical(case, "operating.torque", low, high)
+    before = [e for e in found.events if e.value < -1e-6]
+    (opens,) = {e.value for e in before} or {None}
+    assert (opens is not None) == (ends[0] == -300)
+    if opens is not None:
+        assert {e.element for e in before} == {"s-i2 coast", "i2-o coast"}
+        for torque, carries in ((opens - 0.01, True), (opens + 0.01, False)):
+            at = ls.solve(case.replace({"operating.torque": f"{torque} N*m"})).positions[0]
+            assert (abs(at.torque["s-i2"]) > 1e-9) == carries
+
+
+def test_flanks_that_change_at_one_value_are_one_event() -> None:
+    """A torque that turns round leaves one flank and takes up the other."""
+    found = ls.critical(two_paths("rigid"), "operating.torque", "-30 N*m", "30 N*m")
+    (value,) = {e.value for e in found.events}
+    assert value == 0.0
+    assert {e.together for e in found.events} == {len(found.events)}

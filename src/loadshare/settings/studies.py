@@ -53,6 +53,8 @@ class Follow(NamedTuple):
     """Width of a stretch that is not cut any more, over the largest value."""
     most: int = 2000
     """Stretches of a position; what is left then is named as not proved."""
+    rounded: float = 64.0
+    """Errors of a contact's approach, in units of the last digit of the lengths it is made of."""
     idle: float = 1e-11
     """Force and compression, over load and deflection, at which a closed contact carries
     nothing."""

@@ -138,7 +138,7 @@ class Search:
             stretches = self._cut(left)
         self.gaps = merged(self.gaps)
         self.changes += [c for c in map(self._unconfirmed, self.gaps) if c is not None]
-        self.changes.sort(key=lambda c: c.value)
+        self.changes = self._one_event(sorted(self.changes, key=lambda c: c.value))
 
     # --- Points ---------------------------------------------------------------------------------
 
@@ -191,7 +191,15 @@ class Search:
         columns = np.arange(springs, equations.scalars)
         moved = np.abs(state.approach[:, columns])
         moved[:, np.isin(columns, equations.rigid)] = 0.0
-        idle = (np.abs(state.force[:, columns]) <= band[:, None]) & (moved <= FOLLOW.idle)
+        # A body that idles may touch: what its place is off by is no compression.
+        lengths = (
+            np.abs(numbers.gap)
+            + (np.abs(numbers.vectors) @ np.abs(z[:, : equations.n, None]))[:, :, 0]
+        )
+        rounding = FOLLOW.rounded * np.finfo(float).eps * lengths[:, columns]
+        light = np.maximum(band[:, None], state.slope[:, columns] * rounding)
+        idle = np.abs(state.force[:, columns]) <= light
+        idle &= moved <= np.maximum(FOLLOW.idle, rounding)
         states[:, : len(columns)][idle] = at.OPEN
         for k, where in equations.polar_at.items():
             loose = np.abs(state.polars[k].size) <= band
@@ -233,8 +241,30 @@ class Search:
         value = 0.5 * (first.value + last.value)
         for hint in self._hints.values():
             value = hint if first.value <= hint <= last.value else value
+        if first.value <= 0.0 <= last.value and abs(value) < self.least:
+            value = 0.0
         apart = max(value - first.value, last.value - value)
         return Change(value, first.active, last.active, False, max(first.worst, last.worst), apart)
+
+    def _one_event(self, changes: list[Change]) -> list[Change]:
+        """Join changes, by value, that are too close to each other to be two events."""
+        found: list[Change] = []
+        for change in changes:
+            last = found[-1] if found else change
+            near = max(FOLLOW.resolved * abs(change.value), self.least)
+            apart = last is change or change.value - last.value > near
+            if apart or last.before.states == change.after.states:
+                found.append(change)
+                continue
+            found[-1] = Change(
+                min(last.value, change.value, key=abs),
+                last.before,
+                change.after,
+                last.confirmed and change.confirmed,
+                max(last.worst, change.worst),
+                max(last.apart, change.apart),
+            )
+        return found
 
     def _prove(self, equations: Equations, ends: list[tuple[float, float, Array, Array]]) -> Proof:
         """Try to prove that a set holds on stretches, given by values and z at both ends."""
