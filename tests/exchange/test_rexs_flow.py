@@ -284,3 +284,44 @@ OLD = {
     "u_coordinate_on_shaft_inner_side": "u_coordinate_on_shaft_side_1",
     "u_coordinate_on_shaft_outer_side": "u_coordinate_on_shaft_side_2",
 }
+
+
+# Further loads ------------------------------------------------------------------------------------
+
+
+def with_a_power_take_off(taken: float, output: float, first: bool = False, speeds: bool = True):
+    """100 N·m drive the 20:40 stage: 200 on the middle shaft, of which some leave before 60:20."""
+    components, relations = two_stages()
+    components.append((34, "external_load", "pto", {TORQUE: (-taken, "N m")}))
+    there = ("assembly", {"assembly": 11, "part": 34})
+    turning = {"_10": -1500.0, "_11": 750.0, "_12": -250.0} if speeds else {}
+    return changed(
+        (components, [there, *relations] if first else [*relations, there]),
+        _31={TORQUE: (output, "N m")},
+        **{k: {"rotational_speed": (n, "1 / min")} for k, n in turning.items()},
+    )
+
+
+@pytest.mark.parametrize("taken", [60.0, 120.0])
+@pytest.mark.parametrize(("first", "speeds"), [(False, False), (False, True), (True, True)])
+def test_a_power_take_off_takes_its_torque(written, taken, first, speeds) -> None:
+    """Which of the two that leave is called the output does not matter."""
+    output = 3.0 * (200.0 - taken)
+    found = import_rexs(written(xml(*with_a_power_take_off(taken, output, first, speeds))))
+    assert found.data["operating"]["input"] == "gear_20"
+    assert not any("the others leave" in line for line in found.assumed)
+    assert any("a further torque of -" in line for line in found.assumed)
+    (p,) = ls.solve(found.case()).positions
+    torques = {"gear_20-gear_21": 100.0, "gear_22-gear_23": 200.0 - taken}
+    assert p.torque == pytest.approx(torques)
+    assert abs(p.loads.gears["gear_23"]) == pytest.approx(output)
+
+
+def test_an_output_torque_that_the_others_contradict_is_reported(written) -> None:
+    found = import_rexs(written(xml(*with_a_power_take_off(60.0, 500.0))))
+    (line,) = [line for line in found.assumed if "the others leave" in line]
+    assert line.startswith("gear_23: the load on the output gives -500 N·m")
+    assert "leave -420 N·m" in line
+    two = changed(two_stages(), _31={TORQUE: (240.0, "N m")})
+    (line,) = [line for line in import_rexs(written(xml(*two))).assumed if "leave" in line]
+    assert "gives -240 N·m in its sense of rotation, the others leave -600 N·m" in line

@@ -171,9 +171,14 @@ def test_loads_that_balance_are_refused(written) -> None:
         import_rexs(written(xml(*loaded(10, torque_around_u_axis=(100.0, "N m")))))
 
 
-def test_a_load_on_a_third_shaft_is_left_out_and_two_on_the_output_are_not(written) -> None:
-    third = import_rexs(written(xml(*loaded(11, torque_around_u_axis=(-20.0, "N m"))))).left_out
+def test_a_load_without_torque_on_a_third_shaft_is_left_out_and_two_on_the_output_are_not(
+    written,
+) -> None:
+    third = import_rexs(written(xml(*loaded(11, force_v_direction=(-20.0, "N"))))).left_out
     assert any("external_load 32" in line for line in third)
+    turns = import_rexs(written(xml(*loaded(11, torque_around_u_axis=(-20.0, "N m"))))).case()
+    taken = ls.solve(turns).positions[0].loads.gears["gear_23"]
+    assert abs(taken) == pytest.approx(3.0 * (200.0 - 20.0), rel=1e-9)
     both = import_rexs(written(xml(*loaded(12, torque_around_u_axis=(-20.0, "N m"))))).left_out
     assert not any("external_load" in line for line in both)
 

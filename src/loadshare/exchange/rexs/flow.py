@@ -26,14 +26,20 @@ class Flow:
         On the input, in its running sense [N·m].
     running : str
         Sense about the axis of the input.
+    output : float
+        Torque that the file gives on the output, about its axis [N·m]; 0 where it gives none.
+    others : dict of str to float
+        Torques on other bodies, about their axes [N·m].
     left_out : list of str
-        Loads that are on neither.
+        Loads without a torque that are on neither.
     """
 
     first: str
     last: str
     torque: float
     running: str
+    output: float
+    others: dict[str, float]
     left_out: list[str]
 
 
@@ -41,7 +47,7 @@ def flow_of(of: Gearing, assumed: list[str], lacks: Lacks) -> Flow | None:
     """Return input and output of a unit; None where `lacks` reports what is missing."""
     loads = [applied for applied in applied_loads(of) if may_turn(applied.load)]
     driving = [applied for applied in loads if _torque(applied.load)]
-    driving.sort(key=lambda applied: not applied.load.holds("defines_torque"))
+    driving.sort(key=lambda each: (not each.load.holds("defines_torque"), _power(each) <= 0.0))
     if not driving:
         lacks("", "has no external_load with a torque_around_u_axis on a shaft with gears")
         return None
@@ -62,11 +68,15 @@ def flow_of(of: Gearing, assumed: list[str], lacks: Lacks) -> Flow | None:
     added = [each for each in same if _torque(each.load)]
     if len(added) > 1:
         assumed.append(f"{first}: the torques of {len(added)} loads on its shaft, added")
-    beside = [
-        f"{each.load.title()}: it is neither on the input nor on the output"
-        for each in others[1:]
-        if not _are_one(of, each, others[0])
-    ]
+    output, beside, further = 0.0, [], dict[str, float]()
+    for each in others:
+        amount = of.sense(each.shaft, each.body) * _torque(each.load)
+        if _are_one(of, each, others[0]):
+            output += of.sense(each.shaft, others[0].body) * _torque(each.load)
+        elif amount:
+            further[each.body] = further.get(each.body, 0.0) + amount
+        else:
+            beside.append(f"{each.load.title()}: it is neither on the input nor on the output")
     turning = [
         of.sense(shaft, first) * speed
         for shaft in (given.shaft, given.end)
@@ -74,20 +84,30 @@ def flow_of(of: Gearing, assumed: list[str], lacks: Lacks) -> Flow | None:
     ]
     ahead = [*turning, torque][0] > 0.0
     running = "counter-clockwise" if ahead else "clockwise"
-    return Flow(first, others[0].body, torque if ahead else -torque, running, beside)
+    driven = torque if ahead else -torque
+    return Flow(first, others[0].body, driven, running, output, further, beside)
 
 
 def _torque(load: Component) -> float:
     return load.number("torque_around_u_axis") or 0.0
 
 
-def _as_output(applied: Applied) -> int:
-    """How unlikely a load is the output's: one of which all is open is, a mere force is not."""
+def _power(applied: Applied) -> float:
+    """Power that a load puts in [W]; 0 where the speed of its shaft is not given."""
+    speed = applied.shaft.number("rotational_speed") or applied.end.number("rotational_speed")
+    return _torque(applied.load) * (speed or 0.0)
+
+
+def _as_output(applied: Applied) -> tuple[int, float]:
+    """How unlikely a load is the output's.
+
+    One of which all is open is, a mere force is not; of several torques, what takes most power.
+    """
     load = applied.load
     if _torque(load):
-        return 1
+        return 1, _power(applied)
     forces = (load.number(f"force_{axis}_direction") for axis in "uvw")
-    return 2 if any(forces) and not load.holds("transmits_torque") else 0
+    return (2 if any(forces) and not load.holds("transmits_torque") else 0), 0.0
 
 
 def _are_one(of: Gearing, one: Applied, other: Applied) -> bool:

@@ -11,6 +11,7 @@ from typing import Any
 
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import Data, Imported, commented
+from loadshare.exchange.rexs.balance import balanced
 from loadshare.exchange.rexs.checking import (
     contradictions,
     unknown_gears,
@@ -106,6 +107,7 @@ class _Importer:
             data["errors"] = errors
         data["stages"] = stages_of(self.of, data["meshes"])
         data = {key: value for key, value in data.items() if value not in ("", {})}
+        data = balanced(data, flow, self.assumed, self.left_out)
         self._count_left_out()
         taken = tuple(
             f"{len(part)} {what}"
