@@ -238,7 +238,7 @@ def test_results_are_kept_and_judged_again(tmp_path: Any) -> None:
     again = ls.load_result(path)
     assert again.positions == result.positions
     document = json.loads(path.read_text())
-    document["positions"][2]["claim"]["flank_force"]["sun-p0"] *= 1.001
+    document["positions"][2]["claim"]["flank_force"]["sun-p1"] *= 1.001
     path.write_text(json.dumps(document))
     with pytest.raises(ls.ResultError):
         ls.load_result(path)

@@ -76,3 +76,14 @@ def test_the_page_opens_on_what_differs(star):
         alone.index(w) for w in ("Load sharing by stage", "Largest forces", "Pictures", "Inputs")
     ]
     assert found == sorted(found)
+
+
+def test_a_negative_figure_that_becomes_smaller_changes_downwards():
+    """−100 to −50 N·m is −50 %, as of the force's size."""
+    case = shipped("fgfbstts/rigid_closed_form").replace({"meshes.4-6.gap": "0 rad"})
+    torque = max(case.operating.input_torque)
+    brakes = [case.replace({"operating.torque": f"{-k * torque!r} N*m"}) for k in (1.0, 0.5)]
+    _, figures, *_ = comparison(["a", "b"], [ls.solve(c) for c in brakes])
+    rows = [row for row in figures.rows if row[0].text == "torque on the driver"]
+    assert all(row[2].value < row[3].value < 0.0 for row in rows)
+    assert [row[-1].value for row in rows] == pytest.approx([-50.0] * len(case.meshes))

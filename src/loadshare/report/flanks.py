@@ -17,24 +17,27 @@ class Flank(NamedTuple):
     ----------
     mesh : str
     drive : bool
-        Drive flank, or coast flank.
+        Drive flank of the train's mesh, or coast flank.
     force : float
         Along its own line of action [N].
+    turned : bool
+        Whether the train's mesh has its gears the other way round than its name.
     """
 
     mesh: str
     drive: bool
     force: float
+    turned: bool = False
 
     @property
     def side(self) -> str:
         """Which flank it is, in words."""
-        return "drive flank" if self.drive else "coast flank"
+        return "drive flank" if self.drive != self.turned else "coast flank"
 
     @property
     def where(self) -> str:
         """Its mesh, and the flank unless it is the drive flank."""
-        return f"mesh {self.mesh}" + ("" if self.drive else f", {self.side}")
+        return f"mesh {self.mesh}" + ("" if self.drive != self.turned else f", {self.side}")
 
 
 def least_force(position: Position) -> float:
@@ -59,4 +62,4 @@ def carrying(position: Position) -> Iterator[Flank]:
         for drive in mesh.flanks:
             force = forces[mesh.flank_name(drive)]
             if force > least:
-                yield Flank(name, drive, force)
+                yield Flank(name, drive, force, mesh.turned)

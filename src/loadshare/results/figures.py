@@ -115,8 +115,12 @@ class Figures:
 
     @cached_property
     def mesh_force(self) -> Array:
-        """Force of every mesh along its line of action, drive less coast [N], (S, meshes)."""
-        signs = [1.0 if drive else -1.0 for _, drive in columns_of(self.train).all_flanks]
+        """Force of every mesh along its line of action [N], (S, meshes).
+
+        Positive where the gear that the mesh names first drives.
+        """
+        flanks = columns_of(self.train).all_flanks
+        signs = [1.0 if mesh.is_drive(drive) else -1.0 for mesh, drive in flanks]
         return self._over_meshes(self.answers.flank_force * np.array(signs))
 
     @cached_property
@@ -200,14 +204,14 @@ class Figures:
     def mesh_transmission_error(self) -> Array:
         """Loaded transmission error of every mesh along its line of action [m], (S, meshes).
 
-        How far the base circle of the gear that drives runs ahead of the other's, seen from their
-        carrier: r₁φ₁ − r₂φ₂.
+        How far the base circle of the gear that the mesh names first runs ahead of the other's, in
+        the sense in which it would drive that one, seen from their carrier: r₁φ₁ − r₂φ₂.
         """
         arms = np.zeros((len(self.train.gears), len(self.train.meshes)))
         for m, mesh in enumerate(self.train.meshes.values()):
             turning = self.train.approaches[mesh.flank_name(True)].turning
             for gear, arm in turning.items():
-                arms[self.train.order[gear], m] = arm
+                arms[self.train.order[gear], m] = -arm if mesh.turned else arm
         return np.asarray((self.answers.rotation[:, :, None] * arms).sum(axis=1))
 
     @cached_property

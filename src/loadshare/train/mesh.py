@@ -174,9 +174,13 @@ class Mesh:
         """Base radius [m] of the gear that the name puts first, at which torques are given."""
         return self.radii[1] if self.turned else self.radii[0]
 
+    def is_drive(self, drive: bool) -> bool:
+        """Whether a flank is the one with which the gear named first drives."""
+        return drive != self.turned
+
     def lever(self, drive: bool) -> float:
         """Torque per flank force [m] on the gear named first, positive where it drives."""
-        return self.first_radius if drive != self.turned else -self.first_radius
+        return self.first_radius if self.is_drive(drive) else -self.first_radius
 
     def closer(self, by: float) -> Mesh:
         """Return the mesh with both flanks closer along the line of action [m]."""

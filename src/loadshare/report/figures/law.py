@@ -68,7 +68,12 @@ def _working(result: Result, train: Train) -> Iterator[Row]:
         at = train.flank_positions(p.position)
         flanks = list(carrying(p))
         idle = train.meshes.keys() - {flank.mesh for flank in flanks}
-        for flank in (*flanks, *(Flank(name, True, 0.0) for name in train.meshes if name in idle)):
+        ends = [
+            Flank(name, True, 0.0, mesh.turned)
+            for name, mesh in train.meshes.items()
+            if name in idle
+        ]
+        for flank in (*flanks, *ends):
             mesh = train.meshes[flank.mesh]
             position = at[mesh.flank_name(flank.drive)]
             torque = flank.force * mesh.first_radius

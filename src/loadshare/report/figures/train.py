@@ -59,7 +59,8 @@ def train(case: Sections, result: Result | None = None) -> Figure:
         lines of action are left out.
     result : Result, optional
         Of the case: its first position says which flanks carry. Without it, straight arrows are
-        those of the drive flanks, whichever way the load acts.
+        those of the drive flanks, whichever way the load acts; of a mesh without backlash that of
+        the flank that it has, which the load presses.
 
     Returns
     -------
@@ -74,7 +75,8 @@ def train(case: Sections, result: Result | None = None) -> Figure:
         If no gear could be placed.
     """
     first = result.positions[0] if result else None
-    layout = layout_of(case, _train_of(case), list(carrying(first)) if first else None)
+    train = _train_of(case)
+    layout = layout_of(case, train, list(carrying(first)) if first else None)
     if not layout.bodies:
         raise LoadshareError("no gear has a centre that could be read, so nothing can be drawn")
     ends = {pair.name: (pair.driver, pair.driven) for pair in layout.pairs}
@@ -90,7 +92,7 @@ def train(case: Sections, result: Result | None = None) -> Figure:
     subtitle = [
         case.title,
         "full circles: pitch circles; dashed: base circles; bent arrows: running sense",
-        _pushes_text(first),
+        _pushes_text(first, train),
         "centres: filled on a bearing, diamond on an elastic bearing, ring floating",
         *(_misfit_text(pair) for pair in layout.pairs if not pair.fits),
     ]
@@ -106,8 +108,10 @@ def _train_of(case: Sections) -> Train | None:
         return None
 
 
-def _pushes_text(first: Position | None) -> str:
-    which = "drive flanks" if first is None else "flanks that carry"
+def _pushes_text(first: Position | None, train: Train | None) -> str:
+    turned = train is not None and any(mesh.turned for mesh in train.meshes.values())
+    which = "drive flanks, of meshes without backlash the loaded ones" if turned else "drive flanks"
+    which = which if first is None else "flanks that carry"
     where = f" at position {first.position}" if first and first.train.count > 1 else ""
     return f"straight arrows: push of the {which}{where} on the driven gear"
 

@@ -111,7 +111,7 @@ def _change(change: float | None, base: float) -> Cell:
         return Cell(NONE)
     if not base:
         return Cell("from 0" if change else "0 %")
-    percent = 100.0 * change / abs(base)
+    percent = 100.0 * change / base
     return Cell(f"{significant(percent, 3).replace('-', '−')} %", percent)
 
 
