@@ -18,6 +18,7 @@ from loadshare.contact import (
     Radial,
     RadialLaw,
     Row,
+    TableLaw,
     residuals,
     solve_contact,
 )
@@ -218,3 +219,37 @@ def test_an_answer_has_the_least_energy(problem: ContactProblem, seed: int) -> N
     for size in (1.0, 1e-2, 1e-4):
         for _ in range(5):
             assert energy(x + size * rng.normal(size=len(x))) >= here - 1e-12 * (1.0 + abs(here))
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        (PowerLaw(-1e-9), "law of stop: b = -1e-09 is no finite number of at least 0"),
+        (PowerLaw(0.0, math.inf), "law of stop: c = inf"),
+        (TableLaw((0.0, 1.0, 0.5), (0.0, 1e-6, 2e-6)), "forces do not rise from 0"),
+        (TableLaw((0.0, 1.0), (1e-6, 2e-6)), "compressions do not rise from 0"),
+        (TableLaw((0.0,), (0.0,)), "has 1 forces and 1 compressions"),
+    ],
+)
+def test_laws_under_which_a_stop_would_push_from_afar_are_refused(law, message) -> None:
+    stop = Row("stop", "stop", np.ones(1), 0.0, law)
+    problem = ContactProblem(("x",), np.array([[1e3]]), np.array([3.0]), rows=(stop,))
+    with pytest.raises(ValueError, match=message):
+        solve_contact(problem)
+
+
+@pytest.mark.parametrize(
+    ("pieces", "message"),
+    [
+        ((), "source of drum: has no piece"),
+        ((Piece(5.0, 0.0, 1e-3, "slip"), Piece(1.0, 1e3, math.inf, "wall")), "force falls"),
+        ((Piece(0.0, -1.0, math.inf, "wall"),), r"piece 1 \(wall\): force and stiffness"),
+        ((Piece(0.0, 1.0, -1.0, "wall"),), "length -1.0"),
+        ((Piece(0.0, 1.0, math.inf, "a"), Piece(0.0, 1.0, 1.0, "b")), "endless and not the last"),
+    ],
+)
+def test_radial_laws_that_are_no_rising_graph_are_refused(pieces, message) -> None:
+    drum = Radial("drum", np.eye(2), np.zeros(2), RadialLaw(pieces))
+    problem = ContactProblem(("x", "y"), np.eye(2), np.array([3.0, 0.0]), radials=(drum,))
+    with pytest.raises(ValueError, match=message):
+        solve_contact(problem)

@@ -24,6 +24,7 @@ from loadshare.array_types import floats
 from loadshare.contact.arc import Arc
 from loadshare.contact.condense import Condensation, condense
 from loadshare.contact.law import Law
+from loadshare.contact.law_checks import law_faults
 from loadshare.contact.radial import RadialLaw, RollingLaw
 from loadshare.settings import CONTACT
 
@@ -229,8 +230,11 @@ class ContactProblem:
         laws += [(f"law of {arc.name}", arc.law, Law) for arc in self.arcs]
         radial = RadialLaw | RollingLaw | FollowingLaw
         laws += [(f"source of {r.name}", r.source, radial) for r in self.radials]
-        no_laws = [(what, law) for what, law, kind in laws if not isinstance(law, kind)]
-        wrong += [f"{what}: {law!r} is no law" for what, law in no_laws]
+        for what, law, kind in laws:
+            faults = list(law_faults(law))
+            if not faults and not isinstance(law, kind):
+                faults = [f"{law!r} is no law"]
+            wrong += [f"{what}: {fault}" for fault in faults]
         if not wrong and not np.array_equal(self.stiffness, self.stiffness.T):
             wrong.append("stiffness: is not symmetric")
         elif (
