@@ -152,6 +152,11 @@ def test_march(command, tmp_path):
     assert file.stat().st_size > 0
     plain = command("march", RING, "--gear", 4, "--revolutions", 1, "--steps", 1)
     assert "nothing to remember" in plain.stdout
+    table = tmp_path / "march.csv"
+    assert command(*words[:-1], table).exit_code == 0
+    with table.open(encoding="utf-8") as lines:
+        turned = {row["position"]: float(row["revolutions"]) for row in csv.DictReader(lines)}
+    assert turned == {"1": 0.0, "2": 0.25, "3": 0.5, "4": 0.75}
 
 
 def test_compare_and_fit(command, measured, tmp_path):

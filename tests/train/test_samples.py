@@ -258,8 +258,10 @@ def test_what_cannot_be_used_is_reported(what):
         pd.DataFrame({"rings.4.float [um]": [1, 2], "rings.5.float": ["1 um", "2 um"]}, dtype="O"),
         {"rings.4.float [um]": iter([1, 2]), "rings.5.float": (f"{k} um" for k in (1, 2))},
         {"rings.4.float [um]": range(1, 3), "rings.5.float": np.array([1.0, 2.0]) * PINT.um},
+        {"rings.4.float [um]": (1, 2), "rings.5.float": [1.0 * PINT.um, 2e-3 * PINT.mm]},
+        {"rings.4.float [um]": [1, np.int64(2)], "rings.5.float": ["1 um", 2.0 * PINT.um]},
     ],
-    ids=["frame", "frame of objects", "generators", "quantities"],
+    ids=["frame", "frame of objects", "generators", "quantities", "a list of them", "mixed"],
 )
 def test_whatever_has_columns_is_read_alike(samples):
     read = columns_of(samples)

@@ -38,7 +38,8 @@ def _powers(b: float, c: float) -> Iterator[str]:
 
 def _points(forces: Sequence[float], compressions: Sequence[float]) -> Iterator[str]:
     if len(forces) != len(compressions) or len(forces) < 2:
-        yield f"has {len(forces)} forces and {len(compressions)} compressions: as many of both are wanted, at least 2"
+        counts = f"{len(forces)} forces and {len(compressions)} compressions"
+        yield f"has {counts}: as many of both are wanted, at least 2"
         return
     for name, values in (("forces", forces), ("compressions", compressions)):
         rises = all(low < high for low, high in pairwise(values))

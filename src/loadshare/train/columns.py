@@ -136,6 +136,8 @@ def _values(given: object) -> NDArray[np.generic]:
     if isinstance(given, np.ma.MaskedArray | Iterator):
         # Of a masked array the values below the mask would be taken; so they are None.
         given = given.tolist() if isinstance(given, np.ma.MaskedArray) else list(given)
+    if isinstance(given, list | tuple) and not all(isinstance(v, int | float | str) for v in given):
+        given = [as_text(value) for value in given]
     try:
         values = np.atleast_1d(np.asarray(as_text(given)))
         if values.dtype.kind == "O" and values.ndim == 1:

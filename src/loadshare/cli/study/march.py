@@ -49,7 +49,7 @@ def march(
 def made_of_march(found: March) -> Makers:
     """Return what makes the files of a march."""
     return {
-        **tables_of("march", found.result.to_frame),
+        **tables_of("march", found.to_dataframe),
         **figure_of(found.plot),
         "nc": lambda: netcdf_of(found.dataset),
     }
