@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import logging
 import os
-import socket
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -48,7 +47,9 @@ def alone_in(folder: Path) -> Iterator[None]:
         yield
         return
     with _held(file, handle):
-        text = f"process {os.getpid()} on {socket.gethostname()}, since {_now()}"
+        from socket import gethostname
+
+        text = f"process {os.getpid()} on {gethostname()}, since {_now()}"
         with suppress(OSError):
             # On a full disk it is held all the same, without the name of its holder.
             os.ftruncate(handle, 0)

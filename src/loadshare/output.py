@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import os
 import re
-import secrets
 import stat
 import sys
 from collections.abc import Iterable, Iterator
@@ -75,7 +74,7 @@ def _write(path: Path, content: bytes) -> None:
     place = Path(os.path.realpath(path))
     make_folder(place.parent)
     with _held(place.parent):
-        temporary = place.with_name(f".{place.name[:LONG]}.{secrets.token_hex(8)}")
+        temporary = place.with_name(f".{place.name[:LONG]}.{os.urandom(8).hex()}")
         try:
             temporary.write_bytes(content)
             if known is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -67,6 +66,8 @@ def read_changes(settings: Iterable[str]) -> dict[str, Any]:
 
 
 def _value(text: str) -> Any:
+    import tomllib
+
     if not text:
         return None
     try:

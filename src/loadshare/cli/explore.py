@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import socket
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +10,9 @@ from loadshare.cli.changes import open_case
 from loadshare.cli.console import say
 from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
 from loadshare.cli.options import CaseFile, Changes
+
+if TYPE_CHECKING:
+    import socket
 
 LOCAL = "127.0.0.1"
 MISSING = (
@@ -81,6 +83,8 @@ def _listening(host: str, port: int) -> socket.socket:
     typer.Exit
         If the address cannot be had.
     """
+    import socket
+
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         found = socket.socket(family)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from contextvars import ContextVar
 from pathlib import Path
@@ -47,6 +46,8 @@ def write_document(path: Path, document: dict[str, Any]) -> None:
 
 def document_text(document: dict[str, Any]) -> str:
     """Return plain data as the text of a JSON file."""
+    import json
+
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 

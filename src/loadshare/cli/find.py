@@ -10,7 +10,6 @@ from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import keep_inputs
 from loadshare.cli.waiting import echo
 from loadshare.input import Unreadable, read_file, real
-from loadshare.settings import ALLOWED
 
 
 def find_cases(given: Iterable[Path]) -> list[Path]:
@@ -73,6 +72,7 @@ def _no_case_text(path: Path) -> str:
 def _of_another_kind(file: Path) -> bool:
     """Whether a file says that it is a pair or a law, which cases name and which are no cases."""
     from loadshare.case.recognise import KINDS
+    from loadshare.settings import ALLOWED
 
     kind = rf"""^kind\s*=\s*["']({"|".join(KINDS)})["']"""
     try:

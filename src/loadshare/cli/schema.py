@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +14,8 @@ def schema(
     file: Annotated[Path | None, output(what="Write it to a file instead of stdout.")] = None,
 ) -> None:
     """Print the JSON Schema of a case file, for editors."""
+    import json
+
     from loadshare.case import case_schema
 
     text = json.dumps(case_schema(), indent=2, ensure_ascii=False)

@@ -29,7 +29,6 @@ from loadshare.cli.options import CasePaths, Changes, Method, Solver, Tolerance
 from loadshare.cli.stop import Stop
 from loadshare.cli.waiting import echo
 from loadshare.errors import LoadshareError
-from loadshare.lock import alone_in
 from loadshare.output import clear, make_folder
 
 
@@ -62,6 +61,8 @@ def batch(
     interruption the same command goes on.
     """
     from loky import cpu_count
+
+    from loadshare.lock import alone_in
 
     changes = read_changes(change or ())
     found = find_cases(cases)
