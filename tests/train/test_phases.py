@@ -175,6 +175,35 @@ def test_a_law_is_read_at_each_meshs_own_place() -> None:
     assert {m.phase for m in together.meshes.values()} == {0.0}
 
 
+def test_phases_do_not_depend_on_the_order_of_tables() -> None:
+    """On a driven carrier every mesh of a planet is as near to the input as the other."""
+    changes = {"operating.input": "carrier", "operating.output": "sun"}
+    case = planetary(18, 36, 90, ["0 deg", "120 deg", "240 deg"], **changes)
+    stiffness = [f"{1.0 + 0.01 * k!r}e6 N*m/rad" for k in range(20)]
+    steps = {f"meshes.{name}.stiffness": stiffness for name in case.meshes}
+    case = case.replace(steps | {"operating.positions": 20})
+    tables = {
+        name: {"gears": case.gears, "meshes": case.meshes} for name in ("as written", "reversed")
+    }
+    tables["reversed"] = {k: dict(reversed(v.items())) for k, v in tables["reversed"].items()}
+    written = [Case(operating=case.operating, **t) for t in tables.values()]
+    # The second of two cases is built on the first; neither may take its phases.
+    for first, second in (written, written[::-1]):
+        answers = [ls.solve(c, positions=[1, 8]) for c in (first, second)]
+        trains = [build_train(c) for c in (first, second)]
+        assert [*trains[0].meshes] != [*trains[1].meshes]
+        for name, mesh in trains[0].meshes.items():
+            other = trains[1].meshes[name]
+            assert (mesh.phase, mesh.coast_phase) == (other.phase, other.coast_phase)
+        for one, other in zip(*(a.positions for a in answers), strict=True):
+            assert one.mesh_position == other.mesh_position
+            assert one.torque == pytest.approx(other.torque, rel=1e-12)
+    # The planet whose name comes first, and of its meshes that of the gear whose name does. There
+    # the planet is nearer to the input than the ring, which the train takes for the driver.
+    first_mesh = trains[0].meshes["p1-ring"]
+    assert (first_mesh.driver, first_mesh.coast_phase) == ("ring", 0.0)
+
+
 def test_in_a_march_meshes_of_a_set_pass_by_the_relative_speed() -> None:
     """A turn of the sun takes 15 of its 18 teeth past a planet; each mesh has its own phase."""
     case = planetary(18, 36, 90, ["0 deg", "120 deg", "240 deg"])

@@ -100,7 +100,7 @@ def geometry_of(case: spec.Case) -> Geometry:
         raise CaseError(problems)
     pairs = _pairs(case, kinematics.gears)
     period = _period(case, kinematics.gears) if common else None
-    return Geometry(kinematics.gears, in_phase(case, pairs, tuple(kinematics.gears)), period)
+    return Geometry(kinematics.gears, in_phase(case, pairs), period)
 
 
 def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:

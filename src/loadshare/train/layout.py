@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections import deque
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from loadshare.train.geometry import Pair
 
 
-def in_phase(case: spec.Case, pairs: Mapping[str, Pair], walk: Sequence[str]) -> dict[str, Pair]:
+def in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
     """Return the meshes with their phases.
 
     Raises
@@ -44,7 +45,7 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair], walk: Sequence[str]) ->
         )
         for name, p in pairs.items()
     }
-    found, misfits = phases(meetings, walk)
+    found, misfits = phases(meetings, _from_the_input(case))
     problems = [
         _misfit_problem(case, pairs, m)
         for m in misfits
@@ -54,6 +55,29 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair], walk: Sequence[str]) ->
     if problems:
         raise CaseError(problems)
     return {n: replace(p, phases=found.get(n, p.phases)) for n, p in pairs.items()}
+
+
+def _from_the_input(case: spec.Case) -> list[str]:
+    """All gears, those that are nearer to the input first, whatever order the case is written in.
+
+    Over meshes, shafts, and the pins of carriers.
+    """
+    beside: dict[str, set[str]] = {name: set() for name in case.gears}
+    pins = [(name, gear.carrier) for name, gear in case.gears.items() if gear.carrier]
+    meshes = [mesh.ends for mesh in case.meshes.values()]
+    shafts = [shaft.ends for shaft in case.shafts.values()]
+    for one, other in (*meshes, *shafts, *pins):
+        beside[one].add(other)
+        beside[other].add(one)
+    found: dict[str, None] = {}
+    for start in (case.operating.input, *sorted(case.gears)):
+        queue = deque([start])
+        while queue:
+            here = queue.popleft()
+            if here not in found:
+                found[here] = None
+                queue += sorted(beside[here])
+    return list(found)
 
 
 def _twists(case: spec.Case, driver: Gear, driven: Gear) -> tuple[float, float]:

@@ -53,6 +53,11 @@ class Meeting:
     counted: tuple[int, int] = (1, 1)
     twists: tuple[float, float] = (0.0, 0.0)
 
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Names of the two gears."""
+        return self.driver.name, self.driven.name
+
     def passed(self, gear: str, tooth: float, drive: bool = True) -> float:
         """Pitches by which a flank of a tooth at an angle [rad] is past the pitch point."""
         here, sense = self._counted(gear)
@@ -106,18 +111,22 @@ def phases(
 ) -> tuple[dict[str, Both], tuple[Misfit, ...]]:
     """Return the phases of all meshes between gears with whole teeth, and what does not meet.
 
-    The first mesh of gears from which nothing leads to others begins its cycle: the leading flank
-    of the gear that is nearer to the input is at the pitch point, whichever flank carries and
-    whichever gear the name puts first.
+    Of gears from which nothing leads to others, the mesh that is nearest to the input begins its
+    cycle: the leading flank of its gear that is nearer is at the pitch point, whichever flank
+    carries and whichever gear the name puts first.
 
     Parameters
     ----------
     meetings : mapping of mesh to Meeting
     walk : sequence of str
-        All gears, in the order of a walk from the input.
+        All gears, those that are nearer to the input first.
     """
     order = {gear: k for k, gear in enumerate(walk)}
-    known = {name: m for name, m in meetings.items() if _is_whole(m.driver) and _is_whole(m.driven)}
+    known = {
+        name: meetings[name]
+        for name in sorted(meetings, key=lambda n: sorted(order[end] for end in meetings[n].ends))
+        if _is_whole(meetings[name].driver) and _is_whole(meetings[name].driven)
+    }
     # Which flanks touch decides where teeth are: one walk for those of each side.
     drive, misfits = _walked(known, order, drive=True)
     coast, _ = _walked(known, order, drive=False)
