@@ -113,6 +113,115 @@ def test_a_gear_train_of_idlers_keeps_step() -> None:
         assert apart(to_c - from_a, expected) < 1e-9
 
 
+def face_train(teeth: int | None, *angles: float, **changes: object) -> Case:
+    """A pinion a that drives a face gear f, which drives the pinion b at another angle [rad].
+
+    Both pinions have 25 teeth, and the face gear's sense is that of a.
+    """
+    stiffness = [f"{1.0 + 0.01 * k!r}e6 N*m/rad" for k in range(5)]
+    law = {"pressure_angle": "20 deg", "stiffness": stiffness}
+    pinions = {
+        name: {
+            "teeth": 25,
+            "module": "4 mm",
+            "axis": [math.cos(angle), math.sin(angle), 0.0],
+            "centre": [f"{200 * math.cos(angle)!r} mm", f"{200 * math.sin(angle)!r} mm", "50 mm"],
+        }
+        for name, angle in zip("ab", angles, strict=True)
+    }
+    face: dict[str, Any] = {"type": "face", "centre": ["0 mm", "0 mm"]}
+    face |= {"inner_radius": "180 mm", "outer_radius": "220 mm"}
+    face |= {"teeth": teeth} if teeth else {}
+    case = Case(
+        operating={
+            "input": "a",
+            "output": "b",
+            "torque": "100 N*m",
+            "positions": 5,
+            "phases": "layout",
+        },
+        gears={**pinions, "f": face},
+        meshes={"a-f": law, "f-b": law},
+    )
+    return case.replace(changes)
+
+
+@pytest.mark.parametrize("angle", [0.9, -2.3, 14.0 * math.pi / 106.0])
+@pytest.mark.parametrize(("running", "sense"), [("counter-clockwise", 1), ("clockwise", -1)])
+@pytest.mark.parametrize("allowance", [0.0, -0.3])
+def test_the_teeth_of_a_face_gear_pass_its_pinions_one_after_the_other(
+    angle: float, running: str, sense: int, allowance: float
+) -> None:
+    """Trailing flanks meet a, leading flanks b: they are a tooth of the face gear apart."""
+    thick = {f"gears.{n}.thickness_allowance": f"{allowance} mm" for n in "ab"}
+    case = face_train(106, 0.0, angle, **{"operating.running": running}, **thick)
+    train = build_train(case)
+    assert apart(train.meshes["a-f"].phase, 0.0) < 1e-12
+    # Where pinions lack what they are thinner, the face gear has it: their spaces are full.
+    tooth = 0.5 - allowance / (4.0 * math.pi)
+    expected = tooth - sense * 106 * angle / (2.0 * math.pi)
+    assert apart(train.meshes["f-b"].phase, expected) < 1e-9
+
+
+def test_a_pinion_keeps_step_with_a_face_gear_and_a_spur_gear() -> None:
+    """The pinion b of a face gear drives a spur gear c at the angle 50° in its own plane."""
+    place = [200.0, 70.0 * 2.0 * math.cos(math.radians(50.0)), 0.0]
+    place[2] = 50.0 + 140.0 * math.sin(math.radians(50.0))
+    case = Case(
+        operating={
+            "input": "f",
+            "output": "c",
+            "torque": "100 N*m",
+            "phases": "layout",
+        },
+        gears={
+            "b": {
+                "teeth": 25,
+                "module": "4 mm",
+                "axis": "x",
+                "centre": ["200 mm", "0 mm", "50 mm"],
+            },
+            "f": {
+                "type": "face",
+                "teeth": 106,
+                "base_radius": "199.21484 mm",
+                "centre": ["0 mm", "0 mm"],
+            },
+            "c": {
+                "teeth": 45,
+                "module": "4 mm",
+                "axis": "x",
+                "centre": [f"{x!r} mm" for x in place],
+            },
+        },
+        meshes={
+            "f-b": {"pressure_angle": "20 deg", "stiffness": "1e6 N*m/rad"},
+            "b-c": {"stiffness": "1e6 N*m/rad"},
+        },
+    )
+    train = build_train(case)
+    # About x, from y to z: the face gear is below b, at −90°, and runs from x to y, so b's flank
+    # that it pushes runs to y at −90°, which is counter-clockwise. It is the trailing one.
+    assert train.gears["b"].sense == 1
+    pitch = 2.0 * math.pi / 25
+    tooth = -math.pi / 2.0 + pitch / 4.0 + (0.0 - train.meshes["f-b"].phase) * -pitch
+    leading = (tooth + pitch / 4.0 - math.radians(50.0)) / pitch
+    assert apart(train.meshes["b-c"].phase, leading) < 1e-9
+
+
+def test_a_phase_that_counts_and_does_not_follow_is_asked_for() -> None:
+    """106.4 teeth follow from the radii of the face gear: no phase follows from these."""
+    with pytest.raises(CaseError, match=r"the teeth of f are not known \(by their radii 106\.4"):
+        build_train(face_train(None, 0.0, 0.9))
+    given = {'meshes."a-f".phase': 0.0, 'meshes."f-b".phase': 0.3}
+    train = build_train(face_train(None, 0.0, 0.9, **given))
+    assert train.meshes["f-b"].phase == 0.3
+    constant = {f'meshes."{m}".stiffness': "1e6 N*m/rad" for m in ("a-f", "f-b")}
+    build_train(face_train(None, 0.0, 0.9, **constant))
+    together = {"operating.phases": "together"}
+    assert build_train(face_train(None, 0.0, 0.9, **together)).meshes["f-b"].phase == 0.0
+
+
 def test_sets_that_cannot_be_assembled_are_reported_with_the_angles_that_fit() -> None:
     case = planetary(18, 36, 90, ["0 deg", "120 deg", "241 deg"])
     with pytest.raises(CaseError) as caught:

@@ -13,10 +13,11 @@ import numpy as np
 from loadshare import case as spec
 from loadshare.errors import CaseError, Problem
 from loadshare.train.gear import Gear
-from loadshare.train.phases import MEETS, Meeting, Misfit, phases
+from loadshare.train.phases import MEETS, Meeting, Misfit, is_whole, phases
 from loadshare.train.ring import transverse
 
 if TYPE_CHECKING:
+    from loadshare.case.line_of_action import LineOfAction
     from loadshare.train.geometry import Pair
 
 
@@ -26,20 +27,13 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
     Raises
     ------
     CaseError
-        If teeth that are given completely do not meet.
+        If teeth that are given completely do not meet, or a phase that counts does not follow.
     """
-
-    def half(gear: Gear, pair: Pair) -> float:
-        tooth = case.gears[gear.name].tooth
-        if tooth is None:
-            return math.pi / (2.0 * (gear.teeth or math.inf))
-        return tooth.half_angle_at(pair.line.pressure_angle)
-
     meetings = {
         name: Meeting(
             p.driver,
             p.driven,
-            (half(p.driver, p), half(p.driven, p)),
+            _halves(case, p, pairs),
             p.counted,
             _twists(case, p.driver, p.driven),
         )
@@ -52,9 +46,36 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
         if all(case.gears[g].tooth is not None for g in case.meshes[m.mesh].ends)
     ]
     problems += _phases_against(case, found)
+    problems += _phases_unknown(case, pairs, found)
     if problems:
         raise CaseError(problems)
     return {n: replace(p, phases=found.get(n, p.phases)) for n, p in pairs.items()}
+
+
+def _halves(case: spec.Case, pair: Pair, pairs: Mapping[str, Pair]) -> tuple[float, float]:
+    """Half the angle of a tooth of driver and driven gear at the pitch circle [rad]."""
+
+    def of(gear: Gear, line: LineOfAction) -> float:
+        tooth, count = case.gears[gear.name].tooth, gear.teeth or math.inf
+        return (
+            math.pi / (2.0 * count) if tooth is None else tooth.half_angle_at(line.pressure_angle)
+        )
+
+    def of_face(face: Gear) -> float:
+        # It fills the spaces of its pinions; of several, those with the thickest teeth.
+        pinions = [
+            (p.driven if p.driver is face else p.driver, p.line)
+            for p in pairs.values()
+            if face in (p.driver, p.driven)
+        ]
+        thickest = max(of(pinion, line) * (pinion.teeth or 0.0) for pinion, line in pinions)
+        return (math.pi - thickest) / (face.teeth or math.inf)
+
+    first, second = (
+        of_face(end) if end.kind == "face" else of(end, pair.line)
+        for end in (pair.driver, pair.driven)
+    )
+    return first, second
 
 
 def _from_the_input(case: spec.Case) -> list[str]:
@@ -114,6 +135,27 @@ def _phases_against(case: spec.Case, found: Mapping[str, tuple[float, float]]) -
             path, allowed = ("meshes", name, "phase"), f"{layout:.4g}, or left out"
             hint = 'With operating.phases = "together" any phases may be given.'
             yield case.problem(path, "contradicts the teeth and their places", allowed, hint)
+
+
+def _phases_unknown(
+    case: spec.Case, pairs: Mapping[str, Pair], found: Mapping[str, tuple[float, float]]
+) -> Iterator[Problem]:
+    """Yield meshes of which the layout is to tell the phase and does not, although it counts."""
+    if case.operating.phases != "layout":
+        return
+    for name, pair in pairs.items():
+        mesh = case.meshes[name]
+        varies = any(isinstance(v, tuple) and len(v) > 1 for _, v in mesh.per_position())
+        if name in found or mesh.phase is not None or not varies:
+            continue
+        bare = {g.name: g.teeth for g in (pair.driver, pair.driven) if not is_whole(g.teeth)}
+        by_radii = [f"{z:.5g} of {n}" for n, z in bare.items() if z is not None]
+        message = f"the teeth of {' and '.join(bare)} are not known"
+        if by_radii:
+            message += f" (by their radii {' and '.join(by_radii)})"
+        hint = f"Give gears.{next(iter(bare))}.teeth, or the phase of the mesh."
+        path = ("meshes", name, "phase")
+        yield case.problem(path, f"does not follow: {message}", "0 to below 1", hint)
 
 
 def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:

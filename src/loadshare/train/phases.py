@@ -8,7 +8,8 @@ pitch circle, the pitch point at β, all along its sense of rotation,
 
 with the leading flank of a driver and the trailing flank of what is driven, and the other two for
 the coast flanks. Helical teeth stand elsewhere at another height: τ is that in the middle of the
-common face, where contact at the pitch point counts. Both gears of a mesh must say the same; in a
+common face, where contact at the pitch point counts. A face gear is a gear like any other, its
+pitch point in the direction of the pinion. Both gears of a mesh must say the same; in a
 planetary set that is the condition of assembly. Source: formulation, section 13.
 """
 
@@ -125,7 +126,7 @@ def phases(
     known = {
         name: meetings[name]
         for name in sorted(meetings, key=lambda n: sorted(order[end] for end in meetings[n].ends))
-        if _is_whole(meetings[name].driver) and _is_whole(meetings[name].driven)
+        if is_whole(meetings[name].driver.teeth) and is_whole(meetings[name].driven.teeth)
     }
     # Which flanks touch decides where teeth are: one walk for those of each side.
     drive, misfits = _walked(known, order, drive=True)
@@ -176,7 +177,6 @@ def _meshes_of(gear: str, known: Mapping[str, Meeting]) -> Iterator[tuple[str, s
             yield name, meeting.driver.name, meeting
 
 
-def _is_whole(gear: Gear) -> bool:
-    if gear.teeth is None or gear.kind == "face":
-        return False
-    return bool(np.isclose(gear.teeth, round(gear.teeth), rtol=0.0, atol=WHOLE))
+def is_whole(teeth: float | None) -> bool:
+    """Whether a number of teeth is known and a whole one."""
+    return teeth is not None and bool(np.isclose(teeth, round(teeth), rtol=0.0, atol=WHOLE))
