@@ -3,6 +3,8 @@
 Source: formulation, section 6: a load along a move that nothing resists has no equilibrium.
 """
 
+import re
+
 import numpy as np
 import pytest
 from tests.support import round_ring, shipped
@@ -50,3 +52,28 @@ def test_nothing_is_searched_for_without_balance(monkeypatch):
     monkeypatch.setattr(machine, "search", lambda *_: pytest.fail("a search was made"))
     with pytest.raises(Refused, match="nothing balances the load on gear sun rotation"):
         ls.solve(case)
+
+
+@pytest.mark.parametrize("running", ["counter-clockwise", "clockwise"])
+def test_torques_that_do_not_cancel_are_told_what_would(running):
+    """A sun in, the carrier out: the ring of z teeth takes z/z_sun of the sun's torque."""
+    case = shipped("planetary/four_planets").replace({"operating.running": running})
+    sun, ring = (case.gears[g].teeth for g in ("sun", "ring"))
+    torque = case.operating.input_torque[0]
+    free = {"gears.ring.held": False, "operating.external": {"ring": "1 N*m"}}
+    with pytest.raises(Refused, match=r'external\.ring = "([-\d.]+) N\*m"') as caught:
+        ls.solve(case.replace(free), positions=[1])
+    needed = re.search(r'external\.ring = "(.*) N', str(caught.value))
+    assert needed is not None
+    assert float(needed[1]) == pytest.approx(torque * ring / sun, rel=1e-6)
+    right = {"gears.ring.held": False, "operating.external": {"ring": f"{needed[1]} N*m"}}
+    held, balanced = (ls.solve(c, positions=[1]) for c in (case, case.replace(right)))
+    for name, value in held.positions[0].torque.items():
+        assert balanced.positions[0].torque[name] == pytest.approx(value, rel=1e-6)
+
+
+def test_what_would_balance_a_differential_has_the_sign_of_its_key():
+    case = shipped("planetary/differential")
+    wrong = case.replace({"operating.external.right": "-480 N*m"})
+    with pytest.raises(Refused, match=r'external\.right = "-500 N\*m"'):
+        ls.solve(wrong)

@@ -9,7 +9,7 @@ power-cone programme; then it is refused with figures.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
@@ -29,7 +29,7 @@ from loadshare.solver import Iteration, Options, solve_scene
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.position import Known
-from loadshare.solver.runaway import runaway
+from loadshare.solver.runaway import balancing, runaway
 from loadshare.train.placed import standing
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
@@ -171,16 +171,33 @@ def _refuse_if_driven(scene: Scene) -> None:
     """Refuse a position whose load is shown to move something without end, and name what."""
     moves = runaway(scene)
     if moves:
+        first = next(iter(moves))
         floats = [g for g in scene.displacement if {f"gear {g} x", f"gear {g} y"} & {*moves}]
         also = f"; nothing limits the float of gear {', '.join(floats)}" if floats else ""
         turning = [g for g in scene.rotation if f"gear {g} rotation" in moves]
         if len(turning) == len(moves) > 1:
             named = f"{', '.join(turning[:_NAMED])}{', …' if len(turning) > _NAMED else ''}"
-            also = f"; gears {named} turn together: hold one (held = true) or give it a torque"
+            hint = _balancing_torque(scene, moves) or "hold one (held = true) or give it a torque"
+            also = f"; gears {named} turn together: {hint}"
         raise Refused(
-            f"position {scene.position}: nothing balances the load on {moves[0]}: no contact, "
+            f"position {scene.position}: nothing balances the load on {first}: no contact, "
             f"support or limit holds it{also}"
         )
+
+
+def _balancing_torque(scene: Scene, moves: Mapping[str, float]) -> str:
+    """Say what a given torque on one of the gears that turn would have to be, if one is given."""
+    for name in scene.train.external:
+        if name == scene.train.input or f"gear {name} rotation" not in moves:
+            continue
+        needed = balancing(scene, moves, name)
+        if needed is not None:
+            sign = -1.0 if scene.train.gears[name].ratio < 0.0 else 1.0
+            return (
+                f"their torques do not cancel, as they would with external.{name} = "
+                f'"{sign * needed:.8g} N*m"'
+            )
+    return ""
 
 
 def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
 import numpy as np
 
 from loadshare.scene.scene import Scene
 from loadshare.settings import PLACES
 
 
-def runaway(scene: Scene) -> tuple[str, ...]:
-    r"""Return the coordinates that the load moves without end; empty if something holds them all.
+def runaway(scene: Scene) -> dict[str, float]:
+    r"""Return what the load moves without end, with its part of the move; empty if all is held.
 
-    Those on which it does work come first. Of all moves d that no contact, spring or limit resists,
+    What it does work on comes first. Of all moves d that no contact, spring or limit resists,
     however far they lead,
 
     .. math:: \max_d f\cdot d \quad \text{s.t.}\; H d = 0,\; P d = 0,\; a_e\cdot d \le 0,\;
@@ -36,7 +40,23 @@ def runaway(scene: Scene) -> tuple[str, ...]:
         method="highs",
     )
     if found.status != 0 or found.fun is None or found.x is None or found.fun >= -PLACES.pushed:
-        return ()
+        return {}
     work = scene.load * found.x
     moving = np.flatnonzero(np.abs(found.x) > PLACES.named).tolist()
-    return tuple(scene.coordinates[k] for k in sorted(moving, key=lambda k: -float(work[k])))
+    moving.sort(key=lambda k: -float(work[k]))
+    return {scene.coordinates[k]: float(found.x[k]) for k in moving}
+
+
+def balancing(scene: Scene, moves: Mapping[str, float], gear: str) -> float | None:
+    """Return the torque [N·m] on a gear that turns at which nothing moves any more.
+
+    None if there is none, as where several things move by themselves.
+    """
+    index = {c: k for k, c in enumerate(scene.coordinates)}
+    work = math.fsum(float(scene.load[index[c]]) * d for c, d in moves.items())
+    change = -work / moves[f"gear {gear} rotation"]
+    load = scene.load.copy()
+    load[index[f"gear {gear} rotation"]] += change
+    if runaway(replace(scene, load=load)):
+        return None
+    return float(scene.torques[gear]) + change / scene.rotation[gear].rate
