@@ -209,6 +209,36 @@ def test_a_pinion_keeps_step_with_a_face_gear_and_a_spur_gear() -> None:
     assert apart(train.meshes["b-c"].phase, leading) < 1e-9
 
 
+def test_the_four_branches_of_the_seed_keep_step() -> None:
+    """Its teeth follow from three pinions; radii with seven digits miss whole numbers by 3e-4."""
+    teeth = {"gears.1.teeth": 20, "gears.4.teeth": 28, "gears.5.teeth": 28}
+    case = shipped("fgfbstts/from_geometry").replace({"operating.phases": "layout", **teeth})
+    train = build_train(case)
+    gears, turn = train.gears, 2.0 * math.pi
+    count = {name: round(gear.teeth or 0) for name, gear in gears.items()}
+    assert [count[n] for n in ("2", "3", "6", "7", "8", "9", "10")] == [113, 113, *[69] * 4, 232]
+    phase = {name: mesh.phase for name, mesh in train.meshes.items()}
+
+    def pitches(gear: str, one: str, other: str) -> float:
+        """Pitches of a gear by which its tooth has run on from one neighbour to another."""
+        ways = [gears[gear].plane @ (gears[n].centre - gears[gear].centre) for n in (one, other)]
+        angles = [math.atan2(y, x) for x, y in ways]
+        return -gears[gear].sense * count[gear] * (angles[1] - angles[0]) / turn
+
+    # Pinion 1 has its face gears above and below: half a revolution is ten of its pitches.
+    assert phase["1-2"] == phase["1-3"] == 0.0
+    # An idler's trailing flank meets its pinion, the leading one gear 10. The two ways round from
+    # gear 4 to gear 5 differ by 0.012 of a pitch: the places are rounded.
+    for pinion, idlers in (("4", "67"), ("5", "89")):
+        first, second = (phase[f"{pinion}-{i}"] for i in idlers)
+        assert apart(second - first, pitches(pinion, *idlers)) < 0.02
+        for i in idlers:
+            passed = phase[f"{i}-10"] - phase[f"{pinion}-{i}"]
+            assert apart(passed, 0.5 + pitches(i, pinion, "10")) < 1e-5
+    for i in "789":
+        assert apart(phase[f"{i}-10"] - phase["6-10"], pitches("10", "6", i)) < 0.02
+
+
 def test_a_phase_that_counts_and_does_not_follow_is_asked_for() -> None:
     """106.4 teeth follow from the radii of the face gear: no phase follows from these."""
     with pytest.raises(CaseError, match=r"the teeth of f are not known \(by their radii 106\.4"):

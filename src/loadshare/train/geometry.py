@@ -24,7 +24,7 @@ from loadshare.train.kinematics import Kinematics, settle
 from loadshare.train.layout import in_phase
 from loadshare.train.mesh import running_contact
 from loadshare.train.period import Period, period_of
-from loadshare.train.phases import WHOLE
+from loadshare.train.phases import is_whole
 from loadshare.train.pressed import turned_meshes
 
 
@@ -113,7 +113,7 @@ def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
     """
     meshes = {name: mesh.ends for name, mesh in case.meshes.items()}
     counts = {n: gears[n].teeth or 0.0 for ends in meshes.values() for n in ends}
-    unknown = [n for n, z in counts.items() if round(z) < 1 or abs(z - round(z)) > WHOLE * z]
+    unknown = [n for n, z in counts.items() if round(z) < 1 or not is_whole(z)]
     if unknown:
         hint = "The common period of all meshes follows from tooth numbers."
         raise CaseError(

@@ -24,8 +24,8 @@ import numpy as np
 
 from loadshare.train.gear import Gear
 
-WHOLE = 1e-6
-"""How far a number of teeth that follows from others may be from a whole one [-]."""
+WHOLE = 1e-2
+"""How far a number of teeth that follows from radii, which are rounded, may be from a whole one."""
 Both = tuple[float, float]
 """Phases of the drive and of the coast flank of a mesh."""
 MEETS = 0.02
