@@ -163,6 +163,29 @@ def test_the_teeth_of_a_face_gear_pass_its_pinions_one_after_the_other(
     assert apart(train.meshes["f-b"].phase, expected) < 1e-9
 
 
+def test_a_helical_pinion_meets_a_face_gear_in_the_middle_of_its_face() -> None:
+    """Wherever it is along its axis, and whether or not its face has a width."""
+    normal, helix = math.radians(20.0), math.radians(15.0)
+    pressed = math.atan(math.tan(normal) / math.cos(helix))
+    radius = 0.5 * 25 * 4.0 / math.cos(helix)
+    wide = {"gears.a.face_width": "40 mm", "gears.b.face_width": "40 mm"}
+    found = []
+    for more in ({}, wide):
+        changes: dict[str, object] = {f"gears.{n}.helix_angle": "15 deg" for n in "ab"}
+        changes |= {f'meshes."{m}".pressure_angle': f"{pressed!r} rad" for m in ("a-f", "f-b")}
+        # Its radii are those of 106 teeth.
+        acting = 1e-3 * 106 / 25 * radius * math.cos(pressed)
+        changes |= {"gears.f.inner_radius": f"{acting - 0.02!r} m"}
+        changes |= {"gears.f.outer_radius": f"{acting + 0.02!r} m"}
+        for name, angle in (("a", 0.0), ("b", 0.9)):
+            place = [170.0 * math.cos(angle), 170.0 * math.sin(angle), radius]
+            changes[f"gears.{name}.centre"] = [f"{x!r} mm" for x in place]
+        train = build_train(face_train(106, 0.0, 0.9, **changes, **more))
+        found.append(train.meshes["f-b"].phase)
+    assert found[0] == found[1]
+    assert apart(found[0], 0.5 - 106 * 0.9 / (2.0 * math.pi)) < 1e-9
+
+
 def test_a_pinion_keeps_step_with_a_face_gear_and_a_spur_gear() -> None:
     """The pinion b of a face gear drives a spur gear c at the angle 50° in its own plane."""
     place = [200.0, 70.0 * 2.0 * math.cos(math.radians(50.0)), 0.0]

@@ -105,9 +105,11 @@ def _twists(case: spec.Case, driver: Gear, driven: Gear) -> tuple[float, float]:
     """Angles [rad] by which teeth stand further in the middle of the common face (see `Meeting`).
 
     Where gears stand at different heights and one gives no face width, the other's face is the
-    common one; where neither does, its middle is halfway.
+    common one; where neither does, its middle is halfway. On a face gear it is the pinion's.
     """
     ends = driver, driven
+    if "face" in (driver.kind, driven.kind):
+        return 0.0, 0.0
     heights = [float(g.centre @ driver.axis) for g in ends]
     widths = [case.gears[g.name].face_width for g in ends]
     halves = [math.inf if w is None else 0.5 * w.si for w in widths]

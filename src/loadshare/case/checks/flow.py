@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
 from itertools import chain
 
 from loadshare.case.checks.names import carriers_in
@@ -12,6 +13,7 @@ from loadshare.case.power_flow import (
     against_the_names,
     backwards,
     from_the_other_end,
+    has_sets,
     reach,
     steps,
 )
@@ -63,12 +65,60 @@ def check_loaded_meshes(draft: Draft) -> Iterator[Problem]:
     ahead = reach([draft.operating.input, *external], taken)
     behind = reach([draft.operating.output, *external], backwards(taken))
     turned = _turned(draft)
-    for name, mesh in draft.meshes.items():
-        first, last = (mesh.driven, mesh.driver) if turned else (mesh.driver, mesh.driven)
-        if first not in ahead or last not in behind:
+    ends = {n: m.ends[::-1] if turned else m.ends for n, m in draft.meshes.items()}
+    back = set(_leading_back(draft, ends, taken, external))
+    for name, (first, last) in ends.items():
+        if first not in ahead or last not in behind or name in back:
             message = "carries no torque: it is on no path from the input to the output"
             hint = "Is it named driver-driven?"
             yield draft.problem(("meshes", name), message, hint=hint)
+
+
+def _leading_back(
+    draft: Draft, ends: Mapping[str, tuple[str, str]], taken: Steps, external: Collection[str]
+) -> Iterator[str]:
+    """Yield meshes with one flank that lead torque back to where it has come from.
+
+    Torque reaches their first gear only through their last one, or leaves the last one only through
+    the first. In a ring of meshes that can be: one branch of it is named from the output on.
+    """
+    operating = draft.operating
+    if operating is None or has_sets(draft.gears) or not _goes_round(draft):
+        return
+    sources, sinks = {operating.input, *external}, {operating.output, *external}
+    pairs = set(ends.values())
+    for name, (first, last) in ends.items():
+        twice = (last, first) in pairs
+        if twice or draft.meshes[name].given("backlash", "normal_backlash"):
+            continue
+        without_last = [step for step in taken if last not in step]
+        without_first = [step for step in taken if first not in step]
+        fed = first in reach(sources - {last}, without_last)
+        led = last in reach(sinks - {first}, backwards(without_first))
+        if not (fed and led):
+            yield name
+
+
+def _goes_round(draft: Draft) -> bool:
+    """Tell whether meshes, driver to driven, lead back to a gear or to another on its shaft."""
+    leader = {gear: gear for gear in draft.gears}
+
+    def leading(gear: str) -> str:
+        while leader[gear] != gear:
+            leader[gear] = gear = leader[leader[gear]]
+        return gear
+
+    for shaft in draft.shafts.values():
+        one, other = shaft.ends
+        leader[leading(one)] = leading(other)
+    follows: dict[str, set[str]] = {}
+    for mesh in draft.meshes.values():
+        follows.setdefault(leading(mesh.driven), set()).add(leading(mesh.driver))
+    try:
+        TopologicalSorter(follows).prepare()
+    except CycleError:
+        return True
+    return False
 
 
 def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:

@@ -1,0 +1,86 @@
+"""Meshes through which torque would lead back to where it has come from."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import loadshare as ls
+from loadshare.case import Case
+from loadshare.errors import CaseError
+
+X = (90.0**2 + 150.0**2 - 130.0**2) / 300.0
+Y = math.sqrt(90.0**2 - X**2)
+"""Where an idler is [mm], 90 mm from gear 1 and 130 mm from gear 2."""
+
+
+def base(teeth: int) -> str:
+    """Base radius of a gear of module 4 mm."""
+    return f"{2.0 * teeth * math.cos(math.radians(20.0))!r} mm"
+
+
+def two_idlers(meshes: dict[str, str], **mesh: str) -> Case:
+    """Gear 1 of 20 teeth and gear 2 of 40 with an idler of 25 teeth on either side."""
+    gears: dict[str, object] = {
+        "1": {"base_radius": base(20), "centre": ["0 mm", "0 mm"]},
+        "2": {"base_radius": base(40), "centre": ["150 mm", "0 mm"]},
+    }
+    for name, side in (("a", 1), ("b", -1)):
+        gears[name] = {
+            "base_radius": base(25),
+            "centre": [f"{X!r} mm", f"{side * Y!r} mm"],
+        }
+    return Case(
+        operating={"input": "1", "output": "2", "torque": "100 N*m"},
+        gears=gears,
+        meshes={name: {"stiffness": k, **mesh} for name, k in meshes.items()},
+    )
+
+
+# Stiffnesses at the drivers; the same along the line of action whichever gear drives.
+ALONG = {"1-a": "1e6 N*m/rad", "a-2": "1e6 N*m/rad"}
+RIGHT = {**ALONG, "1-b": "1e6 N*m/rad", "b-2": "1e6 N*m/rad"}
+BACK = {**ALONG, "b-1": "1.5625e6 N*m/rad", "2-b": "2.56e6 N*m/rad"}
+
+
+def test_a_branch_that_is_named_from_the_output_on_is_refused():
+    """With one flank for each mesh it would carry nothing, and the other branch everything."""
+    with pytest.raises(CaseError) as caught:
+        two_idlers(BACK)
+    lines = str(caught.value).splitlines()
+    assert len(lines) == 2
+    for name, line in zip(("b-1", "2-b"), lines, strict=True):
+        assert f'meshes."{name}": carries no torque' in line
+        assert "Is it named driver-driven?" in line
+
+
+def test_with_both_flanks_a_branch_carries_under_either_name():
+    expected = ls.solve(two_idlers(RIGHT)).positions[0].torque
+    assert expected["1-a"] == pytest.approx(50.0, rel=1e-9)
+    found = ls.solve(two_idlers(BACK, backlash="1 nm")).positions[0].torque
+    assert found["1-a"] == pytest.approx(50.0, rel=1e-3)
+    assert abs(found["b-1"]) == pytest.approx(50.0 * 25 / 20, rel=1e-3)
+
+
+@pytest.mark.parametrize(("torque", "clocking"), [("100 N*m", "-1 mrad"), ("-100 N*m", "1 mrad")])
+def test_power_may_go_round_over_shafts(torque, clocking):
+    """A rig in which two pairs of gears brace one another by how their shaft is clocked."""
+    wheel = {"module": "4 mm"}
+    case = Case(
+        operating={"input": "A", "output": "B", "torque": torque},
+        gears={
+            "A": {"teeth": 20, "centre": ["0 mm", "0 mm", "0 mm"], **wheel},
+            "B": {"teeth": 40, "centre": ["120 mm", "0 mm", "0 mm"], **wheel},
+            "C": {"teeth": 40, "centre": ["120 mm", "0 mm", "200 mm"], **wheel},
+            "D": {"teeth": 20, "centre": ["0 mm", "0 mm", "200 mm"], **wheel},
+        },
+        meshes={"A-B": {"stiffness": "1e6 N*m/rad"}, "C-D": {"stiffness": "4e6 N*m/rad"}},
+        shafts={
+            "B-C": {"stiffness": "1e5 N*m/rad", "clocking": clocking},
+            "D-A": {"stiffness": "1e5 N*m/rad"},
+        },
+    )
+    found = ls.solve(case).positions[0].torque
+    # The ratio of both pairs is 1 : 2, so that no torque but that of the clocking goes round.
+    assert abs(found["C-D"]) > 1.0
