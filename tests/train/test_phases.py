@@ -260,6 +260,36 @@ def test_the_four_branches_of_the_seed_keep_step() -> None:
         assert apart(phase[f"{i}-10"] - phase["6-10"], pitches("10", "6", i)) < 0.02
 
 
+def between_two_face_gears(pitches: float) -> Case:
+    """Pinions a and b between face gears f and g of 106 teeth, b as many half pitches from a."""
+    angle = 0.9 // (math.pi / 106.0) * math.pi / 106.0 + pitches * math.pi / 106.0
+    case = face_train(106, 0.0, angle)
+    law = {"pressure_angle": "20 deg", "stiffness": "1e6 N*m/rad"}
+    gears = dict(case.gears)
+    other: Any = {"type": "face", "teeth": 106, "centre": ["0 mm", "0 mm", "100 mm"]}
+    gears["g"] = other | {"inner_radius": "180 mm", "outer_radius": "220 mm"}
+    operating: Any = {"input": "a", "output": "b", "torque": "1 N*m", "phases": "layout"}
+    meshes = dict.fromkeys(("a-f", "a-g", "f-b", "g-b"), law)
+    return Case(operating=operating, gears=gears, meshes=meshes)
+
+
+def test_face_gears_whose_teeth_do_not_meet_are_reported_with_the_angles_that_fit() -> None:
+    """As b moves on by half a pitch of f, g shifts against it by a whole one."""
+    for fitting in (0.0, 1.0, 2.0):
+        build_train(between_two_face_gears(fitting))
+    with pytest.raises(CaseError) as caught:
+        build_train(between_two_face_gears(0.3))
+    message = str(caught.value)
+    assert "its teeth miss each other by 0.3 of a pitch" in message
+    assert "1.69811 deg apart" in message
+
+
+def test_a_pinion_whose_axis_misses_that_of_its_face_gear_is_refused() -> None:
+    with pytest.raises(CaseError, match=r"passes the face gear's axis at 30 mm: they do not meet"):
+        face_train(106, 0.0, 0.9, **{"gears.a.centre": ["200 mm", "30 mm", "50 mm"]})
+    face_train(106, 0.0, 0.9, **{"gears.a.centre": ["200 mm", "0.1 mm", "50 mm"]})
+
+
 def test_a_phase_that_counts_and_does_not_follow_is_asked_for() -> None:
     """106.4 teeth follow from the radii of the face gear: no phase follows from these."""
     with pytest.raises(CaseError, match=r"the teeth of f are not known \(by their radii 106\.4"):

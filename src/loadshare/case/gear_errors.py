@@ -57,7 +57,8 @@ class Errors(Element):
         ]
         | None
     ) = None
-    """Fixed offset of the centre: components, or size and direction [length].
+    """Fixed offset of the centre [length]: components along x, y and z, or size and direction in
+    the gear's plane.
 
     Fixed in the housing; that of a planet is fixed on its carrier.
     """

@@ -43,13 +43,22 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
     problems = [
         _misfit_problem(case, pairs, m)
         for m in misfits
-        if all(case.gears[g].tooth is not None for g in case.meshes[m.mesh].ends)
+        if all(_is_complete(case, gear) for gear in case.meshes[m.mesh].ends)
     ]
     problems += _phases_against(case, found)
     problems += _phases_unknown(case, pairs, found)
     if problems:
         raise CaseError(problems)
     return {n: replace(p, phases=found.get(n, p.phases)) for n, p in pairs.items()}
+
+
+def _is_complete(case: spec.Case, name: str) -> bool:
+    """Whether all is given that tells where the teeth of a gear are; its pinions cut a face gear's.
+
+    A gear of a few figures may be meant for an example only.
+    """
+    gear = case.gears[name]
+    return gear.tooth is not None or (gear.type == "face" and gear.teeth is not None)
 
 
 def _halves(case: spec.Case, pair: Pair, pairs: Mapping[str, Pair]) -> tuple[float, float]:

@@ -194,8 +194,8 @@ def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[P
     pinion, face = sorted(
         (draft.gears[mesh.driver], draft.gears[mesh.driven]), key=lambda gear: gear.type == "face"
     )
-    axis = axis_of(face)
-    if abs(dot(axis, axis_of(pinion))) > SQUARE:
+    axis, along = axis_of(face), axis_of(pinion)
+    if abs(dot(axis, along)) > SQUARE:
         yield draft.problem(
             ("meshes", name), "the axes of a face gear and its pinion are not square"
         )
@@ -203,6 +203,11 @@ def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[P
     if mesh.pressure_angle is None:
         hint = "Only that of two cylindrical gears follows from their base radii."
         yield draft.problem(("meshes", name, "pressure_angle"), "is missing", ANGLE.allowed, hint)
+        return
+    past = math.sqrt(max(dot(offset, offset) - dot(offset, axis) ** 2 - dot(offset, along) ** 2, 0))
+    if past > TOLERANCE * face.acting_radius:
+        what = f"the pinion's axis passes the face gear's axis at {mm(past)}: they do not meet"
+        yield draft.problem(("meshes", name), what, hint="Correct the centres or the axes.")
         return
     radius = pinion.acting_radius
     where = f"the pinion's base radius {mm(radius)} does"
