@@ -80,7 +80,10 @@ class Bound:
             names = [f"{gear.name} {axis}" for axis in "xy"]
             if gear.is_tilted and names[0] in place:
                 # Displacements are given along another frame than that of the coordinates.
-                along = np.abs(gear.plane @ gear.frame.T) @ [place[name] for name in names]
+                weights, errors = np.abs(gear.plane @ gear.frame.T), [place[n] for n in names]
+                # What has no bound along a direction that has no part in another is none there.
+                parts = np.multiply(weights, errors, where=weights > 0.0, out=np.zeros((2, 2)))
+                along = parts.sum(axis=1)
                 place |= dict(zip(names, along.tolist(), strict=True))
         relative = float(found.relative[row])
         return cls(relative, torque, forces, place)
