@@ -96,6 +96,7 @@ def settle(
     state = _start(problem)
     warm: Inner | None = None
     history: list[Iteration] = []
+    last: Array | None = None
     while len(history) < options.max_iterations and not _stuck(history):
         laws = {r.name: r.law(state.torques[r.name], state.x) for r in problem.radials}
         compliances = _compliances(problem, state.forces, method)
@@ -128,11 +129,34 @@ def settle(
                 tuple(history),
             )
         x = state.x + step * (x - state.x)
+        if face_misfit >= max(law_misfit, friction_misfit):
+            x, last = _further(problem, state.x, x, last)
         state = _State(x, _next_forces(problem, plan, state.forces, forces, x, method), torques)
     raise Unsolved(
         f"the {method} loop did not settle in {len(history)} passes "
         f"(last misfit {history[-1].misfit:.2e})"
     )
+
+
+def _further(
+    problem: ContactProblem, before: Array, x: Array, last: Array | None
+) -> tuple[Array, Array | None]:
+    """Return where faces are renewed next, and the move along the arcs for the pass after it.
+
+    Where arcs take nearly all stiffness across them, each pass along them is a fixed part of the
+    one before, and nearly as long: what is left of such passes is a geometric series.
+    """
+    move = np.concatenate([[0.0], *(arc.relative @ (x - before) for arc in problem.arcs)])
+    if last is None:
+        return x, move
+    lengths, along = float(np.linalg.norm(move) * np.linalg.norm(last)), float(move @ last)
+    if along <= CONTACT.aligned * lengths:
+        return x, move
+    ratio = along / float(last @ last)
+    if not CONTACT.slow < ratio < 1.0:
+        return x, move
+    ahead = min(ratio / (1.0 - ratio), CONTACT.ahead)
+    return x + ahead * (x - before), None
 
 
 def _start(problem: ContactProblem) -> _State:

@@ -58,6 +58,13 @@ class Contact(NamedTuple):
     above."""
     stuck: int = 30
     """Passes that do not halve the misfit, after which a loop goes around without end."""
+    aligned: float = 0.999
+    """Cosine of two moves along arcs from which on one continues the other."""
+    slow: float = 0.5
+    """Part of the last move along arcs from which on the rest is added up as a series: below, the
+    passes themselves arrive soon."""
+    ahead: float = 1e4
+    """Most moves that are added at once: a ratio this close to 1 is hardly known any better."""
     shrink: float = 0.1
     """An open flank's next tangent is taken at this fraction of its last force."""
     singular: float = 1e-12
