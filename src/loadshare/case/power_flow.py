@@ -40,12 +40,18 @@ def rides_on(gears: Mapping[str, Gear], *names: str) -> str | None:
     return next((carrier for carrier in riding if carrier), None)
 
 
-def reach(sources: Iterable[str], taken: Steps) -> set[str]:
-    """Return the gears that steps lead to, the sources among them."""
-    reached, fresh = set(sources), set(sources)
+def reach(sources: Iterable[str], taken: Steps, avoiding: str | None = None) -> set[str]:
+    """Return the gears that steps lead to, the sources among them, through all gears but one."""
+    ahead: dict[str, list[str]] = {}
+    for a, b in taken:
+        ahead.setdefault(a, []).append(b)
+    reached = {source for source in sources if source != avoiding}
+    fresh = [*reached]
     while fresh:
-        fresh = {b for a, b in taken if a in fresh and b not in reached}
-        reached |= fresh
+        for gear in ahead.get(fresh.pop(), ()):
+            if gear not in reached and gear != avoiding:
+                reached.add(gear)
+                fresh.append(gear)
     return reached
 
 

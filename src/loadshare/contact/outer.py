@@ -130,7 +130,7 @@ def settle(
             )
         x = state.x + step * (x - state.x)
         if face_misfit >= max(law_misfit, friction_misfit):
-            x, last = _further(problem, state.x, x, last)
+            x, last = _extrapolated(problem, state.x, x, last)
         state = _State(x, _next_forces(problem, plan, state.forces, forces, x, method), torques)
     raise Unsolved(
         f"the {method} loop did not settle in {len(history)} passes "
@@ -138,7 +138,7 @@ def settle(
     )
 
 
-def _further(
+def _extrapolated(
     problem: ContactProblem, before: Array, x: Array, last: Array | None
 ) -> tuple[Array, Array | None]:
     """Return where faces are renewed next, and the move along the arcs for the pass after it.

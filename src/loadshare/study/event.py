@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import switch_names
+from loadshare.study.follow.changes import Change
 from loadshare.study.follow.line import Line
-from loadshare.study.follow.search import Change
 
 _STATES = {
     at.OPEN: "slip",

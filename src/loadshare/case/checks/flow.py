@@ -86,16 +86,14 @@ def _leading_back(
     if operating is None or has_sets(draft.gears) or not _goes_round(draft):
         return
     sources, sinks = {operating.input, *external}, {operating.output, *external}
+    back = backwards(taken)
     pairs = set(ends.values())
     for name, (first, last) in ends.items():
         twice = (last, first) in pairs
         if twice or draft.meshes[name].given("backlash", "normal_backlash"):
             continue
-        without_last = [step for step in taken if last not in step]
-        without_first = [step for step in taken if first not in step]
-        fed = first in reach(sources - {last}, without_last)
-        led = last in reach(sinks - {first}, backwards(without_first))
-        if not (fed and led):
+        fed = first in reach(sources, taken, avoiding=last)
+        if not fed or last not in reach(sinks, back, avoiding=first):
             yield name
 
 

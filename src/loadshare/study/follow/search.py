@@ -8,8 +8,6 @@ which it is named. Nothing depends on where the range ends.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,6 +18,7 @@ from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import States, WorkingSet, read_pieces
 from loadshare.study.follow.centre import centred
+from loadshare.study.follow.changes import Change, Gap, Point, Stretch, distinct, merged
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
 from loadshare.study.follow.line import Line, Missing, Solved
@@ -31,61 +30,6 @@ from loadshare.study.follow.zero import first_zero
 
 UNREAD = "the active set of its equilibrium could not be identified"
 """Why a certified answer is no point."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Point:
-    """A certified point on a set.
-
-    Attributes
-    ----------
-    value : float
-    active : WorkingSet
-    z : ndarray
-    worst : float
-        Worst scaled residual of its certificate.
-    """
-
-    value: float
-    active: WorkingSet
-    z: Array
-    worst: float
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """A change of the set.
-
-    Attributes
-    ----------
-    value : float
-    before, after : WorkingSet
-    confirmed : bool
-        Whether both sides were proved up to it.
-    worst : float
-        Larger one of the worst residuals on both sides.
-    apart : float
-        Distance of the certified points on both sides.
-    """
-
-    value: float
-    before: WorkingSet
-    after: WorkingSet
-    confirmed: bool
-    worst: float
-    apart: float
-
-
-Stretch = tuple[Point | Missing, Point | Missing]
-
-
-@dataclass(frozen=True, slots=True)
-class Gap:
-    """A stretch on which nothing was proved, and why."""
-
-    first: Point | Missing
-    last: Point | Missing
-    why: str
 
 
 class Search:
@@ -138,7 +82,7 @@ class Search:
             stretches = self._cut(left)
         self.gaps = merged(self.gaps)
         self.changes += [c for c in map(self._unconfirmed, self.gaps) if c is not None]
-        self.changes = self._one_event(sorted(self.changes, key=lambda c: c.value))
+        self.changes = distinct(self.changes, self.least)
 
     # --- Points ---------------------------------------------------------------------------------
 
@@ -245,26 +189,6 @@ class Search:
             value = 0.0
         apart = max(value - first.value, last.value - value)
         return Change(value, first.active, last.active, False, max(first.worst, last.worst), apart)
-
-    def _one_event(self, changes: list[Change]) -> list[Change]:
-        """Join changes, by value, that are too close to each other to be two events."""
-        found: list[Change] = []
-        for change in changes:
-            last = found[-1] if found else change
-            near = max(FOLLOW.resolved * abs(change.value), self.least)
-            apart = last is change or change.value - last.value > near
-            if apart or last.before.states == change.after.states:
-                found.append(change)
-                continue
-            found[-1] = Change(
-                min(last.value, change.value, key=abs),
-                last.before,
-                change.after,
-                last.confirmed and change.confirmed,
-                max(last.worst, change.worst),
-                max(last.apart, change.apart),
-            )
-        return found
 
     def _prove(self, equations: Equations, ends: list[tuple[float, float, Array, Array]]) -> Proof:
         """Try to prove that a set holds on stretches, given by values and z at both ends."""
@@ -435,14 +359,3 @@ class Search:
         for (first, last), some in zip(stretches, cuts, strict=True):
             found += pairwise([first, *(next(points) for _ in some), last])
         return found
-
-
-def merged(gaps: Iterable[Gap]) -> list[Gap]:
-    """Join gaps that touch."""
-    found: list[Gap] = []
-    for gap in sorted(gaps, key=lambda g: g.first.value):
-        if found and gap.first.value <= found[-1].last.value:
-            found[-1] = replace(found[-1], last=gap.last)
-        else:
-            found.append(gap)
-    return found
