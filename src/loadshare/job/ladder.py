@@ -194,7 +194,7 @@ def _balancing_torque(scene: Scene, moves: Mapping[str, float]) -> str:
         if needed is not None:
             sign = -1.0 if scene.train.gears[name].ratio < 0.0 else 1.0
             return (
-                f"their torques do not cancel, as they would with external.{name} = "
+                f"their torques do not cancel, as they would with operating.external.{name} = "
                 f'"{sign * needed:.8g} N*m"'
             )
     return ""
