@@ -24,6 +24,7 @@ from loadshare.job.allocation import keep_freed_memory
 from loadshare.job.block import Block, solve_block
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
+from loadshare.job.one_thread import one_thread
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.recent import Recent
 from loadshare.job.table import KEPT, Table, checked
@@ -78,16 +79,17 @@ def solve_blocks(
         samples = group.take(part)
         return solve_block(machine, rows[part], samples, wanted, tolerance, solver, least_norm)
 
-    if workers == 1 or len(tasks) == 1:
-        yield from map(work, tasks)
-        return
-    with ThreadPoolExecutor(workers) as pool:
-        queue = iter(tasks)
-        running = [pool.submit(work, task) for task in islice(queue, workers + 1)]
-        while running:
-            block = running.pop(0).result()
-            running += [pool.submit(work, task) for task in islice(queue, 1)]
-            yield block
+    with one_thread():
+        if workers == 1 or len(tasks) == 1:
+            yield from map(work, tasks)
+            return
+        with ThreadPoolExecutor(workers) as pool:
+            queue = iter(tasks)
+            running = [pool.submit(work, task) for task in islice(queue, workers + 1)]
+            while running:
+                block = running.pop(0).result()
+                running += [pool.submit(work, task) for task in islice(queue, 1)]
+                yield block
 
 
 _recent: Recent[Machine] = Recent()

@@ -16,7 +16,7 @@ from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import RESIDUALS, pushed_by_rings, scaled_residuals
 from loadshare.certify.state import ClaimedState
 from loadshare.certify.validity import measuring
-from loadshare.results.share import MeshTorques, carries, shares
+from loadshare.results.share import MeshTorques, carries, mesh_torques, shares
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Range
@@ -72,29 +72,18 @@ class Figures:
         return np.asarray(columns_of(self.train).over_meshes(figures))
 
     @cached_property
-    def _levers(self) -> Array:
-        """Torque of every flank on the gear that its mesh names first, per force [m], (flanks,)."""
-        return np.array([mesh.lever(drive) for mesh, drive in columns_of(self.train).all_flanks])
+    def _torques(self) -> MeshTorques:
+        return mesh_torques(self.train, self.answers.flank_force)
 
-    @cached_property
-    def _flank_torque(self) -> Array:
-        """Torque of every flank on the gear that its mesh names first [N·m], (S, flanks)."""
-        return np.asarray(self.answers.flank_force * self._levers)
-
-    @cached_property
+    @property
     def torque(self) -> Array:
         """Torque on the driver, drive less coast [N·m], (S, meshes)."""
-        return self._over_meshes(self._flank_torque)
+        return self._torques.net
 
     @cached_property
     def coast_torque(self) -> Array:
         """Part on the coast flank [N·m], (S, meshes)."""
-        return self._over_meshes(np.maximum(-self._flank_torque, 0.0))
-
-    @property
-    def _torques(self) -> MeshTorques:
-        meshes = tuple(self.train.meshes)
-        return MeshTorques(meshes, self.torque, self.answers.flank_force, self._levers)
+        return self._over_meshes(np.maximum(-self._torques.flanks, 0.0))
 
     @cached_property
     def share(self) -> Array:

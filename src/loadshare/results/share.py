@@ -29,21 +29,18 @@ class MeshTorques:
     meshes : tuple of str
     net : ndarray, shape (S, meshes)
         Drive flank less coast flank [N·m].
-    force : ndarray, shape (S, flanks)
-        [N].
-    lever : ndarray, shape (flanks,)
-        Net torque per force [m].
+    flanks : ndarray, shape (S, flanks)
+        Net torque of each [N·m].
     """
 
     meshes: tuple[str, ...]
     net: Array
-    force: Array
-    lever: Array
+    flanks: Array
 
     @cached_property
     def largest(self) -> Array:
         """Largest torque on any flank [N·m], (S,)."""
-        return np.asarray((np.abs(self.force) * np.abs(self.lever)).max(axis=1, initial=0.0))
+        return np.asarray(np.abs(self.flanks).max(axis=1, initial=0.0))
 
 
 def flank_torques(train: Train, flank_force: Mapping[str, float]) -> dict[str, list[float]]:
@@ -112,14 +109,12 @@ def largest(
 
 def mesh_torques(train: Train, force: Array) -> MeshTorques:
     """Return the torques that forces of flanks, (S, flanks) [N], exert on the drivers."""
-    meshes = train.meshes
-    lever = np.zeros((force.shape[1], len(meshes)))
-    flank = 0
-    for m, mesh in enumerate(meshes.values()):
-        for drive in mesh.flanks:
-            lever[flank, m] = mesh.lever(drive)
-            flank += 1
-    return MeshTorques(tuple(meshes), force @ lever, force, lever.sum(axis=1))
+    lever = np.array([m.lever(d) for m in train.meshes.values() for d in m.flanks])
+    flanks = np.array([len(mesh.flanks) for mesh in train.meshes.values()])
+    torque, last = force * lever, flanks.cumsum() - 1
+    net = torque[:, last]
+    net[:, flanks == 2] += torque[:, last[flanks == 2] - 1]
+    return MeshTorques(tuple(train.meshes), net, torque)
 
 
 def shares(torques: MeshTorques, stages: Iterable[Stage], pairs: bool = False) -> Array:

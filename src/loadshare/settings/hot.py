@@ -121,6 +121,12 @@ class Statics(NamedTuple):
     """Singular values of directions below this, relative to the largest, count as zero."""
     nothing: float = 1e-14
     """Force of an element, over that of the one which names a redundant, that is round-off."""
+    many: int = 8
+    """Redundants in one element from which on they are coupled in a chain instead: fewer take no
+    longer as they are."""
+    uneven: float = 1.0
+    """Logarithm of the ratio of their forces there up to which that is done: next to nothing is
+    lost in the differences."""
 
 
 class Exchange(NamedTuple):

@@ -24,7 +24,8 @@ from loadshare.solver.hot.kernel.conclude import conclude
 from loadshare.solver.hot.kernel.fill import fill
 from loadshare.solver.hot.kernel.options import bare, cached
 from loadshare.solver.hot.kernel.passes import give_up, run
-from loadshare.solver.hot.kernel.set_arrays import Rows, Samples, States, packed_sets, unpacked
+from loadshare.solver.hot.kernel.redundants import Rows
+from loadshare.solver.hot.kernel.set_arrays import Samples, States, packed_sets, unpacked
 from loadshare.solver.hot.kernel.work import Given, work_for
 
 UNDECIDED = -1

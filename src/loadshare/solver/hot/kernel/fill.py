@@ -79,6 +79,8 @@ def _statics(s, work, width):  # type: ignore[no-untyped-def]
             statics[e, m] = 0.0
         for k in range(s.loaded.shape[0]):
             per_load = s.particular_springs[s.loaded[k], e]
+            if per_load == 0.0:
+                continue
             for m in range(width):
                 statics[e, m] += per_load * weight[k, m]
         compliance, column = s.compliances[e], s.springs[e]
@@ -94,6 +96,8 @@ def _statics(s, work, width):  # type: ignore[no-untyped-def]
             work.tangent[e, m] = s.bending[0 if one_bending else samples[m], column]
         for k in range(s.loaded.shape[0]):
             per_load = s.particular[s.loaded[k], e]
+            if per_load == 0.0:
+                continue
             for m in range(width):
                 work.fixed[e, m] += per_load * weight[k, m]
 
@@ -163,7 +167,7 @@ def _radials(s, work, width, xs, forces):  # type: ignore[no-untyped-def]
 @bare
 def _linear(s, work, width):  # type: ignore[no-untyped-def]
     """Redundants of none, and what linear elements add to their matrix and to their gaps."""
-    r, renewed = s.redundant.shape[1], s.first_row + s.powers + s.tables_of.shape[0]
+    renewed = s.first_row + s.powers + s.tables_of.shape[0]
     clear(work.z, width)
     clear(work.base, width)
     add_product(work.base, s.across_springs, work.spring[STILL], width)
@@ -171,9 +175,7 @@ def _linear(s, work, width):  # type: ignore[no-untyped-def]
     add_product(work.still, s.moved_springs, work.spring[STILL], width)
     if s.inverse.shape[0] > 0:
         return
-    for c in range(r):
-        for d in range(c + 1):
-            for m in range(width):
-                work.linear[c, d, m] = s.springs_matrix[c, d]
-        weights = s.products_still[c * (c + 1) // 2 : (c + 1) * (c + 2) // 2]
-        add_product(work.linear[c, : c + 1], weights, work.tangent[renewed:], width)
+    for entry in range(work.linear.shape[0]):
+        for m in range(width):
+            work.linear[entry, m] = s.springs_entries[entry]
+    add_product(work.linear, s.products_still, work.tangent[renewed:], width)

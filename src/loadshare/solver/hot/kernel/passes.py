@@ -28,17 +28,23 @@ from loadshare.solver.hot.kernel.work import (
 
 @bare
 def _matrix(s, work, width):  # type: ignore[no-untyped-def]
-    """Lower triangle of the redundants' matrix, with a border for every slip."""
+    """Lower triangle of the redundants' matrix where it or its factor is not zero, with borders.
+
+    A border for every slip.
+    """
     r, matrix, tangent = s.redundant.shape[1], work.matrix, work.tangent
     entry = 0
     for c in range(r):
-        for d in range(c + 1):
+        for k in range(s.below_starts[c] - 1, s.below_starts[c + 1]):
+            d = s.below[k] if k >= s.below_starts[c] else c
+            if d >= r:
+                break
             for m in range(width):
-                matrix[c, d, m] = work.linear[c, d, m]
+                matrix[d, c, m] = work.linear[entry, m]
             for i in range(s.product_starts[entry], s.product_starts[entry + 1]):
                 weight, e = s.products[i], s.product_contacts[i]
                 for m in range(width):
-                    matrix[c, d, m] += weight * tangent[e, m]
+                    matrix[d, c, m] += weight * tangent[e, m]
             entry += 1
     for t in range(s.turning_radials.shape[0]):
         law = work.radial[t]
@@ -46,9 +52,12 @@ def _matrix(s, work, width):  # type: ignore[no-untyped-def]
         for m in range(width):
             excess[m] = law[INNER, m] - law[OUTER, m]
         for c in range(r):
-            for d in range(c + 1):
+            for k in range(s.below_starts[c] - 1, s.below_starts[c + 1]):
+                d = s.below[k] if k >= s.below_starts[c] else c
+                if d >= r:
+                    break
                 for m in range(width):
-                    matrix[c, d, m] += excess[m] * work.along[t, c, m] * work.along[t, d, m]
+                    matrix[d, c, m] += excess[m] * work.along[t, c, m] * work.along[t, d, m]
         border = s.borders[t]
         if border >= 0:
             p, q = work.force[2 * t], work.force[2 * t + 1]
@@ -103,8 +112,8 @@ def _pass(s, work, width):  # type: ignore[no-untyped-def]
         add_product(right, s.inverse, work.matrix[0], width)
     else:
         _matrix(s, work, width)
-        size = work.right.shape[0]
-        solve(work.matrix, work.right, r, size, width, work.singular, work.one, work.two)
+        factor = s.below_starts, s.below
+        solve(work.matrix, work.right, factor, r, width, work.singular, work.one, work.two)
         for t in range(pairs):
             if s.borders[t] >= 0:
                 for m in range(width):

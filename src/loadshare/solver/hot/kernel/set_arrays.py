@@ -20,11 +20,10 @@ from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
-from loadshare.settings import STATICS
 from loadshare.solver.hot.contact_states import OPEN, PINNED, SLIP, STICK
 from loadshare.solver.hot.kernel.options import allocating
+from loadshare.solver.hot.kernel.redundants import Rows, eliminated, local
 
-Rows = NDArray[np.intp]
 States = NDArray[np.int8]
 
 
@@ -62,7 +61,8 @@ class SetArrays(NamedTuple):
     inverse: Array  # (r, r) of the redundants' matrix where it never changes, else (0, 0)
     springs_matrix: Array  # (r, r): what the springs add to the redundants' matrix
     products: Array  # of two redundants at a contact that is renewed, where they are not zero
-    products_still: Array  # (r (r + 1) / 2, c − q): at the others
+    products_still: Array  # (matrix entries, c − q): at the others
+    springs_entries: Array  # (matrix entries,): what the springs add to each
     turned: Array  # (c, u): forces per turned load
     turned_springs: Array  # (s, u)
     turned_gap: Array  # (r, u): what the springs open per turned load
@@ -91,7 +91,9 @@ class SetArrays(NamedTuple):
     turning_radials: Rows  # (t,): numbers of the radial elements whose direction turns
     borders: Rows  # (t,): number of the border of each that slips, −1 for the others
     tables_of: Rows  # numbers of the tables of the flanks that have one
-    product_starts: Rows  # where the products of each entry of the lower triangle begin
+    below_starts: Rows  # (r and borders + 1,): where the rows of each column of the factor begin
+    below: Rows  # rows below the diagonal that are not zero, those of the borders last
+    product_starts: Rows  # where the products of each matrix entry begin
     product_contacts: Rows  # the contact of each
     powers: int  # flanks with a power law
     first_row: int  # first contact that is a row, 2t
@@ -186,19 +188,19 @@ def unpacked(floats, rows, states, samples):  # type: ignore[no-untyped-def]
         _table(floats, rows[21:]),
         _table(floats, rows[24:])[0],
         _table(floats, rows[27:]),
-        _table(floats, rows[30:]),
+        _table(floats, rows[30:])[0],
         _table(floats, rows[33:]),
         _table(floats, rows[36:]),
         _table(floats, rows[39:]),
         _table(floats, rows[42:]),
         _table(floats, rows[45:]),
         _table(floats, rows[48:]),
-        _table(floats, rows[51:])[0],
-        _table(floats, rows[54:]),
-        _table(floats, rows[57:])[0],
-        _table(floats, rows[60:]),
+        _table(floats, rows[51:]),
+        _table(floats, rows[54:])[0],
+        _table(floats, rows[57:]),
+        _table(floats, rows[60:])[0],
         _table(floats, rows[63:]),
-        _list(rows, rows[66:]),
+        _table(floats, rows[66:]),
         _list(rows, rows[69:]),
         _list(rows, rows[72:]),
         _list(rows, rows[75:]),
@@ -216,12 +218,15 @@ def unpacked(floats, rows, states, samples):  # type: ignore[no-untyped-def]
         _list(rows, rows[111:]),
         _list(rows, rows[114:]),
         _list(rows, rows[117:]),
-        rows[120],
-        rows[121],
-        rows[122],
-        rows[123],
-        rows[124],
-        rows[125],
+        _list(rows, rows[120:]),
+        _list(rows, rows[123:]),
+        _list(rows, rows[126:]),
+        rows[129],
+        rows[130],
+        rows[131],
+        rows[132],
+        rows[133],
+        rows[134],
         states,
         samples.follows,
         samples.loaded,
@@ -248,7 +253,12 @@ def _structure(
     columns, particular, n = basis.columns[order], basis.particular[order], basis.redundant[order]
     renewed = turned + powers + tables
     inverse = np.zeros((0, 0)) if renewed else _inverse(structure, loading, columns, n, states)
-    n = n if len(inverse) else _local(n)
+    turning_radials = (columns[springs : springs + turned : 2] - first_radial) // 2
+    slips = states[structure.rows + turning_radials] == SLIP
+    if n.shape[1] and not len(inverse):
+        particular, n = (table[order] for table in local(basis))
+    by_fill, factor = eliminated(n, n[springs : springs + turned], int(slips.sum()))
+    n = np.ascontiguousarray(n[:, by_fill])
     contacts, row_end = columns[springs:], renewed + rows
     acting = np.flatnonzero((contacts >= first_arc) & (contacts < first_radial))
     arcs = contacts[acting] - first_arc
@@ -263,14 +273,13 @@ def _structure(
     radial_at = [
         at.get(structure.radial_column(j), -1) for j in range(structure.switches - structure.rows)
     ]
-    turning_radials = (contacts[0:turned:2] - first_radial) // 2
-    slips = states[structure.rows + turning_radials] == SLIP
     compliances = np.array(loading.bending[0, columns[:springs]])
     held, of_springs = particular[:springs], n[:springs]
     yields = held[:, turning].T * compliances
     touching = n[springs:]
-    lower = np.tril_indices(n.shape[1])
-    products = (touching[:, lower[0]] * touching[:, lower[1]]).T
+    by_springs = of_springs.T * compliances @ of_springs
+    entries_at = factor.entries(int(slips.sum()))
+    products = (touching[:, entries_at[0]] * touching[:, entries_at[1]]).T
     product_starts, product_contacts, product_values = _sparse(products[:, :renewed])
     arrays = [
         particular[springs:].T,
@@ -280,9 +289,10 @@ def _structure(
         touching.T,
         of_springs.T,
         inverse,
-        of_springs.T * compliances @ of_springs,
+        by_springs,
         product_values[None],
         products[:, renewed:],
+        by_springs[entries_at][None],
         particular[springs:, turning],
         held[:, turning],
         (yields @ of_springs).T,
@@ -313,6 +323,8 @@ def _structure(
         turning_radials,
         np.where(slips, np.cumsum(slips) - 1, -1),
         loading.tabulated[contacts[turned + powers : renewed]],
+        factor.starts,
+        factor.below,
         product_starts,
         product_contacts,
     ]
@@ -342,22 +354,6 @@ def _order(
         4,
     )
     return np.argsort(sort, kind="stable"), tuple(int((sort == k).sum()) for k in range(5))
-
-
-def _local(n: Array) -> Array:
-    """The same space as of redundants N (k, r), each of them the force of one element.
-
-    It acts in few others, so that most products of two are zero, however many branches there are;
-    elements are chosen that leave the space as well conditioned as can be had so.
-    """
-    if not n.shape[1]:
-        return n
-    from scipy.linalg import qr
-
-    _, _, order = qr(n.T, mode="economic", pivoting=True)
-    local = np.linalg.solve(n[order[: n.shape[1]]].T, n.T).T
-    local[np.abs(local) < STATICS.nothing] = 0.0
-    return np.ascontiguousarray(local / np.sqrt((local * local).sum(axis=0)))
 
 
 def _inverse(

@@ -10,7 +10,8 @@ from loadshare.solver.hot.kernel.options import bare
 def add_product(total, weights, table, width):  # type: ignore[no-untyped-def]
     """Add weights (p, q) times the first q rows of a table, (·, width), to total (p, width).
 
-    Two rows and four terms at a time, so that a term is fetched once for two rows.
+    Two rows and four terms at a time, so that a term is fetched once for two rows. Where all of
+    these weights are zero, nothing is added.
     """
     p, q = weights.shape
     rows, terms = p - p % 2, q - q % 4
@@ -19,18 +20,24 @@ def add_product(total, weights, table, width):  # type: ignore[no-untyped-def]
             a0, a1, a2, a3 = weights[o, e], weights[o, e + 1], weights[o, e + 2], weights[o, e + 3]
             b0, b1 = weights[o + 1, e], weights[o + 1, e + 1]
             b2, b3 = weights[o + 1, e + 2], weights[o + 1, e + 3]
+            if a0 == a1 == a2 == a3 == b0 == b1 == b2 == b3 == 0.0:
+                continue
             for m in range(width):
                 t0, t1, t2, t3 = table[e, m], table[e + 1, m], table[e + 2, m], table[e + 3, m]
                 total[o, m] += (a0 * t0 + a1 * t1) + (a2 * t2 + a3 * t3)
                 total[o + 1, m] += (b0 * t0 + b1 * t1) + (b2 * t2 + b3 * t3)
         for e in range(terms, q):
             a0, b0 = weights[o, e], weights[o + 1, e]
+            if a0 == b0 == 0.0:
+                continue
             for m in range(width):
                 total[o, m] += a0 * table[e, m]
                 total[o + 1, m] += b0 * table[e, m]
     for o in range(rows, p):
         for e in range(0, terms, 4):
             a0, a1, a2, a3 = weights[o, e], weights[o, e + 1], weights[o, e + 2], weights[o, e + 3]
+            if a0 == a1 == a2 == a3 == 0.0:
+                continue
             for m in range(width):
                 total[o, m] += (a0 * table[e, m] + a1 * table[e + 1, m]) + (
                     a2 * table[e + 2, m] + a3 * table[e + 3, m]
@@ -68,11 +75,14 @@ def approach(s, samples, column, x, width, total):  # type: ignore[no-untyped-de
 
 
 @bare
-def solve(matrix, right, definite, size, width, singular, largest, pivot):  # type: ignore[no-untyped-def]
+def solve(matrix, right, factor, definite, width, singular, largest, pivot):  # type: ignore[no-untyped-def]
     """Solve symmetric systems (size, size, width) in place, lower triangles given.
 
-    The first `definite` rows are positive definite, the others borders.
+    The first `definite` rows are positive definite, the others borders. Of each column only those
+    rows below the diagonal are looked at in which the factor is not zero (starts, rows).
     """
+    starts, below = factor
+    size = right.shape[0]
     for m in range(width):
         largest[m] = 0.0
     for c in range(size):
@@ -87,11 +97,12 @@ def solve(matrix, right, definite, size, width, singular, largest, pivot):  # ty
                 p = matrix[c, c, m]
                 singular[m] = singular[m] if -p * largest[m] > ABREAST.doubtful else 1.0
                 pivot[m] = 1.0 / p
-        for d in range(c + 1, size):
+        for k in range(starts[c], starts[c + 1]):
+            d = below[k]
             for m in range(width):
                 matrix[c, d, m] = matrix[d, c, m] * pivot[m]
-        for d in range(c + 1, size):
-            for e in range(c + 1, d + 1):
+            for i in range(starts[c], k + 1):
+                e = below[i]
                 for m in range(width):
                     matrix[d, e, m] -= matrix[d, c, m] * matrix[c, e, m]
             for m in range(width):
@@ -99,6 +110,7 @@ def solve(matrix, right, definite, size, width, singular, largest, pivot):  # ty
         for m in range(width):
             right[c, m] *= pivot[m]
     for c in range(size - 1, -1, -1):
-        for d in range(c + 1, size):
+        for k in range(starts[c], starts[c + 1]):
+            d = below[k]
             for m in range(width):
                 right[c, m] -= matrix[c, d, m] * right[d, m]

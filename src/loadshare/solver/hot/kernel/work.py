@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from loadshare.scene.scene import Array
 from loadshare.solver.hot.kernel.options import allocating
-from loadshare.solver.hot.kernel.set_arrays import Rows, States
+from loadshare.solver.hot.kernel.redundants import Rows
+from loadshare.solver.hot.kernel.set_arrays import States
 
 
 class Given(NamedTuple):
@@ -70,7 +71,7 @@ class Work(NamedTuple):
     z: Array  # (r, width)
     base: Array  # (r, width): what the springs open without redundants and turned loads
     right: Array  # (r and borders, width)
-    linear: Array  # (r, r, width): matrix of what is linear
+    linear: Array  # (matrix entries, width): what is linear of the matrix
     matrix: Array  # (r and borders, r and borders, width)
     normal: Array  # (3, width)
     wrong: NDArray[np.bool_]  # (rows, width)
@@ -146,7 +147,7 @@ def work_for(s, n, width):  # type: ignore[no-untyped-def]
         z=np.zeros((r, width)),
         base=np.zeros((r, width)),
         right=np.zeros((size, width)),
-        linear=np.zeros((r, r, width)),
+        linear=np.zeros((s.springs_entries.shape[0], width)),
         matrix=np.zeros((size, size, width)),
         normal=np.zeros((3, width)),
         wrong=np.zeros((s.states.shape[0] - radials, width), dtype=np.bool_),

@@ -1,0 +1,35 @@
+"""BLAS works with one thread while a batch is solved.
+
+Its matrices are small: threads of BLAS would take the time of those that solve blocks (a third of a
+batch on two cores), and would let sums round differently from one machine to the next.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+_lock = threading.Lock()
+_batches: list[object] = []
+_limits: list[Any] = []
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Limit BLAS to one thread until the last of all batches of this process has ended."""
+    from threadpoolctl import threadpool_limits
+
+    batch = object()
+    with _lock:
+        if not _batches:
+            _limits.append(threadpool_limits(1, "blas"))
+        _batches.append(batch)
+    try:
+        yield
+    finally:
+        with _lock:
+            _batches.remove(batch)
+            if not _batches:
+                _limits.pop().restore_original_limits()
