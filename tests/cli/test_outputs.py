@@ -5,6 +5,8 @@ import json
 import os
 import pickle
 import stat
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
@@ -292,3 +294,41 @@ def test_a_sweep_over_a_name_with_a_slash_is_written(tmp_path):
     assert found["torque"].dims[0] == key.replace("/", "|")
     assert found[found["torque"].dims[0]].attrs["long_name"] == key
     assert "sun-planet/1" in found["mesh"].values
+
+
+@pytest.mark.parametrize("name", ["", "json:"])
+def test_an_empty_name_is_no_file(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    done = call("run", CASE, "-o", name)
+    assert done.exit_code == 2
+    assert "names no file" in done.stderr
+    assert not [*tmp_path.iterdir()]
+
+
+def test_files_are_written_though_nobody_reads_the_screen(tmp_path):
+    """As with ``| head -1``."""
+    file = tmp_path / "result.json"
+    words = [sys.executable, "-m", "loadshare", "run", str(CASE), "-o", str(file)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        process.stdout.close()
+        assert process.wait() == 0
+    assert ls.load_result(file).passed
+
+
+@pytest.mark.parametrize("name", ["", "json:"])
+def test_an_empty_name_is_no_file(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    done = call("run", CASE, "-o", name)
+    assert done.exit_code == 2
+    assert "names no file" in done.stderr
+    assert not [*tmp_path.iterdir()]
+
+
+def test_files_are_written_though_nobody_reads_the_screen(tmp_path):
+    """As with ``| head -1``."""
+    file = tmp_path / "result.json"
+    words = [sys.executable, "-m", "loadshare", "run", str(CASE), "-o", str(file)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        process.stdout.close()
+        assert process.wait() == 0
+    assert ls.load_result(file).passed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from tests.support import shipped
 
@@ -131,3 +132,69 @@ def test_units_of_inputs_are_those_of_the_case():
     for one in Inputs(shipped("fgfbstts/all_elements")).every.values():
         value = read_value(one.text)
         assert (value.number, value.unit) == (one.number, one.unit)
+
+
+@pytest.mark.parametrize(("axis", "matters"), [([0.0, 0.0, -1.0], True), ("y", False)])
+def test_directions_count_against_the_axis_of_the_gear(axis, matters):
+    """What a page shows of an error by components is the error itself."""
+    places = {"s": (30, 0), "i1": (60, 96), "i2": (60, -96), "o": (150, 0)}
+    gears = {
+        name: {"base_radius": f"{radius} mm", "centre": [f"{x} mm", "0 mm"], "axis": axis}
+        for name, (radius, x) in places.items()
+    }
+    gears["o"]["type"] = "internal"
+    for idler in ("i1", "i2"):
+        gears[idler]["support"] = "1e8 N/m"
+    case = ls.Case(
+        {
+            "operating": {"input": "s", "output": "o", "torque": "100 N*m"},
+            "gears": gears,
+            "meshes": {
+                name: {"stiffness": "1e6 N*m/rad"} for name in ("s-i1", "s-i2", "i1-o", "i2-o")
+            },
+            "errors": {"i1": {"installation": ["30 um", "40 um"]}},
+            "stages": {"I": {"meshes": ["s-i1", "s-i2"]}},
+        }
+    )
+    key, inputs = "errors.i1.installation.amount", Inputs(case)
+    same = case.replace(inputs.changes({key: inputs.every[key].text}))
+    share, again = (ls.solve(c).positions[0].share["s-i1"] for c in (case, same))
+    assert (abs(share - 1.0) > 0.1) is matters
+    assert again == pytest.approx(share, rel=1e-9)
+
+
+@pytest.mark.parametrize("axis", [[0.0, 0.0, -1.0], [0.0, 0.6, 0.8]])
+def test_directions_count_against_the_axis_of_the_gear(axis):
+    """What a page shows of an error by components is the error itself."""
+    across = np.cross(axis, [1.0, 0.0, 0.0])
+    places = {"i1": "96 mm", "i2": "-96 mm"}
+    case = ls.Case(
+        {
+            "operating": {"input": "s", "output": "o", "torque": "100 N*m"},
+            "gears": {
+                "s": {"base_radius": "30 mm", "axis": axis},
+                "o": {"base_radius": "150 mm", "axis": axis, "type": "internal"},
+                **{
+                    gear: {
+                        "base_radius": "60 mm",
+                        "axis": axis,
+                        "support": "1e8 N/m",
+                        "centre": [place, "0 mm", "0 mm"],
+                    }
+                    for gear, place in places.items()
+                },
+            },
+            "meshes": {
+                name: {"stiffness": "1e6 N*m/rad"} for name in ("s-i1", "s-i2", "i1-o", "i2-o")
+            },
+            "errors": {"i1": {"installation": ["30 um", f"{40.0 * across[1]} um"]}},
+            "stages": {"I": {"meshes": ["s-i1", "s-i2"]}},
+        }
+    )
+    key = "errors.i1.installation.amount"
+    inputs = Inputs(case)
+    same = case.replace(inputs.changes({key: inputs.every[key].text}))
+    share, again = (ls.solve(c).positions[0].share["s-i1"] for c in (case, same))
+    if axis[1] == 0.0:
+        assert abs(share - 1.0) > 0.1
+        assert again == pytest.approx(share, rel=1e-9)

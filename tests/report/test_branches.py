@@ -50,8 +50,8 @@ def test_every_value_lies_on_its_axis(read, picture):
                 encoding = unit["encoding"].get(channel, {})
                 domain = encoding.get("scale", {}).get("domain")
                 if domain and len(domain) == 2 and not isinstance(domain[0], str):
-                    for row in unit["rows"]:
-                        assert domain[0] <= row[encoding["field"]] <= domain[1]
+                    for value in (row[encoding["field"]] for row in unit["rows"]):
+                        assert value is None or domain[0] <= value <= domain[1]
 
 
 def test_round_off_does_not_look_like_a_difference(read):
@@ -151,3 +151,30 @@ def test_a_loaded_result_draws_what_the_solved_one_draws(limit_ring, tmp_path, p
     assert again == limit_ring
     for name in ("torque", "floats", "law", "train"):
         assert getattr(again.plot, name)().spec == picture("limit_ring", name).spec
+
+
+def test_few_positions_have_a_tick_each_and_lines_are_broken_where_there_is_no_answer(read):
+    case = shipped("fgfbstts/all_elements")
+    result = ls.solve(case, positions=[1, 3, 9, 10])
+    spec = read(result.plot.share().spec)
+    lines = [unit for unit in spec.marks("line") if "x" in unit["encoding"]]
+    assert lines
+    for unit in lines:
+        assert unit["encoding"]["x"]["axis"]["values"] == [1, 3, 9, 10]
+        by_position = {row["position"]: row.get("share") for row in unit["rows"]}
+        there = [at for at, share in by_position.items() if share is not None]
+        assert sorted(there) == [1, 3, 9, 10]
+        assert by_position.keys() == {*range(1, 11)}
+
+
+def test_few_positions_have_a_tick_each_and_lines_are_broken_where_there_is_no_answer(read):
+    case = shipped("fgfbstts/all_elements")
+    result = ls.solve(case, positions=[1, 3, 9, 10])
+    spec = read(result.plot.share().spec)
+    lines = [unit for unit in spec.marks("line") if "x" in unit["encoding"]]
+    assert lines
+    for unit in lines:
+        assert unit["encoding"]["x"]["axis"]["values"] == [1, 3, 9, 10]
+        by_position = {row["position"]: row.get("share") for row in unit["rows"]}
+        assert [at for at, share in sorted(by_position.items()) if share is not None] == [1, 3, 9, 10]
+        assert by_position.keys() == {*range(1, 11)}

@@ -58,7 +58,9 @@ def test_what_changes_stands_with_both_figures():
     results = [ls.solve(case), ls.solve(other)]
     inputs, figures, *_ = comparison(["case 1", "case 2"], results)
     assert words(inputs) == {"errors.6.installation": ["0 um, 100 um", "30 um, 100 um"]}
-    (system,) = [r for r in figures.rows if [c.text for c in r[:2]] == ["Ω = Kγ", "the system"]]
+    (system,) = [
+        r for r in figures.rows if [c.text for c in r[:2]] == ["Ω over stage", "the system"]
+    ]
     before, after = (r.omega["system"] for r in results)
     assert [system[2].value, system[3].value] == [before, after]
     assert system[4].value == pytest.approx(100 * (after - before) / before)

@@ -60,7 +60,7 @@ OTHERS = {
     **dict.fromkeys(("1/min", "U/min", "min-1", "min^-1", "/min", "rev/m"), "rpm"),
     **dict.fromkeys(("lb-ft", "lbf-ft", "ft-lb", "ft-lbf", "lb*ft", "ft*lb"), "ft*lbf"),
     **dict.fromkeys(("lb-in", "lbf-in", "in-lb", "in-lbf", "lb*in", "in*lb"), "in*lbf"),
-    **dict.fromkeys(("lb", "lbs"), "lbf"),
+    **dict.fromkeys(("lb", "lbs"), "lbf: a force; 1 lb of mass is 0.45359237 kg"),
     **dict.fromkeys(("inches", '"'), "in"),
     **dict.fromkeys(("thou", "mil"), "in: one thousandth is 0.001 in"),
     **dict.fromkeys(("PS", "CV"), "W, kW or hp: 1 PS is 735.49875 W"),

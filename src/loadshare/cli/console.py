@@ -64,10 +64,17 @@ def console(*, stderr: bool = False) -> Console:
 
     Where a file goes to stdout, all text goes to stderr.
     """
-    from rich.console import Console
+    import os
+
+    from rich import console as rich
+
+    class Screen(rich.Console):
+        def on_broken_pipe(self) -> None:
+            """Go on when nobody reads any more, as with ``| head``: files are still written."""
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.file.fileno())
 
     speak()
-    return Console(stderr=stderr or is_stdout_taken(), markup=False, emoji=False, highlight=False)
+    return Screen(stderr=stderr or is_stdout_taken(), markup=False, emoji=False, highlight=False)
 
 
 def say(*parts: object, style: str | None = None, whole: bool = False) -> None:

@@ -79,6 +79,8 @@ def read_output(text: str, forms: Sequence[str]) -> Output:
         If the ending, or none, is none of the forms.
     """
     prefix, colon, rest = text.partition(":")
+    if not rest and (not prefix or (colon and prefix in FORMS)):
+        raise typer.BadParameter(f"{text!r} names no file.")
     if colon and prefix in FORMS:
         form, file = prefix, Path(rest)
     else:

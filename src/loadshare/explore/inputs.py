@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, get_args
 
+import numpy as np
+
 from loadshare.case import Case
 from loadshare.case.content import Content
 from loadshare.case.described import description
@@ -20,6 +22,8 @@ from loadshare.case.quantity import Dimension
 from loadshare.errors import CaseError, Problem
 from loadshare.settings import EXPLORE
 from loadshare.study.parameter import Value, leaves, matches, read_value, split_outside
+from loadshare.train import build_train
+from loadshare.train.gear import Vector
 
 PAGE = "page"
 """Named in messages in place of the file, for what a page asks for."""
@@ -171,6 +175,14 @@ class Inputs:
     def _tables(self) -> dict[Path, dict[str, str]]:
         return dict(self._vectors())
 
+    @cached_property
+    def _planes(self) -> dict[str, Vector]:
+        """Unit vectors across the axes of the gears, from which directions count."""
+        try:
+            return {name: gear.plane for name, gear in build_train(self.case).gears.items()}
+        except CaseError:
+            return {}
+
     def _vector_of(self, path: Path) -> Path | None:
         """Path of the error by size and direction that holds a key; None for all other keys."""
         return path[:3] if path[:3] in self._tables else None
@@ -185,7 +197,10 @@ class Inputs:
                 if isinstance(given, list):
                     if len(given) > 2:
                         continue
-                    given = _polar(given)
+                    plane = self._planes.get(gear)
+                    if plane is None:
+                        continue
+                    given = _polar(given, plane)
                 table = {part: "0 um" if part == "amount" else "0 deg" for part in parts}
                 if given is None:
                     absent[path] = table
@@ -234,14 +249,16 @@ def _concerns(wrong: Iterable[str], key: str) -> bool:
     return any(one == key or one.startswith(f"{key}.") for one in wrong)
 
 
-def _polar(given: list[Any]) -> dict[str, str]:
-    """Return two components as size and direction, in the unit of the first."""
+def _polar(given: list[Any], plane: Vector) -> dict[str, str]:
+    """Return components along x and y as size and direction in a plane, in the unit of the first.
+
+    What lies along the axis has no effect.
+    """
     x, y = (read_value(part) for part in given)
     assert x is not None
     assert y is not None
-    y = y.in_unit(x.unit)
-    amount = math.hypot(x.number, y.number)
-    direction = math.degrees(math.atan2(y.number, x.number))
+    across = plane[:, :2] @ (x.number, y.in_unit(x.unit).number)
+    amount, direction = float(np.hypot(*across)), math.degrees(math.atan2(*across[::-1]))
     return {"amount": f"{amount!r} {x.unit}", "direction": f"{direction!r} deg"}
 
 

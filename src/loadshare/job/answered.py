@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
+from loadshare.job.block import NONE
 from loadshare.job.engines import engine_at_hand
 from loadshare.job.hot import Solved
 from loadshare.job.ladder import AUTO, climb
 from loadshare.job.machine import Machine
-from loadshare.job.positions import Progress, result_of, share, wanted_positions
+from loadshare.job.positions import Progress, result_of, share, wanted_of
 from loadshare.results.figures import Figures
 from loadshare.results.result import Result
 from loadshare.settings import CERTIFY, JOB
@@ -92,12 +93,15 @@ class Answered:
     Attributes
     ----------
     positions : tuple of int
-        1-based, as requested.
+        1-based, as requested; without a request all that any sample has.
     parts : tuple of Part
+    lacking : mapping of int to tuple of int
+        Requested positions that a sample does not have.
     """
 
     positions: tuple[int, ...]
     parts: tuple[Part, ...]
+    lacking: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
 
     def of(self, sample: int) -> Iterator[tuple[Part, int]]:
         """Yield the parts that hold a sample, and its place there."""
@@ -107,12 +111,20 @@ class Answered:
 
     def refused(self, sample: int) -> tuple[Unanswered, ...]:
         """Return why a sample has no answer at some positions, in their order."""
-        return tuple(
+        found: list[Unanswered] = [
             part.refused[k]
             for part, row in self.of(sample)
             for k, _ in part.numbers(row)
             if k in part.refused
-        )
+        ]
+        lacking = self.lacking.get(sample, ())
+        return (*found, *(Refused(f"position {k}: {NONE}") for k in lacking))
+
+    def asked(self, sample: int) -> tuple[int, ...]:
+        """Positions of a sample that are requested."""
+        there = {k for part, _ in self.of(sample) for k in part.positions}
+        there |= {*self.lacking.get(sample, ())}
+        return tuple(k for k in self.positions if k in there)
 
     def result(self, sample: int) -> Result | None:
         """Return a sample as `solve` would: its certified positions, None if there are none."""
@@ -131,7 +143,8 @@ class Answered:
         if case is None or solved is None or train is None or not answers:
             return None
         options = Options(solver=AUTO)
-        return result_of(case, solved, train, answers, options, CERTIFY.tolerance, self.positions)
+        asked = self.asked(sample)
+        return result_of(case, solved, train, answers, options, CERTIFY.tolerance, asked)
 
 
 def answer_samples(
@@ -157,25 +170,28 @@ def answer_samples(
     CaseError
         If a key or a value cannot be used.
     ValueError
-        If a position does not exist.
+        If a position does not exist in any sample.
     """
     groups = samples_of(case, samples)
-    wanted = tuple(wanted_positions(groups[0][1].train, positions))
+    every = wanted_of((group.train for _, group in groups), positions)
     total, done = sum(len(rows) for rows, _ in groups), 0
-    each = max(1, JOB.together // len(wanted))
-    parts = []
+    each = max(1, JOB.together // len(every))
+    parts, lacking = [], dict[int, tuple[int, ...]]()
     for rows, group in groups:
         machine = Machine(group.train)
         share(machine)
+        wanted = tuple(k for k in every if k <= group.train.count)
+        if positions is not None and len(wanted) < len(every):
+            lacking |= dict.fromkeys(rows.tolist(), tuple(k for k in every if k not in wanted))
         abreast = [(k,) for k in wanted] if group.train.is_placed_anew else [wanted]
         for at in range(0, len(rows), each):
             some = slice(at, at + each)
             taken = group if len(rows) <= each else group.take(some)
-            parts += [_part(machine, rows[some], taken, indices) for indices in abreast]
+            parts += [_part(machine, rows[some], taken, k) for k in abreast if k]
             done += len(rows[some])
             if progress is not None:
                 progress(done, total)
-    return Answered(wanted, tuple(parts))
+    return Answered(every, tuple(parts), lacking)
 
 
 def _part(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +72,36 @@ class Block:
     arc_curvature: Array
     rung: NDArray[np.int8]
     message: Mapping[tuple[int, int], str]
+
+    def over(self, positions: tuple[int, ...]) -> Block:
+        """Return the block over other positions; at those that it lacks there is no answer."""
+        lacking = np.array([k not in self.positions for k in positions])
+        at = [self.positions.index(k) if k in self.positions else 0 for k in positions]
+        arrays = {name: getattr(self, name)[:, at] for name in _NOTHING}
+        for name, nothing in _NOTHING.items():
+            arrays[name][:, lacking] = nothing
+        none = self.equilibria[0].mapped(lambda array: np.full_like(array, np.nan))
+        lacks = zip(lacking.tolist(), at, strict=True)
+        message = dict(self.message)
+        for k in positions:
+            if k not in self.positions:
+                message |= {(row, k): NONE for row in self.rows.tolist()}
+        return replace(
+            self,
+            positions=positions,
+            equilibria=tuple(none if lacks_it else self.equilibria[p] for lacks_it, p in lacks),
+            message=message,
+            **arrays,
+        )
+
+
+NONE = "the sample has no such position"
+_NOTHING = {
+    **dict.fromkeys(("certified", "determined", "convex"), False),
+    **dict.fromkeys(("residual", "bound", "displaced", "arc_curvature"), np.nan),
+    "rung": 0,
+}
+"""What stands in the arrays of a block where there is no answer."""
 
 
 class _Open:

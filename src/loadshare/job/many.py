@@ -7,7 +7,7 @@ once; single samples that it leaves climb the ladder.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import islice
 from pathlib import Path
@@ -20,17 +20,18 @@ from loadshare.arguments import whole
 from loadshare.case import Case
 from loadshare.case.reader import opened
 from loadshare.certify.tolerance import checked_tolerance
+from loadshare.errors import CaseError
 from loadshare.job.allocation import keep_freed_memory
 from loadshare.job.block import Block, solve_block
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
 from loadshare.job.one_thread import one_thread
-from loadshare.job.positions import Progress, wanted_positions
+from loadshare.job.positions import Progress, wanted_of
 from loadshare.job.recent import Recent
 from loadshare.job.table import KEPT, Table, checked
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.columns import Columns, columns_of
-from loadshare.train.samples import Samples, samples_of
+from loadshare.train.samples import Samples, samples_of, unusable
 from loadshare.train.shape import shape_of
 
 if TYPE_CHECKING:
@@ -51,7 +52,8 @@ def solve_blocks(
 ) -> Iterator[Block]:
     """Solve samples block by block, in order; memory does not grow with their number.
 
-    Parameters and errors are those of :func:`solve_many`. With `least_norm`, displacements that an
+    Parameters and errors are those of :func:`solve_many`. A sample has no answer at a position that
+    only others have. With `least_norm`, displacements that an
     equilibrium leaves undetermined are the least-norm ones, which takes some milliseconds for every
     sample with any; otherwise they are one possible choice.
 
@@ -59,12 +61,25 @@ def solve_blocks(
     ------
     Block
     """
-    tolerance, workers = checked_tolerance(tolerance), whole("workers", workers)
     case = opened(case)
-    keep_freed_memory()
     groups = samples_of(case, samples)
+    wanted = wanted_of((group.train for _, group in groups), positions)
+    yield from _solved(case, groups, wanted, tolerance, engine, workers, least_norm)
+
+
+def _solved(
+    case: Case,
+    groups: Sequence[tuple[NDArray[np.intp], Samples]],
+    wanted: tuple[int, ...],
+    tolerance: float,
+    engine: str,
+    workers: int,
+    least_norm: bool,
+) -> Iterator[Block]:
+    """Solve groups of samples, block by block."""
+    tolerance, workers = checked_tolerance(tolerance), whole("workers", workers)
+    keep_freed_memory()
     total = sum(len(rows) for rows, _ in groups)
-    wanted = tuple(wanted_positions(groups[0][1].train, positions))
     size = max(JOB.block, JOB.together // len(wanted))
     tasks: list[tuple[Machine, NDArray[np.intp], Samples, slice]] = []
     for rows, group in groups:
@@ -77,7 +92,10 @@ def solve_blocks(
     def work(task: tuple[Machine, NDArray[np.intp], Samples, slice]) -> Block:
         machine, rows, group, part = task
         samples = group.take(part)
-        return solve_block(machine, rows[part], samples, wanted, tolerance, solver, least_norm)
+        # Of samples that have none of them, the first says what an answer holds.
+        there = tuple(k for k in wanted if k <= group.train.count) or (1,)
+        found = solve_block(machine, rows[part], samples, there, tolerance, solver, least_norm)
+        return found if there == wanted else found.over(wanted)
 
     with one_thread():
         if workers == 1 or len(tasks) == 1:
@@ -128,7 +146,7 @@ def solve_many(
         Values by dotted key, all of one length. The unit is in brackets after the key, as in
         ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units are allowed as well.
     positions : iterable of int, optional
-        1-based positions to solve; all by default.
+        1-based positions to solve; all by default. What only some samples have is NaN for others.
     keep : iterable of str
         Variables to keep: "torque", "share", "pair_share", "displacement", "contact_force".
     tolerance : float
@@ -174,15 +192,23 @@ def solve_many(
     True
     """
     case = opened(case)
-    table = {c.key: c.values for c in columns_of(samples)}  # Once: it may hold a generator.
-    blocks = solve_blocks(
-        case,
-        table,
-        positions=positions,
-        tolerance=tolerance,
-        engine=engine,
-        workers=workers,
-        least_norm=least_norm,
-    )
-    found = Table.of(blocks, len(next(iter(table.values()))), checked(keep), progress)
-    return found.dataset(case, checked_tolerance(tolerance))
+    kept, tolerance = checked(keep), checked_tolerance(tolerance)
+    columns = {c.key: c.values for c in columns_of(samples)}  # Once: it may hold a generator.
+    groups = samples_of(case, columns)
+    trains = [group.train for _, group in groups]
+    wanted = wanted_of(trains, positions)
+    try:
+        for group in (group for _, group in groups):
+            group.build()
+    except CaseError as error:
+        # It names what may be another sample's value.
+        raise next(iter(unusable(case, columns).values()), error) from None
+    blocks = _solved(case, groups, wanted, tolerance, engine, workers, least_norm)
+    total, done = len(next(iter(columns.values()))), 0
+    found = Table(trains, wanted, total, kept)
+    for block in blocks:
+        found.write(block)
+        done += len(block.rows)
+        if progress is not None:
+            progress(done, total)
+    return found.dataset(case, tolerance)

@@ -274,6 +274,18 @@ def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]
     return [int(k) for k in wanted]
 
 
+def wanted_of(trains: Iterable[Train], positions: Iterable[int] | None) -> tuple[int, ...]:
+    """Return the positions to solve of trains that need not have equally many: those of any.
+
+    Raises
+    ------
+    ValueError
+        As of `wanted_positions`, where no train has a position.
+    """
+    longest = max(trains, key=lambda train: train.count)
+    return tuple(wanted_positions(longest, positions))
+
+
 def result_of(
     case: Case,
     solved: Case,

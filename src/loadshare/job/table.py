@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import chain, starmap
+from itertools import starmap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,13 +16,11 @@ from loadshare.job.block import RUNGS, Block
 from loadshare.results.dataset import VARIABLES, Variable
 from loadshare.results.figures import COMPONENTS
 from loadshare.results.share import MeshTorques, mesh_torques, shares
-from loadshare.train.equilibria import Equilibria
+from loadshare.train.equilibria import Equilibria, Names
 from loadshare.train.train import Train
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from loadshare.job.positions import Progress
 
 Array = NDArray[np.float64]
 
@@ -93,52 +91,40 @@ def _refused(where: tuple[int, int], why: str) -> str:
     return f"sample {sample}, position {position}: {reason}"
 
 
-def _frames(train: Train) -> Array:
-    """From displacements of all gears to components of those that can move."""
-    moving = [(k, gear) for k, gear in enumerate(train.gears.values()) if gear.moves]
-    frames = np.zeros((3 * len(train.gears), 2 * len(moving)))
-    for column, (k, gear) in enumerate(moving):
-        frames[3 * k : 3 * k + 3, 2 * column : 2 * column + 2] = gear.plane.T
-    return frames
+def _displacements(answers: Equilibria, gears: list[str]) -> Array:
+    """Displacements of some gears in their planes, (S, gears, 2) [m]."""
+    order = answers.names.train.order
+    frames = np.zeros((3 * len(order), 2 * len(gears)))
+    for column, gear in enumerate(gears):
+        rows = slice(3 * order[gear], 3 * order[gear] + 3)
+        frames[rows, 2 * column : 2 * column + 2] = answers.names.train.gears[gear].plane.T
+    flat = answers.displacement.reshape(len(answers.displacement), -1)
+    return np.asarray((flat @ frames).reshape(len(flat), len(gears), 2))
 
 
 class Table:
     """Variables of all samples, filled block by block."""
 
-    def __init__(self, first: Block, count: int, keep: tuple[str, ...]) -> None:
-        self.names = first.equilibria[0].names
-        gears = self.names.train.gears
-        moving = [k for k, gear in enumerate(gears.values()) if gear.moves]
-        self.frames = _frames(self.names.train)
+    def __init__(
+        self,
+        trains: Sequence[Train],
+        positions: tuple[int, ...],
+        count: int,
+        keep: tuple[str, ...],
+    ) -> None:
+        gears = {name: None for t in trains for name, gear in t.gears.items() if gear.moves}
+        contacts = {name: None for t in trains for name in Names(t).contacts}
         self.coords: dict[str, Any] = {
             "sample": np.arange(count),
-            "position": list(first.positions),
-            "mesh": list(self.names.train.meshes),
-            "gear": [self.names.gears[k] for k in moving],
+            "position": list(positions),
+            "mesh": list(trains[0].meshes),
+            "gear": list(gears),
             "component": list(COMPONENTS),
-            "contact": list(self.names.contacts),
+            "contact": list(contacts),
         }
         self.variables = {name: self._empty(np.nan, KEPT[name].dims) for name in keep}
         self.each = {name: self._empty(e.none, (), e.type_) for name, e in EACH.items()}
         self.message: dict[tuple[int, int], str] = {}
-
-    @classmethod
-    def of(
-        cls,
-        blocks: Iterator[Block],
-        count: int,
-        keep: tuple[str, ...],
-        progress: Progress | None = None,
-    ) -> Table:
-        """Write all blocks, and tell after each how many of `count` samples are done."""
-        first = next(blocks)
-        table, done = cls(first, count, keep), 0
-        for block in chain((first,), blocks):
-            table.write(block)
-            done += len(block.rows)
-            if progress is not None:
-                progress(done, count)
-        return table
 
     def _empty(self, value: Any, dims: tuple[str, ...], type_: str | None = None) -> np.ndarray:
         return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value, dtype=type_)
@@ -154,18 +140,29 @@ class Table:
         for p, answers in enumerate(block.equilibria):
             torques = mesh_torques(answers.names.train, answers.flank_force)
             for name, values in self.variables.items():
-                values[place, p] = self._read(name, answers, torques)
+                elements, found = self._read(name, answers, torques)
+                dim = KEPT[name].dims[0]
+                if elements == self.coords[dim]:
+                    values[place, p] = found
+                else:
+                    at = [self.coords[dim].index(element) for element in elements]
+                    values[rows[:, None], p, at] = found
 
-    def _read(self, name: str, answers: Equilibria, torques: MeshTorques) -> Array:
-        """Return a variable of a block at one position."""
+    def _read(
+        self, name: str, answers: Equilibria, torques: MeshTorques
+    ) -> tuple[list[str], Array]:
+        """Return a variable of answers at one position, and the elements that it is of."""
+        train = answers.names.train
         if name == "displacement":
-            flat = answers.displacement.reshape(len(answers.displacement), -1)
-            train = answers.names.train
-            frames = self.frames if train.placed is None else _frames(train)
-            return (flat @ frames).reshape(len(flat), frames.shape[1] // 2, 2)
-        if name in ("share", "pair_share"):
-            return shares(torques, self.names.train.stages, pairs=name == "pair_share")
-        return torques.net if name == "torque" else answers.ring_force
+            # What does not move in these samples may do so in others.
+            gears = self.coords["gear"]
+            return gears, _displacements(answers, gears)
+        if name == "contact_force":
+            return list(answers.names.contacts), answers.ring_force
+        found = torques.net
+        if name != "torque":
+            found = shares(torques, train.stages, pairs=name == "pair_share")
+        return list(torques.meshes), found
 
     def dataset(self, case: Case, tolerance: float) -> xr.Dataset:
         """Return everything with labels."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -146,8 +146,10 @@ def reached(shares: Shares, meshes: Sequence[str]) -> str:
     known = [(v, m, k) for v, m, k in found if v is not None]
     if not known:
         return "" if not meshes else NONE
-    largest, mesh, position = max(known, key=lambda f: f[0])
-    top = [(m, k) for v, m, k in known if omega(v) == omega(largest)]
+    largest = omega(max(value for value, _, _ in known))
+    top = [(m, k) for v, m, k in known if omega(v) == largest]
+    # Of branches that share alike, which is a hair ahead is round-off.
+    mesh, position = top[0]
     if len(top) == len(found):
         return "all alike"
     if sum(m == mesh for m, _ in top) == len(shares):
@@ -236,33 +238,39 @@ def loads(result: Result) -> Iterator[Record]:
 
     Of a gear the torque from outside, a load or what balances it, and the force on its bearing.
     """
-    positions = result.positions
-    torques = [t for p in positions for t in (*p.loads.gears.values(), *p.loads.shafts.values())]
-    bearings = {
-        p.position: {g: math.hypot(*f) for g, f in p.loads.bearings.items()} for p in positions
-    }
-    forces = [force for found in bearings.values() for force in found.values()]
-    places, digits = decimals(torques), decimals(forces)
-    least = [1e-9 * max(map(abs, values), default=0.0) for values in (torques, forces)]
-    for gear in positions[0].loads.gears:
-        torque = max((p.loads.gears[gear] for p in positions), key=abs)
-        at = max(bearings, key=lambda position: bearings[position][gear])
-        force = bearings[at][gear]
-        if abs(torque) > least[0] or force > least[1]:
+    found = [(p.position, p.loads) for p in result.positions]
+    gears = {g: [(x.gears[g], at) for at, x in found] for g in found[0][1].gears}
+    shafts = {s: [(x.shafts[s], at) for at, x in found] for s in found[0][1].shafts}
+    bearings = {g: [(math.hypot(*x.bearings[g]), at) for at, x in found] for g in gears}
+    torque_of = _loads([*gears.values(), *shafts.values()])
+    force_of = _loads(bearings.values())
+    parts = [(f"gear {g}", torque_of(gears[g]), force_of(bearings[g])) for g in gears]
+    parts += [(f"shaft {s}", torque_of(shafts[s]), force_of([])) for s in shafts]
+    for part, torque, force in parts:
+        if (torque[0].text, force[0].text) != (NONE, NONE):
             yield {
-                "part": Cell(f"gear {gear}"),
-                "torque": Cell(fixed(torque, places) if abs(torque) > least[0] else NONE, torque),
-                "bearing": Cell(fixed(force, digits) if force > least[1] else NONE, force),
-                "position": Cell(str(at) if force > least[1] else NONE, at),
+                "part": Cell(part),
+                **dict(zip(("torque", "torque at"), torque, strict=True)),
+                **dict(zip(("bearing", "bearing at"), force, strict=True)),
             }
-    for shaft in positions[0].loads.shafts:
-        torque = max((p.loads.shafts[shaft] for p in positions), key=abs)
-        yield {
-            "part": Cell(f"shaft {shaft}"),
-            "torque": Cell(fixed(torque, places), torque),
-            "bearing": Cell(NONE),
-            "position": Cell(NONE),
-        }
+
+
+def _loads(
+    every: Iterable[Sequence[tuple[float, int]]],
+) -> Callable[[Sequence[tuple[float, int]]], tuple[Cell, Cell]]:
+    """What writes the largest of loads at positions, and where it is, beside all others."""
+    sizes = [abs(value) for values in every for value, _ in values]
+    places, least = decimals(sizes), 1e-9 * max(sizes, default=0.0)
+
+    def largest(values: Sequence[tuple[float, int]]) -> tuple[Cell, Cell]:
+        value, at = max(values, key=lambda one: abs(one[0]), default=(0.0, 0))
+        if abs(value) <= least:
+            return Cell(NONE), Cell(NONE)
+        # Small beside the largest, it would lose its digits.
+        text = fixed(value, places) if abs(value) >= 10.0 ** (3 - places) else significant(value)
+        return Cell(text, value), Cell(str(at), at)
+
+    return largest
 
 
 def yielding(result: Result) -> Iterator[Record]:

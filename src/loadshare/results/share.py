@@ -107,6 +107,31 @@ def largest(
     return Table(found)
 
 
+def is_load_factor(train: Train) -> bool:
+    """Whether Ω is K_γ in every stage: forces are shared as torques are, by drivers of one size."""
+    return all(
+        math.isclose(train.meshes[m].first_radius, train.meshes[stage.meshes[0]].first_radius)
+        for stage in train.stages
+        for m in stage.meshes
+    )
+
+
+def load_factors(train: Train, torque: Mapping[str, float], stage: Stage) -> dict[str, float]:
+    """K_γ of every mesh of a stage: its force over the mean of the stage (ISO 6336-1).
+
+    Parameters
+    ----------
+    train : Train
+    torque : mapping of mesh to float
+        On the drivers [N·m].
+    stage : Stage
+        One that carries.
+    """
+    force = {m: torque[m] / train.meshes[m].first_radius for m in stage.meshes}
+    mean = math.fsum(force.values()) / len(force)
+    return {m: f / mean for m, f in force.items()}
+
+
 def mesh_torques(train: Train, force: Array) -> MeshTorques:
     """Return the torques that forces of flanks, (S, flanks) [N], exert on the drivers."""
     lever = np.array([m.lever(d) for m in train.meshes.values() for d in m.flanks])

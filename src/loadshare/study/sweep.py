@@ -322,7 +322,7 @@ def _check_apart(parameters: Sequence[Parameter]) -> None:
 def _point(values: tuple[float, ...], answered: Answered, sample: int) -> Point:
     """Return what became of a point."""
     refused = answered.refused(sample)
-    whole = len(refused) == len(answered.positions)
+    whole = len(refused) == len(answered.asked(sample))
     status = REFUSED if whole else PARTLY if refused else CERTIFIED
     if any(isinstance(error, CaseError) for error in refused):
         status = INVALID

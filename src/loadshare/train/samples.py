@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from loadshare import case as spec
 from loadshare.case.element import Element
 from loadshare.case.keys import Path, dotted
+from loadshare.errors import CaseError
 from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of, with_laws
 from loadshare.train.columns import Column, columns_of
@@ -72,9 +73,18 @@ class Samples:
         found = situations_of(standing(self._varied, index), index)
         return replace(found, train=standing(self.train, index), count=self.count)
 
+    def build(self) -> Train:
+        """Build the train whose numbers are those of all samples.
+
+        Raises
+        ------
+        CaseError
+            If a sample makes none.
+        """
+        return self._varied
+
     @cached_property
     def _varied(self) -> Train:
-        """The train whose numbers are those of all samples."""
         return train_of(_with(self.case, self.values), self.geometry, (self.case, self.train))
 
 
@@ -164,11 +174,46 @@ def _check(case: spec.Case, columns: Sequence[Column], arrays: Mapping[Path, Arr
 
     Other keys are judged with the groups that they make.
     """
-    for pick in (np.argmin, np.argmax):
-        rows = {c.path: int(pick(arrays[c.path])) if c.path in arrays else 0 for c in columns}
-        # The first sample was judged before.
-        if any(rows.values()):
-            case.replace({dotted(c.path): c.text(rows[c.path]) for c in columns})
+    extremes = [
+        {path: int(pick(values)) for path, values in arrays.items()}
+        for pick in (np.argmin, np.argmax)
+    ]
+    try:
+        for rows in extremes:
+            # The first sample was judged before.
+            if any(rows.values()):
+                case.replace({dotted(c.path): c.text(rows.get(c.path, 0)) for c in columns})
+    except CaseError:
+        # No sample need have all extremes at once.
+        for row in dict.fromkeys(row for rows in extremes for row in rows.values()):
+            case.replace({dotted(c.path): c.text(row) for c in columns})
+
+
+def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> dict[int, CaseError]:
+    """Return which samples make no train, and why.
+
+    Parameters
+    ----------
+    case : Case
+    samples : mapping of str to array_like
+        See `columns_of`.
+    """
+    table = {column.key: np.asarray(column.values) for column in columns_of(samples)}
+    found: dict[int, CaseError] = {}
+
+    def judge(rows: NDArray[np.intp]) -> None:
+        try:
+            for _, group in samples_of(case, {key: values[rows] for key, values in table.items()}):
+                assert group.build()
+        except CaseError as error:
+            if len(rows) == 1:
+                found[int(rows[0])] = error
+            else:
+                for half in np.array_split(rows, 2):
+                    judge(half)
+
+    judge(np.arange(len(next(iter(table.values())))))
+    return found
 
 
 def _groups(columns: Sequence[Column], count: int) -> list[NDArray[np.intp]]:

@@ -277,3 +277,21 @@ def test_tooth_thickness_by_the_tabled_formula():
     reference = math.pi / 2 * 2e-3 + 2.0 * 0.3 * 2e-3 * math.tan(math.radians(20.0))
     expected = 2.0 * made.tip * (reference / 48e-3 + inv(math.radians(20.0)) - inv(tip))
     assert 2.0 * made.tip * made.half_angle(made.tip) == pytest.approx(expected, rel=1e-13)
+
+
+@ALL
+def test_the_cycle_begins_at_the_pitch_point_in_the_middle_of_the_common_face(data):
+    mesh = pair(**data)
+    driver, _ = mesh.ideal(np.zeros(1))
+    middle = np.array([0.5 * sum(mesh.axial_range)])
+    roll = mesh.roll(np.zeros(1), middle, driver)
+    np.testing.assert_allclose(roll, math.tan(mesh.working_angle), rtol=1e-12)
+
+
+@ALL
+def test_the_cycle_begins_at_the_pitch_point_in_the_middle_of_the_common_face(data):
+    mesh = pair(**data)
+    driver, _ = mesh.ideal(np.zeros(1))
+    middle = np.array([0.5 * sum(mesh.axial_range)])
+    roll = mesh.roll(np.zeros(1), middle, driver)
+    np.testing.assert_allclose(roll, math.tan(mesh.working_angle), rtol=1e-12)

@@ -68,7 +68,9 @@ def print_omega(result: Result) -> None:
 
 def print_loads(result: Result) -> None:
     """Print torques from outside and of shafts, and forces on bearings, the largest of each."""
-    fields = _fields(result, "part", "torque", "bearing")
+    fields = ["part", "torque", "torque at", "bearing", "bearing at"]
+    if len(result.positions) == 1:
+        fields = [name for name in fields if not name.endswith(" at")]
     made = texts(records.loads(result), fields, words=("part",))
     show("Loads: torque from outside or of a shaft [N·m], force on a bearing or pin [N]", made)
 

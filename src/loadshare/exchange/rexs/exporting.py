@@ -19,6 +19,7 @@ from loadshare.exchange.rexs.reading import read_model
 from loadshare.exchange.rexs.writing import Values, into_json, into_xml
 from loadshare.input import read_file
 from loadshare.results import Result
+from loadshare.results.share import load_factors
 from loadshare.settings import ALLOWED
 
 FACTOR = "mesh_load_factor_iso_6336_2019"
@@ -35,8 +36,8 @@ def export_rexs(result: Result, unit: str | Path) -> str:
     """Return a REXS file with what was found, all else as it was.
 
     It is in the components, or, if the file has load cases, in the first of these, of which the
-    loads are. Of every cylindrical stage the mesh load factor K_γ, the largest Ω of its mesh over
-    the positions, where the mesh is in a stage of the case; the stiffness over the positions, force
+    loads are. Of every cylindrical stage the mesh load factor K_γ, the largest force of its mesh
+    over the mean of its stage in the case, if it is in one; the stiffness over the positions, force
     over compression along the line of action; normal force and transmission error over the
     positions. If several meshes share one stage, it has the largest K_γ alone. Of every bearing of
     a shaft, and every seat of a pin, the force on both its sides, of every gear and carrier
@@ -93,8 +94,7 @@ def _of_meshes(result: Result, gearing: Gearing) -> Values:
         name = next((n for n in map("-".join, (ends, ends[::-1])) if n in meshes), None)
         if name is None:
             continue
-        shares = [p.share.get(name) for p in positions]
-        factors.setdefault(stage.id, []).extend(s for s in shares if s is not None)
+        factors.setdefault(stage.id, []).extend(_load_factors(result, name))
         made[stage.id] = {}
         if several[stage.id] == 1:
             made[stage.id] = {
@@ -106,6 +106,15 @@ def _of_meshes(result: Result, gearing: Gearing) -> Values:
         if known:
             made[id_][FACTOR] = (max(known), "none")
     return made
+
+
+def _load_factors(result: Result, mesh: str) -> Iterator[float]:
+    """K_γ of a mesh at the positions where its stage carries."""
+    train = result.positions[0].train
+    for stage in (s for s in train.stages if mesh in s.meshes):
+        for p in result.positions:
+            if p.share.get(mesh) is not None:
+                yield load_factors(train, p.torque, stage)[mesh]
 
 
 def _bodies(result: Result, gearing: Gearing) -> Iterator[tuple[Component, str]]:

@@ -82,6 +82,8 @@ def flow_of(of: Gearing, assumed: list[str], lacks: Lacks) -> Flow | None:
         for shaft in (given.shaft, given.end)
         if (speed := shaft.number("rotational_speed"))
     ]
+    if not turning:
+        assumed.append(f"{first}: no speed is given, it runs in the sense of its torque")
     ahead = [*turning, torque][0] > 0.0
     running = "counter-clockwise" if ahead else "clockwise"
     driven = torque if ahead else -torque

@@ -196,6 +196,12 @@ def _placed(of: Gearing, body: Component, joints: list[Joint], assumed: list[str
         for joint in joints
         if joint.part.type in BEARINGS and joint.part.number("radial_stiffness") is None
     ]
+    assumed += [
+        f"{joint.part.title()}: no w axis is given, its misalignment counts from z"
+        for joint in joints
+        if any(joint.part.number(f"misalignment_in_{axis}_direction") for axis in "vw")
+        and all(body.vector("w_axis_vector") is None for body in (joint.part, joint.shaft))
+    ]
     return [
         Link(joint.part, joint.side, joint.shaft, radial(joint.part), place or 0.0)
         for joint, place in zip(joints, places, strict=True)

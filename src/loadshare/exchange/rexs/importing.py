@@ -146,7 +146,10 @@ class _Importer:
             self.assumed.append(f"{name}: no pressure angle is given, 20 deg is assumed")
         else:
             made["pressure_angle"] = _deg(angle)
-        if helix := gear.number("helix_angle_reference_diameter"):
+        helix = gear.number("helix_angle_reference_diameter")
+        if helix is None:
+            self.assumed.append(f"{name}: no helix angle is given, 0 is assumed")
+        elif helix:
             made["helix_angle"] = _deg(helix)
         if width := gear.number("face_width"):
             made["face_width"] = _mm(width)
@@ -154,6 +157,8 @@ class _Importer:
         shaft = self.of.shaft_of.get(gear.id)
         if shaft is not None and self.of.places.along(gear, shaft) is None:
             self.assumed.append(f"{name}: at the start of its shaft, no place along it is given")
+        if all(b is None or b.vector("u_axis_vector") is None for b in (shaft, gear)):
+            self.assumed.append(f"{name}: no direction of its axis is given, x is assumed")
         if shaft is not None and not self.of.places.are_parallel(gear, shaft):
             self.assumed.append(f"{name}: its axis is its shaft's, not the one that it gives")
         made |= self._placed(gear, self.of.middle(gear))

@@ -30,7 +30,7 @@ def twist_between(of: Gearing, shaft: Component, start: float, stop: float) -> T
     ∫ du / (G I_p) with I_p = π (D⁴ − d⁴)/32. It is rigid where sections do not cover the way, or
     where they overlap: then they do not say which of them is the shaft.
     """
-    reached, yields, notes = start, 0.0, set()
+    reached, yields, notes = start, 0.0, set[str]()
     for at, length, section in _in_order(of, shaft):
         low, high = max(at, start), min(at + length, stop)
         if high <= low:
@@ -40,11 +40,12 @@ def twist_between(of: Gearing, shaft: Component, start: float, stop: float) -> T
         if low < reached - SLACK:
             return Twist(0.0, "rigid, its sections overlap")
         shear, assumed = _shear_modulus(of.model, section, shaft)
+        outer, inner = _diameters(section, "outer", notes), _diameters(section, "inner", notes)
         notes.add(assumed)
         step = (high - low) / PARTS
         for k in range(PARTS):
             part = (low + (k + 0.5) * step - at) / length
-            polar = math.pi / 32.0 * (_outer(section, part) - _inner(section, part))
+            polar = math.pi / 32.0 * (_between(outer, part) ** 4 - _between(inner, part) ** 4)
             if polar <= 0.0:
                 return Twist(0.0, "rigid, a section has no diameter, or a bore that is as large")
             yields += step / (shear * polar)
@@ -65,15 +66,21 @@ def _in_order(of: Gearing, shaft: Component) -> list[tuple[float, float, Compone
     return sorted(found, key=lambda each: each[:2])
 
 
-def _outer(section: Component, part: float) -> float:
-    """Fourth power of the outer diameter at a part of a section's length."""
-    begin, end = (section.number(f"outer_diameter_{which}") or 0.0 for which in ("begin", "end"))
-    return float((begin + part * (end - begin)) ** 4)
+def _diameters(section: Component, side: str, notes: set[str]) -> tuple[float, float]:
+    """Diameters of a section at its ends [m]; that one is not given is noted."""
+    begin, end = (section.number(f"{side}_diameter_{which}") for which in ("begin", "end"))
+    if begin is None and end is None:
+        if side == "inner":
+            notes.add("solid, no bore is given")
+        return 0.0, 0.0
+    if begin is None or end is None:
+        notes.add(f"the {side} diameter of a section is that of the one end that is given")
+    known = [value for value in (begin, end) if value is not None]
+    return known[0], known[-1]
 
 
-def _inner(section: Component, part: float) -> float:
-    begin, end = (section.number(f"inner_diameter_{which}") or 0.0 for which in ("begin", "end"))
-    return float((begin + part * (end - begin)) ** 4)
+def _between(ends: tuple[float, float], part: float) -> float:
+    return ends[0] + part * (ends[1] - ends[0])
 
 
 def _shear_modulus(model: Model, section: Component, shaft: Component) -> tuple[float, str]:

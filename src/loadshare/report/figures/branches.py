@@ -26,6 +26,8 @@ Mean = Literal["stage", "group"]
 
 REST = "Not in a stage"
 """Title of the panel of meshes that belong to no stage."""
+TICKS = 8
+"""Positions up to which each has a tick."""
 ALIKE = 1e-9
 """Relative difference between positions that is round-off."""
 WIDTH, ROW = 300, 26
@@ -207,7 +209,14 @@ def _lines(
     field, domain = f"{reading.field}:Q", marks.padded(min(values), max(values), reading.least)
     y = axis(alt.Y, field, reading.title, domain, tickCount=6)
     spaced = {"zero": False, "padding": 12}
-    x = axis(alt.X, "position:Q", "position", scale=spaced, tickMinStep=1, format="d", grid=False)
+    there = sorted({row["position"] for row in rows})
+    # Beside one another in panels, few ticks come at halves, which would be written as wholes.
+    ticks = {"values": there} if len(there) <= TICKS else {"tickMinStep": 1}
+    x = axis(alt.X, "position:Q", "position", scale=spaced, format="d", grid=False, **ticks)
+    missing = set(range(there[0], there[-1])) - {*there}
+    # Where there is no answer a line is broken.
+    none = [{"mesh": m, "position": at, reading.field: None} for m in looks for at in missing]
+    rows = [*rows, *none]
     layers: list[Any] = []
     if reading.reference is not None:
         layers.append(_reference_rule(reading, y=y))

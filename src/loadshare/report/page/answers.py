@@ -17,7 +17,8 @@ OMEGAS = dict.fromkeys(("over stage", "Ω stage"), "Ω over stage mean") | dict.
 LOADS = {
     "torque": "torque [N·m]",
     "bearing": "force on the bearing or pin [N]",
-    "position": "at position",
+    "torque at": "at position",
+    "bearing at": "at position",
 }
 MESHES = {
     "torque": "torque [N·m]",
@@ -116,7 +117,7 @@ def load_table(result: Result) -> Table:
         "Loads of gears, bearings and shafts: the largest",
         records.loads(result),
         ("part",),
-        ("torque", "bearing", "position"),
+        ("torque", "torque at", "bearing", "bearing at"),
         LOADS,
         ["The torque of a gear is that from outside, counter-clockwise about its axis."],
         FOLDED,

@@ -118,7 +118,7 @@ def _change(change: float | None, base: float) -> Cell:
 def _figures(result: Result) -> Figures:
     """Every figure that can be compared: its value and its SI unit."""
     found: Figures = {}
-    for means, name in ((result.omega, "Ω = Kγ"), (result.pair_omega, "Ω over group")):
+    for means, name in ((result.omega, "Ω over stage"), (result.pair_omega, "Ω over group")):
         for stage, value in means.items():
             of = "the system" if stage == "system" else f"stage {stage}"
             if value is not None:

@@ -13,8 +13,9 @@ from loadshare.report.units import engineering
 from loadshare.report.words import advice, rest_lines, spline_lines, undetermined_lines
 from loadshare.results import Result
 from loadshare.results.laws import law_lines
+from loadshare.results.share import is_load_factor
 
-K_GAMMA = "Kγ"
+K_GAMMA, OMEGA = "Kγ", "Ω"
 DIGITS = 4
 """Significant digits of forces and torques on the first screen."""
 
@@ -36,10 +37,13 @@ def verdict_tables(result: Result) -> Iterator[Table]:
 
 
 def measure_of(result: Result) -> str:
-    """Return what the largest Ω of a result is: K_γ only if all positions of the case are in it."""
+    """Return what the largest Ω of a result is.
+
+    K_γ only if all positions of the case are in it, and the drivers of each stage are of one size.
+    """
     count, found = result.positions[0].train.count, result.positions
     if len(found) >= count:
-        return K_GAMMA
+        return K_GAMMA if is_load_factor(found[0].train) else OMEGA
     return (
         f"Ω at position {found[0].position}"
         if len(found) == 1
@@ -50,13 +54,14 @@ def measure_of(result: Result) -> str:
 def sharing(result: Result) -> Table:
     """Largest Ω of every stage.
 
-    Over the mean of the stage and over all positions it is K_γ of ISO 6336-1.
+    Over the mean of the stage and over all positions it is K_γ of ISO 6336-1, if drivers are of
+    one size.
     """
     rows = list(records.omegas(result))
     alike = all(row["over stage"].text == row["over group"].text for row in rows)
     figures = ("over stage",) if alike else ("over stage", "over group")
     measure = measure_of(result)
-    over_stage = f"Ω = {K_GAMMA}" if measure == K_GAMMA else measure
+    over_stage = f"{OMEGA} = {K_GAMMA}" if measure == K_GAMMA else measure
     heads = {"over stage": over_stage, "over group": "Ω over group", "stage at": "reached at"}
     return table("Load sharing by stage", rows, ("stage", "stage at"), figures, heads)
 

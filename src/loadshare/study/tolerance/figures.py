@@ -17,6 +17,7 @@ from loadshare.scene.scene import Array
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import DrumRing
+from loadshare.train.samples import unusable
 from loadshare.train.train import Train
 
 KINDS = {"omega": "stage", "pair_omega": "group"}
@@ -94,7 +95,8 @@ class Solver:
             blocks = self._blocks(values)
         except CaseError:
             # One sample of these makes no case; it shall not take the others with it.
-            message |= self._unusable(values)
+            samples = self.inputs.samples(values)
+            message |= {k: f"makes no case: {w}" for k, w in unusable(self.case, samples).items()}
             usable = np.setdiff1d(usable, list(message))
             blocks = self._blocks(values[usable]) if len(usable) else []
         for block in blocks:
@@ -120,15 +122,6 @@ class Solver:
                 workers=1,
             )
         )
-
-    def _unusable(self, values: Array) -> dict[int, str]:
-        found = {}
-        for row, sample in enumerate(values.tolist()):
-            try:
-                self.case.replace(self.inputs.changes(sample))
-            except CaseError as error:
-                found[row] = f"makes no case: {error}"
-        return found
 
 
 def _figures(block: Block) -> dict[str, Array]:

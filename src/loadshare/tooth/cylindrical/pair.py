@@ -152,11 +152,11 @@ class HelicoidPair(GearPair):
     def ideal(self, phase: Array) -> tuple[Array, Array]:
         """Rotations at which the unmodified, parallel pair touches [rad].
 
-        At phase 0 pair 0 touches at the pitch point in the middle of the driver's face width.
+        At phase 0 pair 0 touches at the pitch point in the middle of the common face.
         """
         one, two = self.driver_gear, self.driven_gear
         pitch = inv(self.working_angle)
-        turn = 2.0 * math.pi * phase / one.teeth
+        turn = 2.0 * math.pi * phase / one.teeth - one.twist * 0.5 * sum(self.axial_range)
         driver = one.kind * pitch - one.base_half_angle + turn
         # The driven flank faces the driver: its base tangent is the same line of action.
         facing = (math.pi if self.kind > 0 else 0.0) - one.kind * self.working_angle
