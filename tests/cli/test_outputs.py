@@ -313,22 +313,3 @@ def test_files_are_written_though_nobody_reads_the_screen(tmp_path):
         process.stdout.close()
         assert process.wait() == 0
     assert ls.load_result(file).passed
-
-
-@pytest.mark.parametrize("name", ["", "json:"])
-def test_an_empty_name_is_no_file(tmp_path, monkeypatch, name):
-    monkeypatch.chdir(tmp_path)
-    done = call("run", CASE, "-o", name)
-    assert done.exit_code == 2
-    assert "names no file" in done.stderr
-    assert not [*tmp_path.iterdir()]
-
-
-def test_files_are_written_though_nobody_reads_the_screen(tmp_path):
-    """As with ``| head -1``."""
-    file = tmp_path / "result.json"
-    words = [sys.executable, "-m", "loadshare", "run", str(CASE), "-o", str(file)]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
-        process.stdout.close()
-        assert process.wait() == 0
-    assert ls.load_result(file).passed

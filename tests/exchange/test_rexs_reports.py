@@ -166,26 +166,3 @@ def test_what_gears_and_speeds_do_not_give_is_reported(written) -> None:
     found = import_rexs(written(xml(*changed(two_stages(), _20=left)))).assumed
     for why in ("gear_20: no helix angle", "no speed is given"):
         assert any(why in line for line in found)
-
-
-@pytest.mark.parametrize(
-    ("left", "why"),
-    [
-        ({"outer_diameter_end": None}, "the outer diameter of a section is that of the one end"),
-        ({"inner_diameter_begin": None}, "the inner diameter of a section is that of the one end"),
-    ],
-)
-def test_a_section_with_one_diameter_is_a_cylinder(written, left, why) -> None:
-    stiffness = {}
-    for given in ({}, left):
-        found = import_rexs(written(xml(*changed(two_stages(), _50=given))))
-        shaft = found.case().shafts["gear_21-gear_22"]
-        stiffness[bool(given)] = shaft.stiffness.si
-        assert any(why in line for line in found.assumed) is bool(given)
-    assert stiffness[True] == pytest.approx(stiffness[False])
-
-
-def test_what_gears_and_speeds_do_not_give_is_reported(written) -> None:
-    found = import_rexs(written(xml(*changed(two_stages(), _20={"u_axis_vector": None}))))
-    assert any("gear_20: no helix angle is given" in line for line in found.assumed)
-    assert any("no speed is given" in line for line in found.assumed)

@@ -444,3 +444,51 @@ def test_progress_is_reported_after_every_block(monkeypatch):
         progress=lambda done, total: reported.append((done, total)),
     )
     assert reported == [(4, 10), (8, 10), (10, 10)]
+
+
+def test_samples_with_other_numbers_of_positions_are_solved_at_their_own():
+    case = shipped("fgfbstts/all_elements")
+    found = ls.solve_many(case, {"march.steps": [5, 20]})
+    assert found.sizes["position"] == 20
+    assert found.certified.sum("position").values.tolist() == [5, 20]
+    for row, steps in enumerate((5, 20)):
+        alone = ls.solve(case.replace({"march.steps": steps}))
+        torque = found.torque.isel(sample=row, position=slice(steps))
+        np.testing.assert_allclose(torque, alone.dataset.torque, rtol=1e-9)
+    assert "sample 0, position 6: the sample has no such position" in found.refused
+    only = ls.solve_many(case, {"march.steps": [5, 20]}, positions=[10])
+    assert only.certified.values.tolist() == [[False], [True]]
+    swept = ls.sweep(case, {"march.steps": [5, 20]})
+    assert [len(point.result.positions) for point in swept.points] == [5, 20]
+    assert swept.points[1].result.omega == pytest.approx(alone.omega)
+    late = ls.sweep(case, {"march.steps": [5, 20]}, positions=[10])
+    assert [point.status for point in late.points] == ["refused", "certified"]
+
+
+def test_gears_keep_their_names_whichever_end_drives():
+    case = shipped("planetary/four_planets")
+    samples = {
+        "operating.input": ["sun", "carrier"],
+        "operating.output": ["carrier", "sun"],
+        "operating.torque": ["1000 N*m", "6000 N*m"],
+    }
+    found = ls.solve_many(case, samples, least_norm=True)
+    for row in range(2):
+        alone = ls.solve(case.replace({key: values[row] for key, values in samples.items()}))
+        for gear in found.gear.values:
+            moved = found.displacement.isel(sample=row).sel(gear=gear)
+            np.testing.assert_allclose(moved, alone.dataset.displacement.sel(gear=gear), atol=1e-15)
+
+
+def test_extremes_need_not_go_together():
+    """No sample is rigid, though b and c of some are none."""
+    case = shipped("star/floating_sun_3")
+    mesh = next(iter(case.meshes))
+    case = case.replace(
+        {f'meshes."{mesh}".stiffness': None, f'meshes."{mesh}".law': {"b": "1e-6 rad/(N*m)"}}
+    )
+    b, c = f'meshes."{mesh}".law.b [rad/(N*m)]', f'meshes."{mesh}".law.c [rad/(N*m)^(2/3)]'
+    found = ls.solve_many(case, {b: [9e-7, 0.0, 1e-7], c: [0.0, 2e-6, 0.0]})
+    assert found.certified.all()
+    with pytest.raises(ls.CaseError, match="both 0"):
+        ls.solve_many(case, {b: [9e-7, 0.0, 0.0], c: [0.0, 2e-6, 0.0]})

@@ -165,16 +165,3 @@ def test_few_positions_have_a_tick_each_and_lines_are_broken_where_there_is_no_a
         there = [at for at, share in by_position.items() if share is not None]
         assert sorted(there) == [1, 3, 9, 10]
         assert by_position.keys() == {*range(1, 11)}
-
-
-def test_few_positions_have_a_tick_each_and_lines_are_broken_where_there_is_no_answer(read):
-    case = shipped("fgfbstts/all_elements")
-    result = ls.solve(case, positions=[1, 3, 9, 10])
-    spec = read(result.plot.share().spec)
-    lines = [unit for unit in spec.marks("line") if "x" in unit["encoding"]]
-    assert lines
-    for unit in lines:
-        assert unit["encoding"]["x"]["axis"]["values"] == [1, 3, 9, 10]
-        by_position = {row["position"]: row.get("share") for row in unit["rows"]}
-        assert [at for at, share in sorted(by_position.items()) if share is not None] == [1, 3, 9, 10]
-        assert by_position.keys() == {*range(1, 11)}

@@ -11,9 +11,7 @@ from tests.support import shipped
 import loadshare as ls
 from loadshare.report import records
 from loadshare.report.flanks import carrying, reaction_size
-from loadshare.report import records
 from loadshare.report.page.verdict import largest_forces, measure_of, sharing
-from loadshare.results.share import load_factors
 from loadshare.results.share import load_factors
 
 
@@ -92,47 +90,3 @@ def test_a_load_is_that_of_its_position(all_elements):
     assert {row["torque at"].text for row in rows} | {row["bearing at"].text for row in rows} > {
         "–"
     }
-
-
-def test_torques_of_drivers_of_two_sizes_are_not_called_k_gamma():
-    """The forces are as 2 to 1 where the torques are alike."""
-    gears = {
-        "a": {"base_radius": "30 mm", "centre": ["120 mm", "0 mm"]},
-        "b": {"base_radius": "60 mm", "centre": ["0 mm", "150 mm"]},
-        "o": {"base_radius": "80 mm"},
-    }
-    case = ls.Case(
-        {
-            "operating": {
-                "input": "a",
-                "output": "o",
-                "torque": "100 N*m",
-                "external": {"b": "100 N*m"},
-            },
-            "gears": gears,
-            "meshes": {name: {"stiffness": "1e6 N*m/rad"} for name in ("a-o", "b-o")},
-            "stages": {"I": {"meshes": ["a-o", "b-o"]}},
-        }
-    )
-    result = ls.solve(case)
-    assert measure_of(result) == "Ω"
-    assert sharing(result).columns[-1].title == "Ω"
-    here = result.positions[0]
-    assert here.share["a-o"] == pytest.approx(1.0)
-    factors = load_factors(here.train, here.torque, here.train.stages[0])
-    assert factors == pytest.approx({"a-o": 4.0 / 3.0, "b-o": 2.0 / 3.0})
-
-
-def test_a_load_is_that_of_its_position(all_elements):
-    found = {p.position: p.loads for p in all_elements.positions}
-    rows = list(records.loads(all_elements))
-    for row in rows:
-        kind, name = row["part"].text.split(" ", 1)
-        of = {at: (x.gears if kind == "gear" else x.shafts)[name] for at, x in found.items()}
-        if row["torque at"].value is not None:
-            assert row["torque"].value == of[row["torque at"].value]
-            assert abs(row["torque"].value) == max(map(abs, of.values()))
-        if row["bearing at"].value is not None:
-            forces = {at: math.hypot(*x.bearings[name]) for at, x in found.items()}
-            assert row["bearing"].value == forces[row["bearing at"].value] == max(forces.values())
-    assert {row["torque at"].text for row in rows} | {row["bearing at"].text for row in rows} > {"–"}

@@ -18,7 +18,7 @@ from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine
 from loadshare.settings import JOB
 from loadshare.solver import Record
-from loadshare.solver.position import coordinates_of
+from loadshare.solver.position import coordinates_of, with_ranges
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
@@ -81,7 +81,10 @@ class Solved:
 
     def _placed(self, row: int, index: int, train: Train) -> tuple[Equilibrium, Certificate]:
         """Return an answer at its place of least norm, and its certificate."""
-        equilibrium = self.least([row]).get(row) or self.found.equilibria.one(row, index)
+        least = self.least([row]).get(row)
+        equilibrium = self.found.equilibria.one(row, index)
+        if least is not None:
+            equilibrium = with_ranges(least, train)
         claimed = self.found.equilibria.part(slice(row, row + 1))
         torques = float(self.found.verdicts.bounds.relative[row])
         prove = partial(bound_of, train, equilibrium)

@@ -32,7 +32,7 @@ from loadshare.results.document import FORMAT, OLDER, as_data, to_document
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.scene import Scene, assemble
 from loadshare.settings import ALLOWED
-from loadshare.solver.position import coordinates_of, of_least_norm
+from loadshare.solver.position import coordinates_of, ranges_of
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import slip_of
@@ -312,7 +312,7 @@ def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
     """Yield ranges of what the forces leave open that do not follow from the claim."""
     for at, p in enumerate(positions):
         scene = assemble(p.claim.train(train), p.position)
-        ranges = of_least_norm(scene, p.equilibrium).undetermined
+        ranges = ranges_of(p.equilibrium, scene.train)
         given, found, sizes = as_data(p.undetermined), as_data(ranges), _sizes(scene, p.equilibrium)
         for path, was, wrong, expected in differences(found, given, least=sizes):
             yield ("positions", at, "undetermined", *path), was, wrong, expected

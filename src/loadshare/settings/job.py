@@ -25,6 +25,9 @@ class Job(NamedTuple):
     """Samples that show the others where to begin."""
     worth: int = 32
     """How many times as many samples it takes for that to be worth while."""
+    extremes: int = 1000
+    """Parts of a table of samples whose extremes are judged together, where those of all make no
+    case: some seconds."""
     block: int = 4096
     """Samples that are solved together, if every one has a few positions."""
     together: int = 20 * 1024

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -14,11 +15,15 @@ from loadshare.contact.plan import Plan, Role
 from loadshare.contact.programme import Array
 from loadshare.contact.record import Options, Record
 from loadshare.errors import Refused
+from loadshare.later import Later
+from loadshare.scene.assemble import assemble
 from loadshare.scene.scene import Scene
 from loadshare.settings import CONTACT, PLACES
 from loadshare.solver.undetermined import free_set, places
-from loadshare.train.equilibrium import Equilibrium
+from loadshare.solver.undetermined.places import Places
+from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import SlipFriction
+from loadshare.train.train import Train
 
 
 @dataclass(slots=True)
@@ -180,15 +185,15 @@ def equilibrium_of(scene: Scene, settled: Settled) -> Equilibrium:
     flanks = {r.name for r in scene.rows if r.kind.endswith("flank")}
     contacts = [r.name for r in scene.rows if r.kind == "stop"] + [a.name for a in scene.arcs]
     reactions = {r.name: -pulls[r.name] @ train.gears[r.gear].frame for r in scene.radials}
-    return Equilibrium(
+    placed = Equilibrium(
         index=scene.position,
         rotation={g: scene.angle(g, found.x) for g in train.gears},
         displacement={g: scene.moved(g, found.x) for g in train.gears},
         flank_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in sorted(flanks)},
         ring_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in contacts},
         radial_reaction=reactions,
-        undetermined=found.ranges,
     )
+    return with_ranges(placed, train)
 
 
 def coordinates_of(scene: Scene, found: Equilibrium) -> Array:
@@ -236,12 +241,7 @@ def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
     Torques and forces stay as they are.
     """
     gears, x = scene.train.gears, coordinates_of(scene, found)
-    forces = {**found.flank_force, **found.ring_force}
-    pulls = {r.name: -gears[r.gear].frame @ found.radial_reaction[r.name] for r in scene.radials}
-    laws = {
-        r.name: r.law(scene.train.transmitted(r.gear, found.flank_force), x) for r in scene.radials
-    }
-    least = places(free_set(scene, x, forces, pulls, laws))
+    least = _places_of(scene, found, x)
     if least.x is x:
         return replace(found, undetermined=least.ranges)
     return replace(
@@ -250,6 +250,29 @@ def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
         displacement={g: scene.moved(g, least.x) for g in gears},
         undetermined=least.ranges,
     )
+
+
+def with_ranges(found: Equilibrium, train: Train) -> Equilibrium:
+    """Return an equilibrium that says how far what its forces leave open may move.
+
+    To the last digit what a result says that is read: both go by its place and its train alone.
+    """
+    return replace(found, undetermined=Later(lambda: ranges_of(found, train)))
+
+
+def ranges_of(found: Equilibrium, train: Train) -> Mapping[str, Range]:
+    """Return the least and the largest value of what the forces of an equilibrium leave open."""
+    scene = assemble(train, found.index)
+    return _places_of(scene, found, coordinates_of(scene, found)).ranges
+
+
+def _places_of(scene: Scene, found: Equilibrium, x: Array) -> Places:
+    gears, forces = scene.train.gears, {**found.flank_force, **found.ring_force}
+    pulls = {r.name: -gears[r.gear].frame @ found.radial_reaction[r.name] for r in scene.radials}
+    laws = {
+        r.name: r.law(scene.train.transmitted(r.gear, found.flank_force), x) for r in scene.radials
+    }
+    return places(free_set(scene, x, forces, pulls, laws))
 
 
 def _radial_forces(scene: Scene, settled: Settled) -> dict[str, Array]:

@@ -32,7 +32,7 @@ from loadshare.scene.structure import structure_of
 from loadshare.settings import CERTIFY, MARCH
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.solver.hot.proximal import search
-from loadshare.solver.position import Known, equilibrium_of, of_least_norm
+from loadshare.solver.position import Known, equilibrium_of, with_ranges
 from loadshare.study.answers import BACKEND, certified
 from loadshare.train.elements import Spline
 from loadshare.train.equilibrium import Equilibrium
@@ -300,8 +300,7 @@ def _held(
         split = _split(train, found, gears, _before(train))
         answer = _judged(train, split, record, rung + ", slip held" * bool(gears))
         if answer is not None:
-            ranges = of_least_norm(assemble(train, index), split).undetermined
-            split = replace(split, undetermined=ranges)
+            split = with_ranges(split, train)
             certificate = certify(train, split, CERTIFY.tolerance)
             return Answer.of(train, split, certificate, answer.record, answer.rung)
     return None

@@ -19,6 +19,7 @@ from loadshare import case as spec
 from loadshare.case.element import Element
 from loadshare.case.keys import Path, dotted
 from loadshare.errors import CaseError
+from loadshare.settings import JOB
 from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of, with_laws
 from loadshare.train.columns import Column, columns_of
@@ -174,19 +175,21 @@ def _check(case: spec.Case, columns: Sequence[Column], arrays: Mapping[Path, Arr
 
     Other keys are judged with the groups that they make.
     """
-    extremes = [
-        {path: int(pick(values)) for path, values in arrays.items()}
-        for pick in (np.argmin, np.argmax)
-    ]
-    try:
-        for rows in extremes:
-            # The first sample was judged before.
-            if any(rows.values()):
-                case.replace({dotted(c.path): c.text(rows.get(c.path, 0)) for c in columns})
-    except CaseError:
-        # No sample need have all extremes at once.
-        for row in dict.fromkeys(row for rows in extremes for row in rows.values()):
-            case.replace({dotted(c.path): c.text(row) for c in columns})
+    parts, judged = [np.arange(len(columns[0].values))], 0
+    while parts:
+        rows, judged = parts.pop(), judged + 1
+        try:
+            for pick in (np.argmin, np.argmax):
+                at = {path: int(rows[pick(values[rows])]) for path, values in arrays.items()}
+                # The first sample was judged before.
+                if any(at.values()):
+                    others = int(rows[0])
+                    case.replace({dotted(c.path): c.text(at.get(c.path, others)) for c in columns})
+        except CaseError:
+            # No sample need have all extremes at once.
+            if len(rows) == 1 or judged > JOB.extremes:
+                raise
+            parts += np.array_split(rows, 2)[::-1]
 
 
 def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> dict[int, CaseError]:

@@ -421,6 +421,32 @@ def test_a_sample_that_makes_no_case_does_not_take_others_with_it(monkeypatch):
     assert any("makes no case" in text for text in found.messages)
 
 
+def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone():
+    """Only the train that is built of a sample shows it; the worst case is sought all the same."""
+    bearing = {"clearance": "30 um", "stiffness": "1e9 N/m", "diameter": "50 mm"}
+    case = shipped("planetary/four_planets").replace(
+        {"gears.planet1.support": None, "bearings.planet1": bearing}
+    )
+    inputs = {
+        "bearings.planet1.clearance": {"distribution": "uniform", "low": "10 um", "high": "60 um"},
+        "gears.carrier.temperature": {"distribution": "uniform", "low": "0 K", "high": "80 K"},
+    }
+    found = ls.tolerance(case, inputs, samples=40, indices=0)
+    frame = found.to_frame()
+    # The pin grows by 11.5e-6 of its 50 mm in diameter for every kelvin.
+    left = frame["bearings.planet1.clearance [um]"]
+    left = left - 0.5 * 11.5e-6 * 50e3 * frame["gears.carrier.temperature [K]"]
+    assert (frame["certified"] == (left > 0.0)).all()
+    assert 0 < found.refused < 20
+    assert all("is used up" in text for text in found.messages)
+    samples = {
+        "bearings.planet1.clearance [um]": [10.0, 60.0, 10.0],
+        "gears.carrier.temperature [K]": [0.0, 80.0, 80.0],
+    }
+    with pytest.raises(ls.CaseError, match='"10.0 um": is used up'):
+        ls.solve_many(case, samples)
+
+
 COMMAND = """
 import signal
 from loadshare.cli.main import main
