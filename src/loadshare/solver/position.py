@@ -192,8 +192,10 @@ def equilibrium_of(scene: Scene, settled: Settled) -> Equilibrium:
         flank_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in sorted(flanks)},
         ring_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in contacts},
         radial_reaction=reactions,
+        undetermined=found.ranges,
     )
-    return with_ranges(placed, train)
+    # With memory the forces of slips are not told from those of their stops yet.
+    return placed if train.slip is not None else with_ranges(placed, train)
 
 
 def coordinates_of(scene: Scene, found: Equilibrium) -> Array:

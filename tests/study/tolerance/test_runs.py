@@ -443,7 +443,7 @@ def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone():
         "bearings.planet1.clearance [um]": [10.0, 60.0, 10.0],
         "gears.carrier.temperature [K]": [0.0, 80.0, 80.0],
     }
-    with pytest.raises(ls.CaseError, match='"10.0 um": is used up'):
+    with pytest.raises(ls.CaseError, match=r'"10\.0 um": is used up'):
         ls.solve_many(case, samples)
 
 
