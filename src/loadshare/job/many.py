@@ -191,24 +191,16 @@ def solve_many(
     >>> bool(found.certified.all())
     True
     """
-    case = opened(case)
-    kept, tolerance = checked(keep), checked_tolerance(tolerance)
+    case, kept, tolerance = opened(case), checked(keep), checked_tolerance(tolerance)
     columns = {c.key: c.values for c in columns_of(samples)}  # Once: it may hold a generator.
     groups = samples_of(case, columns)
     trains = [group.train for _, group in groups]
     wanted = wanted_of(trains, positions)
+    found = Table(trains, wanted, len(next(iter(columns.values()))), kept)
+    blocks = _solved(case, groups, wanted, tolerance, engine, workers, least_norm)
     try:
-        for group in (group for _, group in groups):
-            group.build()
+        found.fill(blocks, progress)
     except CaseError as error:
         # It names what may be another sample's value.
         raise next(iter(unusable(case, columns).values()), error) from None
-    blocks = _solved(case, groups, wanted, tolerance, engine, workers, least_norm)
-    total, done = len(next(iter(columns.values()))), 0
-    found = Table(trains, wanted, total, kept)
-    for block in blocks:
-        found.write(block)
-        done += len(block.rows)
-        if progress is not None:
-            progress(done, total)
     return found.dataset(case, tolerance)

@@ -22,6 +22,8 @@ from loadshare.train.train import Train
 if TYPE_CHECKING:
     import xarray as xr
 
+    from loadshare.job.positions import Progress
+
 Array = NDArray[np.float64]
 
 
@@ -128,6 +130,15 @@ class Table:
 
     def _empty(self, value: Any, dims: tuple[str, ...], type_: str | None = None) -> np.ndarray:
         return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value, dtype=type_)
+
+    def fill(self, blocks: Iterable[Block], progress: Progress | None = None) -> None:
+        """Write all blocks, and tell after each how many samples are done."""
+        done, count = 0, len(self.coords["sample"])
+        for block in blocks:
+            self.write(block)
+            done += len(block.rows)
+            if progress is not None:
+                progress(done, count)
 
     def write(self, block: Block) -> None:
         """Write a block in its place."""

@@ -5,6 +5,7 @@ Both keep the work of a pass proportional to the number of branches.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -95,8 +96,8 @@ def _coupled(redundant: Array) -> NDArray[np.bool_]:
     return np.asarray(acts.T @ acts > 0.0)
 
 
-def eliminated(redundant: Array, turned: Array, borders: int) -> tuple[Rows, Factor]:
-    """Order in which redundants (k, r) leave little fill, and the factor of their matrix then.
+def eliminated(redundant: Array, turned: Array, borders: int) -> tuple[Array, Factor]:
+    """Redundants (k, r) in an order that leaves little fill, and the factor of their matrix then.
 
     Of columns that are left, the one that acts on the fewest others goes first.
 
@@ -110,21 +111,31 @@ def eliminated(redundant: Array, turned: Array, borders: int) -> tuple[Rows, Fac
     """
     r = redundant.shape[1]
     coupled = _coupled(redundant) | _coupled(np.abs(turned[::2]) + np.abs(turned[1::2]))
-    order, below = np.arange(r), [np.arange(c + 1, r) for c in range(r)]
-    if not coupled.all():
-        place = np.empty(r, dtype=np.intp)
-        left, of_column = np.ones(r, dtype=bool), []
-        for k in range(r):
-            c = int(np.where(left, coupled.sum(axis=1, where=left), r + 1).argmin())
-            left[c] = False
-            order[k], place[c] = c, k
-            rows = np.flatnonzero(coupled[c] & left)
-            coupled[np.ix_(rows, rows)] = True
-            of_column.append(rows)
-        below = [np.sort(place[rows]) for rows in of_column]
-    at_border = np.arange(r, r + borders)
-    full = [np.concatenate([rows, at_border]) for rows in below]
-    full += [at_border[k + 1 :] for k in range(borders)]
-    starts = np.zeros(r + borders + 1, dtype=np.intp)
-    np.cumsum([len(rows) for rows in full], out=starts[1:])
-    return order, Factor(starts, np.concatenate([np.zeros(0, dtype=np.intp), *full]))
+    if coupled.all():
+        return redundant, full(r, borders)
+    order, place, left = np.arange(r), np.arange(r), np.ones(r, dtype=bool)
+    below = []
+    for k in range(r):
+        c = int(np.where(left, coupled.sum(axis=1, where=left), r + 1).argmin())
+        left[c] = False
+        order[k], place[c] = c, k
+        rows = np.flatnonzero(coupled[c] & left)
+        coupled[np.ix_(rows, rows)] = True
+        below.append(rows)
+    factor = _factor([np.sort(place[rows]) for rows in below], borders)
+    return np.ascontiguousarray(redundant[:, order]), factor
+
+
+def full(r: int, borders: int) -> Factor:
+    """Return a factor of which nothing is zero."""
+    return _factor([np.arange(c + 1, r) for c in range(r)], borders)
+
+
+def _factor(below: Sequence[Rows], borders: int) -> Factor:
+    """Factor of some columns, with borders, which are full, as further rows and columns."""
+    at_border = np.arange(len(below), len(below) + borders)
+    columns = [np.concatenate([rows, at_border]) for rows in below]
+    columns += [at_border[k + 1 :] for k in range(borders)]
+    starts = np.zeros(len(columns) + 1, dtype=np.intp)
+    np.cumsum([len(rows) for rows in columns], out=starts[1:])
+    return Factor(starts, np.concatenate([np.zeros(0, dtype=np.intp), *columns]))

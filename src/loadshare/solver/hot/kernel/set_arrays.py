@@ -22,7 +22,7 @@ from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.solver.hot.contact_states import OPEN, PINNED, SLIP, STICK
 from loadshare.solver.hot.kernel.options import allocating
-from loadshare.solver.hot.kernel.redundants import Rows, eliminated, local
+from loadshare.solver.hot.kernel.redundants import Rows, eliminated, full, local
 
 States = NDArray[np.int8]
 
@@ -247,38 +247,32 @@ def _structure(
     structure: Structure, loading: Loading, basis: Basis, states: States
 ) -> tuple[list[Array], list[Rows], list[int]]:
     """The fields of `SetArrays` that are the same for all samples: tables, lists, numbers."""
-    first, flanks = structure.springs, structure.flat
-    first_arc, first_radial = first + flanks, first + structure.rows
+    first, flanks, first_radial = structure.springs, structure.flat, structure.radial_column(0)
     order, (springs, turned, powers, tables, rows) = _order(structure, loading, basis, states)
     columns, particular, n = basis.columns[order], basis.particular[order], basis.redundant[order]
     renewed = turned + powers + tables
     inverse = np.zeros((0, 0)) if renewed else _inverse(structure, loading, columns, n, states)
     turning_radials = (columns[springs : springs + turned : 2] - first_radial) // 2
     slips = states[structure.rows + turning_radials] == SLIP
+    borders = int(slips.sum())
+    factor = full(n.shape[1], borders)
     if n.shape[1] and not len(inverse):
         particular, n = (table[order] for table in local(basis))
-    by_fill, factor = eliminated(n, n[springs : springs + turned], int(slips.sum()))
-    n = np.ascontiguousarray(n[:, by_fill])
+        n, factor = eliminated(n, n[springs : springs + turned], borders)
     contacts, row_end = columns[springs:], renewed + rows
-    acting = np.flatnonzero((contacts >= first_arc) & (contacts < first_radial))
-    arcs = contacts[acting] - first_arc
-    idle = np.flatnonzero(states[: structure.rows] == OPEN)
-    open_rows, open_arcs = idle[idle < flanks], idle[idle >= flanks] - flanks
-    known = (loading.relative != 0.0).any(axis=1)
-    known |= structure.vectors[first_arc : first_arc + len(known)] != 0.0
+    arcs = contacts - first - flanks
+    acting = np.flatnonzero((arcs >= 0) & (contacts < first_radial))
+    open_rows = np.flatnonzero(states[:flanks] == OPEN)
+    open_arcs = np.flatnonzero(states[flanks : structure.rows] == OPEN)
+    known = _known_of_arcs(structure, loading)
     arc_starts, arc_coordinates, _ = _sparse(known.astype(float))
-    turning = np.flatnonzero(known[arcs].any(axis=0))
+    turning = np.flatnonzero(known[arcs[acting]].any(axis=0))
     starts, coordinates, entries = _sparse(structure.vectors)
-    at = {column: k for k, column in enumerate(contacts.tolist())}
-    radial_at = [
-        at.get(structure.radial_column(j), -1) for j in range(structure.switches - structure.rows)
-    ]
     compliances = np.array(loading.bending[0, columns[:springs]])
-    held, of_springs = particular[:springs], n[:springs]
+    held, of_springs, touching = particular[:springs], n[:springs], n[springs:]
     yields = held[:, turning].T * compliances
-    touching = n[springs:]
     by_springs = of_springs.T * compliances @ of_springs
-    entries_at = factor.entries(int(slips.sum()))
+    entries_at = factor.entries(borders)
     products = (touching[:, entries_at[0]] * touching[:, entries_at[1]]).T
     product_starts, product_contacts, product_values = _sparse(products[:, :renewed])
     arrays = [
@@ -311,7 +305,7 @@ def _structure(
         contacts,
         contacts[turned:row_end] - first,
         acting,
-        arcs,
+        arcs[acting],
         turning,
         open_arcs,
         open_rows,
@@ -319,7 +313,7 @@ def _structure(
         coordinates,
         arc_starts,
         arc_coordinates,
-        np.array(radial_at, dtype=np.intp),
+        _radial_at(structure, contacts),
         turning_radials,
         np.where(slips, np.cumsum(slips) - 1, -1),
         loading.tabulated[contacts[turned + powers : renewed]],
@@ -329,6 +323,20 @@ def _structure(
         product_contacts,
     ]
     return arrays, lists, [powers, turned, row_end, first, first_radial, flanks]
+
+
+def _known_of_arcs(structure: Structure, loading: Loading) -> NDArray[np.bool_]:
+    """Which coordinates the arcs know of, (arcs, n)."""
+    known = (loading.relative != 0.0).any(axis=1)
+    first = structure.springs + structure.flat
+    return np.asarray(known | (structure.vectors[first : first + len(known)] != 0.0))
+
+
+def _radial_at(structure: Structure, contacts: Rows) -> Rows:
+    """First contact of each radial element, −1 where it does not act."""
+    at = {column: k for k, column in enumerate(contacts.tolist())}
+    radials = range(structure.switches - structure.rows)
+    return np.array([at.get(structure.radial_column(j), -1) for j in radials], dtype=np.intp)
 
 
 def _order(
