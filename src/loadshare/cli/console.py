@@ -71,7 +71,9 @@ def console(*, stderr: bool = False) -> Console:
     class Screen(rich.Console):
         def on_broken_pipe(self) -> None:
             """Go on when nobody reads any more, as with ``| head``: files are still written."""
-            os.dup2(os.open(os.devnull, os.O_WRONLY), self.file.fileno())
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self.file.fileno())
+            os.close(nowhere)
 
     speak()
     return Screen(stderr=stderr or is_stdout_taken(), markup=False, emoji=False, highlight=False)
