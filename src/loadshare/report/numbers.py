@@ -19,6 +19,10 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}" + ("" if number == 1 else "s")
 
 
+ALIKE = 1e-9
+"""Relative difference between positions that is round-off."""
+
+
 def decimals(values: Iterable[float], significant: int = 5) -> int:
     """Return how many decimals, at least one, show the largest value to so many digits."""
     largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)

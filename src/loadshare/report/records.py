@@ -9,7 +9,16 @@ from typing import Literal
 
 from loadshare.case import Case
 from loadshare.certify.validity import LABELS
-from loadshare.report.numbers import NONE, decimals, fixed, micrometres, omega, significant, small
+from loadshare.report.numbers import (
+    ALIKE,
+    NONE,
+    decimals,
+    fixed,
+    micrometres,
+    omega,
+    significant,
+    small,
+)
 from loadshare.results import Position, Result
 from loadshare.results.laws import law_lines
 
@@ -263,12 +272,15 @@ def _loads(
     places, least = decimals(sizes), 1e-9 * max(sizes, default=0.0)
 
     def largest(values: Sequence[tuple[float, int]]) -> tuple[Cell, Cell]:
-        value, at = max(values, key=lambda one: abs(one[0]), default=(0.0, 0))
-        if abs(value) <= least:
+        most = max((abs(value) for value, _ in values), default=0.0)
+        if most <= least:
             return Cell(NONE), Cell(NONE)
+        # Of positions that are alike, which is a hair ahead is round-off.
+        top = [(value, at) for value, at in values if abs(value) >= most * (1.0 - ALIKE)]
+        value, at = top[0]
         # Small beside the largest, it would lose its digits.
         text = fixed(value, places) if abs(value) >= 10.0 ** (3 - places) else significant(value)
-        return Cell(text, value), Cell(str(at), at)
+        return Cell(text, value), Cell("all" if len(top) == len(values) > 1 else str(at), at)
 
     return largest
 

@@ -17,7 +17,7 @@ from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import Drawing, Row, axis, chart, heading
-from loadshare.report.numbers import decimals, fixed
+from loadshare.report.numbers import ALIKE, decimals, fixed
 from loadshare.report.palette import SOFT, Look, palette_of
 from loadshare.report.units import Unit, engineering
 from loadshare.results import Result
@@ -28,8 +28,6 @@ REST = "Not in a stage"
 """Title of the panel of meshes that belong to no stage."""
 TICKS = 8
 """Positions up to which each has a tick."""
-ALIKE = 1e-9
-"""Relative difference between positions that is round-off."""
 WIDTH, ROW = 300, 26
 """Width of a panel and height of a bar's row [px]."""
 
