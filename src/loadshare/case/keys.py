@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 Path: TypeAlias = tuple[str | int, ...]
@@ -37,6 +38,7 @@ def dotted(path: Path) -> str:
     return text
 
 
+@lru_cache(maxsize=4096)
 def parse(text: str) -> Path:
     """Return the key path that dotted text names.
 
@@ -87,7 +89,8 @@ def look_up(data: Any, path: Path) -> Any:
         The value.
     """
     for step in path:
-        if isinstance(data, Mapping):
+        # To ask of a table of a file whether it is a mapping takes longer than to look it up.
+        if isinstance(data, dict | Mapping):
             data = data.get(step)
         elif isinstance(data, Sequence) and not isinstance(data, str) and isinstance(step, int):
             data = data[step] if step < len(data) else None
@@ -123,7 +126,7 @@ def walk(data: Mapping[str, Any], above: Path = ()) -> Iterator[Path]:
     """
     for key, value in data.items():
         yield (*above, key)
-        if isinstance(value, Mapping):
+        if isinstance(value, dict):
             yield from walk(value, (*above, key))
 
 

@@ -68,13 +68,17 @@ class Judge:
             Whether errors are bounded with every effort; without a bound nothing passes, and with
             Numba nothing but what is bounded at once.
         """
-        if compiled and is_covered(self.columns) and not situations.push.any():
+        if compiled and self.compiles(situations):
             return self._compiled(situations, answers, tolerance, bounded)
         limits = None
         if bounded:
             # What is certified is close enough, as in `completed`.
             limits = bounds(self.columns, situations, answers, enough=tolerance)
         return self._by_numpy(situations, answers, tolerance, limits)
+
+    def compiles(self, situations: Situations) -> bool:
+        """Tell whether answers in some situations are judged with Numba where that is wanted."""
+        return is_covered(self.columns) and not situations.push.any()
 
     def _compiled(
         self, situations: Situations, answers: Equilibria, tolerance: float, bounded: bool

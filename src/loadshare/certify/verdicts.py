@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +37,27 @@ class Verdicts:
     displaced: Array
     bounds: Bounds
 
+    def replaced(self, samples: NDArray[np.intp], others: Verdicts) -> Verdicts:
+        """Return the same with other verdicts on some samples."""
+        arrays = _replaced(self, others, samples, ("worst", "load", "deflection", "displaced"))
+        names = ("relative", "torque", "force", "coordinate")
+        bounds = replace(self.bounds, **_replaced(self.bounds, others.bounds, samples, names))
+        return replace(self, **arrays, bounds=bounds)
+
     @cached_property
     def passed(self) -> NDArray[np.bool_]:
         """Whether every residual, and the error of every torque, is within the tolerance."""
         return np.asarray((self.worst <= self.tolerance) & (self.bounds.relative <= self.tolerance))
+
+
+def _replaced(
+    mine: object, others: object, samples: NDArray[np.intp], names: tuple[str, ...]
+) -> dict[str, Any]:
+    """Arrays with others in the places of some samples; None where either has none."""
+    found: dict[str, Any] = dict.fromkeys(names)
+    for name in names:
+        here, there = getattr(mine, name), getattr(others, name)
+        if here is not None and there is not None:
+            found[name] = here.copy()
+            found[name][samples] = there
+    return found

@@ -14,7 +14,6 @@ from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.structure import Structure, structure_of
-from loadshare.settings import JOB, RULE
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria, pin, without_noise
@@ -22,7 +21,7 @@ from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Engine, Found, States, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.proximal import search
-from loadshare.solver.hot.rule import rule_of
+from loadshare.solver.hot.rule import rule_of, samples_to_learn
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.placed import standing
@@ -85,6 +84,45 @@ class _Start:
 
     states: States
     share: NDArray[np.float64]
+
+
+class _Judging:
+    """Answers of samples and what the certificate says of them, renewed where they change."""
+
+    def __init__(
+        self,
+        machine: Machine,
+        situations: Situations,
+        iterate: Iterate,
+        tolerance: float,
+        compiled: bool,
+    ) -> None:
+        self.structure, self.judge = machine.structure, machine.judge
+        self.situations, self.iterate = situations, iterate
+        self.tolerance, self.compiled = tolerance, compiled
+        self.answers: Equilibria
+        self._verdicts: Verdicts | None = None
+
+    def renewed(self, rows: NDArray[np.bool_], bounded: bool = True) -> Verdicts:
+        """Judge samples that have changed, the first time all; return the verdicts on all.
+
+        Errors are bounded with every effort, or only where that takes no time (see `Judge.judge`).
+        """
+        if self._verdicts is None:
+            self.answers = equilibria(self.structure, self.iterate, self.compiled)
+            self._verdicts = self._judged(self.situations, self.answers, bounded)
+        elif rows.any():
+            some = np.flatnonzero(rows)
+            answers = equilibria(self.structure, self.iterate.take(some), self.compiled)
+            self.answers.put_all(some, answers)
+            verdicts = self._judged(self.situations.take(some), answers, bounded)
+            self._verdicts = self._verdicts.replaced(some, verdicts)
+        return self._verdicts
+
+    def _judged(self, situations: Situations, answers: Equilibria, bounded: bool) -> Verdicts:
+        return self.judge.judge(
+            situations, answers, self.tolerance, compiled=self.compiled, bounded=bounded
+        )
 
 
 class Machine:
@@ -183,44 +221,24 @@ class Machine:
     def _answer(
         self, situations: Situations, tolerance: float, engine: Engine, starts: Sequence[int]
     ) -> Answers:
-        loading = loading_of(self.structure, situations)
-        iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
-        beside = None if starts else self._beside(loading.count)
-        if beside is not None:
-            self._begin(slice(None), beside, loading, iterate, states)
-        parts = _parts(loading.count, len(starts))
-        many = bool(parts) and parts[0].stop >= JOB.worth * JOB.trial_samples
-        for part, begin in zip(parts, self._at_starts(starts, engine), strict=True):
-            if begin is not None:
-                first = slice(part.start, part.start + JOB.trial_samples) if many else part
-                self._begin(first, begin, loading, iterate, states)
-        found = self._trial_samples(parts, loading, iterate, states, engine) if many else None
-        if found is not None and parts[0].stop >= RULE.worth * RULE.taught:
-            found = self._taught(parts, loading, iterate, states, engine, found)
-        more = exchange(
-            self.structure, loading, iterate, engine, states, only=~found.solved if found else None
-        )
-        found = found.completed(more) if found else more
-        started = bool(starts) or beside is not None
+        loading, quick = loading_of(self.structure, situations), engine is not vectorised.settle
+        ways, by_rule = self._ways(loading, engine, starts)
+        iterate, found = ways[0](None)
         left = ~found.solved
-        quick = engine is not vectorised.settle
-        numpy = vectorised.settle
-        attempts = (engine, False), (numpy, False), (numpy, True)
-        tries = np.full(loading.count, 2 - started - quick)
+        tries = np.ones(loading.count, dtype=np.intp)
         searched = np.zeros(loading.count, dtype=bool)
+        judging = _Judging(self, situations, iterate, tolerance, quick)
+        # What a rule has end on the verge takes long to bound; another way may end clear of it.
+        at_once = by_rule and quick and self.judge.compiles(situations)
         while True:
             found = found.without(left)
-            for number, (other, singly) in enumerate(attempts):
-                # A beginning or compiled code that fails: once more from rest, then with
-                # NumPy, at last by one element after another.
+            renewed = ~found.solved
+            for number, way in enumerate(ways):
                 fresh = ~found.solved & ~searched & (tries == number)
                 if fresh.any():
-                    rest = at_rest(self.structure, loading)
-                    more = exchange(self.structure, loading, rest, other, only=fresh, singly=singly)
-                    iterate, found = (
-                        iterate.completed(rest, fresh & more.solved),
-                        found.completed(more),
-                    )
+                    other, more = way(fresh)
+                    iterate.completed(other, fresh & more.solved)
+                    found = found.completed(more)
                     tries[fresh] += 1
             if not (starts or searched.any()) and found.solved.all():
                 self._last = self._as_start(loading, iterate, found)
@@ -228,16 +246,19 @@ class Machine:
             found = self._search(loading, iterate, found, left, tolerance)
             searched |= left
             pin(self.structure, loading, iterate, found.states)
-            answers, verdicts = self._judged(situations, iterate, tolerance, engine)
+            verdicts = judging.renewed(renewed, bounded=not at_once)
             unproved = found.solved & ~verdicts.passed & (verdicts.worst <= tolerance)
+            if at_once and unproved.any():
+                left, at_once = unproved, False
+                continue
             if unproved.any() and without_noise(self.structure, iterate, unproved):
-                answers, verdicts = self._judged(situations, iterate, tolerance, engine)
+                verdicts = judging.renewed(unproved)
             left = found.solved & ~verdicts.passed & ~searched
             if not left.any():
                 break
         return Answers(
             loading,
-            answers,
+            judging.answers,
             verdicts,
             found.solved & verdicts.passed,
             found.states,
@@ -246,12 +267,71 @@ class Machine:
             partial(determined, self.structure, loading, iterate, found.states, found.held, quick),
         )
 
-    def _judged(
-        self, situations: Situations, iterate: Iterate, tolerance: float, engine: Engine
-    ) -> tuple[Equilibria, Verdicts]:
-        quick = engine is not vectorised.settle
-        answers = equilibria(self.structure, iterate, quick)
-        return answers, self.judge.judge(situations, answers, tolerance, compiled=quick)
+    def _ways(
+        self, loading: Loading, engine: Engine, starts: Sequence[int]
+    ) -> tuple[list[Callable[[NDArray[np.bool_] | None], tuple[Iterate, Found]]], bool]:
+        """Ways to solve some of the samples, one after another; whether a rule is the first.
+
+        A beginning or compiled code that fails: once more from rest, then with NumPy, at last by
+        one element after another.
+        """
+        learn_from = samples_to_learn(loading.count if starts else 0)
+        by_rule, numpy = len(learn_from) > 0, vectorised.settle
+        ways: list[Callable[[NDArray[np.bool_] | None], tuple[Iterate, Found]]] = []
+        if by_rule:
+            ways.append(lambda _: self._by_rule(loading, engine, learn_from))
+        if starts or self._beside(loading.count) is not None:
+            ways.append(lambda some: self._from_near(loading, engine, starts, some))
+        ways.append(lambda some: self._from_rest(loading, engine, some))
+        if engine is not numpy:
+            ways.append(lambda some: self._from_rest(loading, numpy, some))
+        ways.append(lambda some: self._from_rest(loading, numpy, some, singly=True))
+        return ways, by_rule
+
+    def _from_rest(
+        self,
+        loading: Loading,
+        engine: Engine,
+        some: NDArray[np.bool_] | None,
+        singly: bool = False,
+    ) -> tuple[Iterate, Found]:
+        iterate = at_rest(self.structure, loading)
+        return iterate, exchange(self.structure, loading, iterate, engine, only=some, singly=singly)
+
+    def _from_near(
+        self,
+        loading: Loading,
+        engine: Engine,
+        starts: Sequence[int],
+        some: NDArray[np.bool_] | None,
+    ) -> tuple[Iterate, Found]:
+        """Let samples begin where the train itself stands, or a machine that differs little."""
+        iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
+        parts = _parts(loading.count, len(starts)) if starts else [slice(None)]
+        known = self._at_starts(starts, engine) if starts else [self._beside(loading.count)]
+        for part, start in zip(parts, known, strict=True):
+            if start is not None:
+                states[part, : self.structure.rows] = start.states
+                iterate.begin(part, start.share, loading)
+        return iterate, exchange(self.structure, loading, iterate, engine, states, only=some)
+
+    def _by_rule(
+        self, loading: Loading, engine: Engine, learn_from: NDArray[np.intp]
+    ) -> tuple[Iterate, Found]:
+        """Solve some samples; the others begin where a rule says, which it learns from these."""
+        iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
+        taught = np.zeros(loading.count, dtype=bool)
+        taught[learn_from] = True
+        found = exchange(self.structure, loading, iterate, engine, states, only=taught)
+        known = np.flatnonzero(found.solved)
+        if len(known):
+            share = np.abs(iterate.force[known]) / pushes(loading)[known, None]
+            rule = rule_of(loading, known, found.states[known, : self.structure.rows], share)
+            # Those that are solved begin nowhere.
+            states[:, : self.structure.rows] = rule.states[rule.named]
+            iterate.begin(slice(None), rule.share, loading, rule.named)
+        others = exchange(self.structure, loading, iterate, engine, states, only=~found.solved)
+        return iterate, found.completed(others)
 
     def _search(
         self,
@@ -270,77 +350,6 @@ class Machine:
             if more.solved[0]:
                 iterate.put(row, one)
                 found = found.replaced(row, more)
-        return found
-
-    def _begin(
-        self, part: slice, begin: _Start, loading: Loading, iterate: Iterate, states: States
-    ) -> None:
-        states[part, : self.structure.rows] = begin.states
-        iterate.begin(part, begin.share, loading)
-
-    def _trial_samples(
-        self,
-        parts: Sequence[slice],
-        loading: Loading,
-        iterate: Iterate,
-        states: States,
-        engine: Engine,
-    ) -> Found:
-        """Solve the first samples of every part; the others begin where most of these stand."""
-        trial_samples = np.concatenate(
-            [np.arange(p.start, p.start + JOB.trial_samples) for p in parts]
-        )
-        some = np.zeros(loading.count, dtype=bool)
-        some[trial_samples] = True
-        found = exchange(self.structure, loading, iterate, engine, states, only=some)
-        trial_samples = trial_samples[found.solved[trial_samples]]
-        if len(trial_samples):
-            # The set from which it takes the fewest changes to all the others.
-            closed = found.states[trial_samples, : self.structure.rows].astype(float)
-            apart = closed.sum(axis=1) - 2.0 * closed @ closed.mean(axis=0)
-            middle = trial_samples[apart.argmin()]
-            alike = trial_samples[(found.states[trial_samples] == found.states[middle]).all(axis=1)]
-            share = np.abs(iterate.force[alike]) / pushes(loading)[alike, None]
-            begin = _Start(found.states[middle, : self.structure.rows], share.mean(axis=0))
-            for part in parts:
-                self._begin(
-                    slice(part.start + JOB.trial_samples, part.stop),
-                    begin,
-                    loading,
-                    iterate,
-                    states,
-                )
-        return found
-
-    def _taught(
-        self,
-        parts: Sequence[slice],
-        loading: Loading,
-        iterate: Iterate,
-        states: States,
-        engine: Engine,
-        found: Found,
-    ) -> Found:
-        """Solve more of every part; the others begin where a rule says, which these teach."""
-        some = np.zeros(loading.count, dtype=bool)
-        for part in parts:
-            some[part.start : part.start + RULE.taught] = True
-        some &= ~found.solved
-        found = found.completed(
-            exchange(self.structure, loading, iterate, engine, states, only=some)
-        )
-        rows, push = self.structure.rows, pushes(loading)
-        for part in parts:
-            first = slice(part.start, part.start + RULE.taught)
-            if not found.solved[first].all():
-                continue
-            share = np.abs(iterate.force[first]) / push[first, None]
-            rule = rule_of(loading, part, found.states[first, :rows], share)
-            if rule is not None:
-                named = rule.named[RULE.taught :]
-                others = slice(first.stop, part.stop)
-                states[others, :rows] = rule.states[named]
-                iterate.begin(others, rule.share, loading, named)
         return found
 
     def _at_starts(self, indices: Sequence[int], engine: Engine) -> list[_Start | None]:

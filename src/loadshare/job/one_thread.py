@@ -6,9 +6,11 @@ batch on two cores), and would let sums round differently from one machine to th
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import Any
 
 _lock = threading.Lock()
@@ -16,15 +18,22 @@ _batches: list[object] = []
 _limits: list[Any] = []
 
 
+@lru_cache(maxsize=1)
+def _libraries(_modules: int) -> Any:
+    """Return the libraries of this process; to find them takes as long as many samples."""
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
+
+
 @contextmanager
 def one_thread() -> Iterator[None]:
     """Limit BLAS to one thread until the last of all batches of this process has ended."""
-    from threadpoolctl import threadpool_limits
-
     batch = object()
     with _lock:
         if not _batches:
-            _limits.append(threadpool_limits(1, "blas"))
+            # Another library comes with another module.
+            _limits.append(_libraries(len(sys.modules)).limit(limits=1, user_api="blas"))
         _batches.append(batch)
     try:
         yield

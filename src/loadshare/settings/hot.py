@@ -151,15 +151,23 @@ class Exchange(NamedTuple):
 class Rule(NamedTuple):
     """A linear rule that names the set on which a sample will end."""
 
-    taught: int = 512
-    """Samples of a part from which it is learnt: with as many it names four sets in five of the
-    seed's limit rings, with half of them three in four."""
+    taught: int = 640
+    """Samples from which it is learnt at most: with as many it names five sets in six of the seed's
+    limit rings, with half of them four in five."""
+    fewest: int = 80
+    """Samples from which it is learnt at least."""
     worth: int = 8
     """How many times as many samples it takes for that to be worth while."""
     sets: int = 16
     """Sets that it may name, those met most often."""
     ridge: float = 1e-2
     """Weight on the rule's own size, for numbers that hardly vary by themselves."""
+    dense: float = 0.3
+    """Share of a table's columns in use from which on it is multiplied whole, which takes less time
+    than to pick them."""
+    follows: float = 1e-6
+    """What is left of a number without the others, over the largest, below which it follows from
+    these: so do laws that vary with the position alone."""
 
 
 class Search(NamedTuple):

@@ -21,10 +21,6 @@ class Job(NamedTuple):
     compiling: int = 200_000
     """Equilibria up to which compiling, where nothing is on disk, costs more than it saves: NumPy
     takes as long for so many, of trains between the seed's and those of all elements."""
-    trial_samples: int = 16
-    """Samples that show the others where to begin."""
-    worth: int = 32
-    """How many times as many samples it takes for that to be worth while."""
     extremes: int = 1000
     """Parts of a table of samples whose extremes are judged together, where those of all make no
     case: some seconds."""

@@ -169,6 +169,11 @@ class Equilibria:
         for array in self.arrays:
             array[sample] = np.nan
 
+    def put_all(self, samples: NDArray[np.intp], answers: Equilibria) -> None:
+        """Write answers in the places of some samples."""
+        for here, others in zip(self.arrays, answers.arrays, strict=True):
+            here[samples] = others
+
     def put(self, sample: int, answer: Equilibrium) -> None:
         """Write an equilibrium in the place of a sample."""
         names, train = self.names, self.names.train

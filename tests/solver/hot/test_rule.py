@@ -5,14 +5,14 @@ import pytest
 from tests.support import CASES
 
 from benchmarks.workloads import workloads
-from loadshare.job import machine as job_machine
 from loadshare.job.machine import Machine
 from loadshare.scene.loading import loading_of
 from loadshare.settings import RULE
+from loadshare.solver.hot import rule as rule_module
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.exchange import exchange, first_sets
 from loadshare.solver.hot.iterate import at_rest, pushes
-from loadshare.solver.hot.rule import rule_of
+from loadshare.solver.hot.rule import rule_of, samples_to_learn
 from loadshare.train.samples import samples_of
 
 TAUGHT, COUNT = 256, 768
@@ -33,23 +33,39 @@ def rings():
 
 def test_it_names_most_sets_of_samples_that_it_has_not_seen(rings):
     machine, _, loading, iterate, found = rings
-    taught = slice(0, TAUGHT)
+    taught = np.arange(TAUGHT)
     states = found.states[:, : machine.structure.rows]
     share = np.abs(iterate.force[taught]) / pushes(loading)[taught, None]
-    rule = rule_of(loading, slice(0, COUNT), states[taught], share)
+    rule = rule_of(loading, taught, states[taught], share)
     right = (rule.states[rule.named] == states).all(axis=1)[TAUGHT:]
     _, times = np.unique(states, axis=0, return_counts=True)
     assert right.mean() >= max(0.7, 1.1 * times.max() / COUNT)
 
 
-def test_samples_of_one_set_need_no_rule(rings):
+def test_samples_of_one_set_all_begin_there(rings):
     machine, _, loading, iterate, found = rings
     states = np.repeat(found.states[:1, : machine.structure.rows], TAUGHT, axis=0)
-    assert rule_of(loading, slice(0, COUNT), states, np.abs(iterate.force[:TAUGHT])) is None
+    rule = rule_of(loading, np.arange(TAUGHT), states, np.abs(iterate.force[:TAUGHT]))
+    assert (rule.states[rule.named] == states[0]).all()
+
+
+@pytest.mark.parametrize("count", [640, 5120, 16_670, 10**6])
+def test_samples_to_learn_from_are_spread_over_all_positions(count):
+    rows, wanted = samples_to_learn(count), min(RULE.taught, count // RULE.worth)
+    assert 0.9 * wanted < len(rows) <= wanted
+    per_part = np.bincount(rows * 5 // count)
+    assert np.abs(per_part - len(rows) / 5).max() <= 2
+    # At each position other samples of a study, but for some.
+    assert len(np.unique(rows % (count // 5))) > 0.7 * wanted
+
+
+def test_few_samples_teach_nothing():
+    assert not len(samples_to_learn(RULE.worth * RULE.fewest - 1))
 
 
 def test_answers_are_those_from_rest_in_fewer_visits(rings, monkeypatch):
-    monkeypatch.setattr(job_machine, "RULE", RULE._replace(taught=TAUGHT, worth=3))
+    # One table of settings in both places.
+    monkeypatch.setattr(rule_module, "RULE", RULE._replace(taught=TAUGHT, worth=3))
     machine, situations, _, iterate, found = rings
     answers = machine.answer(situations, 1e-9, vectorised.settle, starts=(1,))
     assert found.solved.all()
@@ -63,8 +79,11 @@ def test_answers_are_those_from_rest_in_fewer_visits(rings, monkeypatch):
 
 def test_numbers_that_do_not_vary_teach_nothing(rings):
     machine, situations, *_ = rings
+    taught = np.arange(TAUGHT)
     loading = loading_of(machine.structure, situations.take(np.zeros(COUNT, dtype=np.intp)))
     states = np.zeros((TAUGHT, machine.structure.rows), dtype=np.int8)
     states[::2, 0] = 1
     share = np.zeros((TAUGHT, len(machine.structure.kinds)))
-    assert rule_of(loading, slice(0, COUNT), states, share) is None
+    rule = rule_of(loading, taught, states, share)
+    # All begin on the set that was met most often, of two as often the first.
+    assert (rule.named == 0).all()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,10 @@ class Iterate:
     root: Array
     floor: Array
     stays: NDArray[np.bool_]
+
+    def take(self, rows: NDArray[np.intp]) -> Iterate:
+        """Return some of the samples, as a copy."""
+        return Iterate(*(getattr(self, field.name)[rows] for field in fields(self)))
 
     def completed(self, other: Iterate, rows: NDArray[np.bool_]) -> Iterate:
         """Return this iterate with some samples as they are in the other."""
