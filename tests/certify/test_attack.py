@@ -90,7 +90,7 @@ def test_bounds_hold_of_light_flanks_too(number):
     light = victim(case, 1 + number % case.operating.positions)
     tried = ("contact dropped", "self-stress", "wrong flank")
     rng = np.random.default_rng(number)
-    wrong = [a for a in (one(light, tried[k % 3], rng) for k in range(60)) if a is not None]
+    wrong = [a for a in (one(light, tried[k % 3], rng) for k in range(90)) if a is not None]
     bounded = [a for a in wrong if a.margin < math.inf and a.error > ALLOWED]
     assert len(bounded) > 5
     assert [a for a in bounded if a.margin < -ROUNDING or a.passed] == []
