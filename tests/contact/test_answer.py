@@ -122,6 +122,21 @@ def test_what_has_no_equilibrium_is_refused() -> None:
     ("part", "value", "message"),
     [
         ("stiffness", np.array([[-1.0]]), "negative eigenvalue"),
+        (
+            "rows",
+            (Row("stop", "stop", [-0.0], -0.1, TableLaw((0.0, 1.0), (0.0, 1.0))),),
+            "vector of stop: is zero, so that it touches nothing",
+        ),
+        (
+            "arcs",
+            (ArcRow("arc", Arc([1, 0, 0], [0, 0, 0], 0), np.zeros((3, 1)), RIGID, 0),),
+            "relative of arc: is zero",
+        ),
+        (
+            "radials",
+            (Radial("drum", np.zeros((2, 1)), [0, 0], RadialLaw((Piece(0, 1, 1, "wall"),))),),
+            "matrix of drum: is zero",
+        ),
         ("stiffness", np.eye(2), r"shape \(2, 2\), wanted \(1, 1\)"),
         ("load", np.array([np.nan]), "no finite number"),
         ("coordinates", ("right stop",), "two elements or coordinates"),

@@ -225,6 +225,8 @@ class ContactProblem:
                 wrong.append(f"{what}: shape {array.shape}, wanted {shape}")
             elif not np.isfinite(array).all():
                 wrong.append(f"{what}: holds what is no finite number")
+            elif what.startswith(("vector", "relative", "matrix")) and not array.any():
+                wrong.append(f"{what}: is zero, so that it touches nothing")
         laws: list[tuple[str, object, Any]]
         laws = [(f"law of {row.name}", row.law, Law) for row in self.rows]
         laws += [(f"law of {arc.name}", arc.law, Law) for arc in self.arcs]
