@@ -114,8 +114,27 @@ def test_what_nothing_holds_is_named() -> None:
 
 def test_what_has_no_equilibrium_is_refused() -> None:
     free = ContactProblem(("x",), np.zeros((1, 1)), np.array([1.0]))
-    with pytest.raises(Refused, match="no equilibrium"):
+    with pytest.raises(Refused, match=r"no equilibrium .*: the load moves x without end"):
         solve_contact(free)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("load", [(30.0, 40.0), (1e5, 3.0), (-1e9, 1e-3), (1e200, 0.0)])
+def test_a_load_beyond_all_friction_is_refused(load: tuple[float, float]) -> None:
+    """Friction of 10 N, and nothing behind it."""
+    slips = RadialLaw((Piece(10.0, 0.0, math.inf, "slip"),))
+    with pytest.raises(Refused, match=r"the load moves .* without end"):
+        solve_contact(disc(load, slips))
+
+
+def test_a_load_that_is_refused_without_running_away_is_not_said_to() -> None:
+    """Stops that contradict one another by 1 mm; friction that is not used up."""
+    stops = [Row(name, "stop", [s, 0.0], -5e-4, RIGID) for name, s in (("l", -1.0), ("r", 1.0))]
+    slips = Radial("s", np.eye(2), np.zeros(2), RadialLaw((Piece(10.0, 0.0, math.inf, "slip"),)))
+    between = ContactProblem(("x", "y"), np.zeros((2, 2)), [0.0, 9.0], stops, (), (slips,))
+    with pytest.raises(Refused) as caught:
+        solve_contact(between)
+    assert "without end" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

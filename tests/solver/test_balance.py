@@ -11,12 +11,12 @@ from tests.support import round_ring, shipped
 
 import loadshare as ls
 from benchmarks.random_trains.draw import draw
+from loadshare.contact.runaway import runaway
 from loadshare.errors import Refused
 from loadshare.job import machine
 from loadshare.scene import assemble
 from loadshare.scene.structure import structure_of
 from loadshare.solver.balance import is_unbalanced
-from loadshare.solver.runaway import runaway
 from loadshare.train import build_train
 
 

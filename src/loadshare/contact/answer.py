@@ -14,6 +14,7 @@ from loadshare.contact.plan import Plan
 from loadshare.contact.problem import Array, ContactProblem, of_unit_norm
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
+from loadshare.contact.runaway import runaway
 from loadshare.errors import Refused
 from loadshare.settings import CONTACT
 
@@ -112,6 +113,9 @@ def solve_contact(
         if answer.passed:
             return answer
         last = f"residual {answer.residuals.worst:.2g} of 1e-9 allowed"
+    moved = runaway(problem)
+    if moved:
+        last = f"the load moves {', '.join(moved)} without end, and too little resists it"
     raise Refused(f"no equilibrium of the contact problem was found: {last}")
 
 

@@ -194,6 +194,8 @@ def _newton_system(programme: Programme, active: ActiveSet, at: Point, stay: boo
     if solved is None:
         return None
     x = solved.values[:size]
+    if not np.abs(x).max(initial=0.0) <= CONTACT.far:
+        return None
     if stay:
         x = x + solved.moves @ (solved.moves.T @ (at.x - x))
     forces = np.zeros(len(programme.gaps))

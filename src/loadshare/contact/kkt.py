@@ -33,7 +33,7 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
     Returns
     -------
     Solved or None
-        None if the system contradicts itself.
+        None if the system contradicts itself or lies beyond all numbers.
     """
     from scipy.linalg import lapack
 
@@ -41,6 +41,8 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
         return Solved(right, np.zeros((size, 0)))
     scale = _equilibrate(matrix)
     scaled = matrix * scale[:, None] * scale
+    if not (np.isfinite(scaled).all() and np.isfinite(right).all()):
+        return None
     factor, pivots, fault = lapack.dgetrf(scaled)
     if fault == 0:
         reciprocal, _ = lapack.dgecon(factor, np.abs(scaled).sum(axis=0).max())

@@ -17,6 +17,7 @@ from typing import NamedTuple
 from loadshare.certify import Certificate, certify
 from loadshare.certify.validity import LABELS, Validity, refusal_text
 from loadshare.contact.findings import Work
+from loadshare.contact.runaway import runaway
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
 from loadshare.job.hot import hot_answers
@@ -27,9 +28,9 @@ from loadshare.scene.structure import structure_of
 from loadshare.settings import JOB, PLACES
 from loadshare.solver import Iteration, Options, solve_scene
 from loadshare.solver.balance import is_unbalanced
+from loadshare.solver.balancing import balancing
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.position import Known
-from loadshare.solver.runaway import balancing, runaway
 from loadshare.train.placed import standing
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train

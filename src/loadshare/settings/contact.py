@@ -38,6 +38,9 @@ class Contact(NamedTuple):
     """Passes that bring the largest entry of every row near 1."""
     directed: float = 1e-12
     """Offset, in lengths of the problem, that has no direction."""
+    far: float = 1e100
+    """Coordinate, in units of the programme, at which a search has run away; its square is still a
+    number."""
     loose: float = 1e-9
     """Part of a coordinate in a move that nothing resists from which on it is undetermined."""
     sign: float = 1e-11

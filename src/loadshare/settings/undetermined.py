@@ -51,6 +51,9 @@ class Places(NamedTuple):
     pushed: float = 1e-9
     """Load along a move, over the load, from which on it counts: less, and flanks whose normals are
     opposite up to the digits of a case file would seem to give way."""
+    facets: int = 64
+    """Sides of the polygon that stands for friction where a load may run away: corners lie 1/800
+    outside."""
     cone: float = 1e-10
     """Tolerance of the cone programme that shows which limits are reached."""
 

@@ -1,0 +1,68 @@
+"""What the load of a contact problem moves without end, if anything."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from loadshare.contact.problem import Array, ContactProblem
+from loadshare.settings import PLACES
+
+
+def runaway(problem: ContactProblem) -> dict[str, float]:
+    r"""Return what the load moves without end, with its part of the move; empty if all is held.
+
+    What it does work on comes first. Of all moves d that no contact, spring or limit resists,
+    however far they lead,
+
+    .. math:: \max_d f\cdot d - \sum_j F_j \lVert P_j d \rVert \quad \text{s.t.}\; H d = 0,\;
+        P_k d = 0,\; a_e\cdot d \le 0,\; |d_i| \le 1 ,
+
+    it is the one along which the load does most work beyond that of friction F, of graphs that end
+    in a level piece. Where that is positive the potential falls without bound: the problem has no
+    equilibrium. Arcs count by their faces at rest.
+    """
+    from scipy.optimize import linprog
+
+    stiffest = float(np.abs(problem.stiffness).max(initial=0.0)) or 1.0
+    strengths = {r.name: r.at_rest.strength if r.at_rest else math.inf for r in problem.radials}
+    rubbing = [r for r in problem.radials if strengths[r.name] < math.inf]
+    held = np.vstack(
+        [
+            problem.stiffness / stiffest,
+            *(r.matrix for r in problem.radials if strengths[r.name] == math.inf),
+        ]
+    )
+    rows = problem.rows_at(np.zeros(problem.size))
+    against = np.array([r.vector for r in rows]).reshape(-1, problem.size)
+    count, facets = len(rubbing), _facets()
+    slides = [
+        np.hstack([facets @ r.matrix, np.tile(-np.eye(count)[j], (len(facets), 1))])
+        for j, r in enumerate(rubbing)
+    ]
+    below = np.vstack([np.pad(against, ((0, 0), (0, count))), *slides])
+    unit = problem.force_unit()
+    found = linprog(
+        np.concatenate([-problem.load, [strengths[r.name] for r in rubbing]]) / unit,
+        below,
+        np.zeros(len(below)),
+        np.pad(held, ((0, 0), (0, count))),
+        np.zeros(len(held)),
+        bounds=[(-1.0, 1.0)] * problem.size + [(0.0, None)] * count,
+        method="highs",
+    )
+    if found.status != 0 or found.fun is None or found.x is None or found.fun >= -PLACES.pushed:
+        return {}
+    move = found.x[: problem.size]
+    work = problem.load * move
+    moving = np.flatnonzero(np.abs(move) > PLACES.named).tolist()
+    moving.sort(key=lambda k: -float(work[k]))
+    return {problem.coordinates[k]: float(move[k]) for k in moving}
+
+
+def _facets() -> Array:
+    """Directions (k, 2) of which the largest product with a vector is at least its length."""
+    angles = 2.0 * math.pi * np.arange(PLACES.facets) / PLACES.facets
+    way = np.column_stack([np.cos(angles), np.sin(angles)])
+    return np.asarray(way / math.cos(math.pi / PLACES.facets))
