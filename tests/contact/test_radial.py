@@ -123,3 +123,10 @@ def test_an_unbounded_complementary_energy_is_reported():
     law = RadialLaw((Piece(0.0, 1e6, 1e-6, "stick"), Piece(1.0, 0.0, math.inf, "slip")))
     assert math.isfinite(complementary(law, 1.0))
     assert complementary(law, 1.001) == math.inf
+
+
+@pytest.mark.parametrize(("radius", "force"), [(0.0, 0.0), (0.5, 1.5), (1.0, 2.0), (2.0, 4.0)])
+def test_the_least_force_of_a_graph(radius, force):
+    """From 1 N it rises by 1 N/m, steps to 3 N at 1 m and rises again, up to a stop at 2 m."""
+    law = RadialLaw((Piece(1.0, 1.0, 1.0, "first"), Piece(3.0, 1.0, 1.0, "second")))
+    assert law.least(radius) == force

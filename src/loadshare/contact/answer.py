@@ -11,7 +11,7 @@ from loadshare.contact.backends.backend import backend
 from loadshare.contact.findings import Unsolved
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan
-from loadshare.contact.problem import Array, ContactProblem, of_unit_norm
+from loadshare.contact.problem import Array, ContactProblem, Row, of_unit_norm
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.contact.runaway import runaway
@@ -139,7 +139,8 @@ def residuals(
     pulls = {r.name: np.asarray(pull.get(r.name, np.zeros(2))) for r in problem.radials}
     pushed += [r.matrix.T @ pulls[r.name] for r in problem.radials]
     left = problem.stiffness @ x - problem.load + sum(pushed, np.zeros(problem.size))
-    unit = max([problem.force_unit(), *np.abs(forces).tolist()])
+    laws = {r.name: r.law(r.torque(force), x) for r in problem.radials}
+    unit = _force_scale(problem, x, force, laws)
     length = problem.length_unit()
     approach = [float(row.vector @ x) - row.gap for row in rows]
     off = [
@@ -147,7 +148,7 @@ def residuals(
         for row, d, f in zip(rows, approach, forces.tolist(), strict=True)
     ]
     graphs = [
-        _off_graph(r.matrix @ x - r.centre, pulls[r.name], r.law(r.torque(force), x), unit, length)
+        _off_graph(r.matrix @ x - r.centre, pulls[r.name], laws[r.name], unit, length)
         for r in problem.radials
     ]
     return Residuals(
@@ -155,6 +156,32 @@ def residuals(
         law=max([float(np.abs(off).max(initial=0.0)) / length, *graphs]),
         sign=float(-forces.min(initial=0.0)) / unit,
     )
+
+
+def _force_scale(
+    problem: ContactProblem, x: Array, force: Mapping[str, float], laws: Mapping[str, RadialLaw]
+) -> float:
+    """Force that a claim is measured by: the largest of loads and of what yields where it is.
+
+    A force that does not show in its place does not count: reactions of rigid limits could be
+    arbitrarily large and would hide what is out of balance. So could forces of what hardly yields,
+    within the lengths that a claim may be off.
+    """
+    yields = CONTACT.yields * problem.length_unit()
+    rounding = problem.size * np.finfo(float).eps * np.abs(x)
+    springs = np.abs(problem.stiffness @ x) - np.abs(problem.stiffness) @ (yields + rounding)
+    scales = [*np.abs(problem.load).tolist(), *springs.tolist()]
+    scales += [_shown(row, force.get(row.name, 0.0), x, yields) for row in problem.rows_at(x)]
+    scales += [laws[r.name].least(r.radius(x) - yields) for r in problem.radials]
+    return max(scales) or problem.force_unit()
+
+
+def _shown(row: Row, force: float, x: Array, yields: float) -> float:
+    """Least force of a contact that its claim and its place agree on, up to a length."""
+    if not force > 0.0:
+        return 0.0
+    compressed = min(row.law.compression(force), float(row.vector @ x) - row.gap) - yields
+    return row.law.force(compressed) if compressed > 0.0 else 0.0
 
 
 def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: float) -> float:

@@ -286,8 +286,34 @@ class ContactProblem:
         return self.rows + tuple(a.row(x, wide) for a in self.arcs)
 
     def force_unit(self) -> float:
-        """Force that the problem is measured by: the largest load, or 1 without any."""
-        return float(np.abs(self.load).max(initial=0.0)) or 1.0
+        """Force that the problem is measured by: the largest load.
+
+        Without any, what springs and contacts push where they yield by as much as contacts overlap
+        at rest or, where none overlaps, by the largest gap; 1 where nothing has a size.
+        """
+        return float(np.abs(self.load).max(initial=0.0)) or self._unloaded() or 1.0
+
+    def _unloaded(self) -> float:
+        """Force of the size of those that gaps alone bring about; 0 where nothing has a size."""
+        rest = np.zeros(self.size)
+        room = [r.gap for r in self.rows] + [a.arc.margin(a.relative @ rest) for a in self.arcs]
+        graphs = [(r.radius(rest), r.at_rest) for r in self.radials]
+        for radius, graph in graphs:
+            free = (graph.level(0.0, 0.0) if graph else None) or (0.0, 0.0)
+            room.append(free[1] - radius)
+        overlap = -min(room, default=0.0)
+        yielded = overlap if overlap > 0.0 else max(self._gaps(), default=0.0)
+        forces = [k * yielded for k in np.diag(self.stiffness).tolist()]
+        laws = [r.law for r in self.rows] + [a.law for a in self.arcs]
+        forces += [law.force(yielded) for law in laws if law.compression(1.0) > 0.0]
+        for piece in (p for _, graph in graphs if graph for p in graph.pieces):
+            forces += [piece.force, piece.stiffness * yielded]
+        return float(np.median([f for f in forces if 0.0 < f < np.inf] or [0.0]))
+
+    def _gaps(self) -> list[float]:
+        """Gaps of contacts, clearances of arcs, extents of graphs."""
+        gaps = [abs(r.gap) for r in self.rows] + [a.arc.clearance for a in self.arcs]
+        return gaps + [length for r in self.radials for length in r.lengths]
 
     def length_unit(self) -> float:
         """Length that the problem is measured by.
@@ -299,10 +325,8 @@ class ContactProblem:
         force = self.force_unit()
         yielded = [r.law.compression(force) for r in self.rows]
         yielded += [force / k for k in np.diag(self.stiffness).tolist() if k > 0.0]
-        gaps = [abs(r.gap) for r in self.rows] + [a.arc.clearance for a in self.arcs]
-        gaps += [length for r in self.radials for length in r.lengths]
         soft = float(np.median([v for v in yielded if v > 0.0] or [0.0]))
-        return max(soft, CONTACT.of_gaps * max(gaps, default=0.0)) or 1.0
+        return max(soft, CONTACT.of_gaps * max(self._gaps(), default=0.0)) or 1.0
 
     def first_torques(self) -> dict[str, float]:
         """Torques over radial elements that follow them, to begin with."""

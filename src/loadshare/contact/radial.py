@@ -129,6 +129,16 @@ class RadialLaw:
                 return self.start(k), self.start(k) + piece.length
         return None
 
+    def least(self, radius: float) -> float:
+        """Least force [N] that the graph admits at a radius [m]; of a rigid stop, at its edge."""
+        force, left = 0.0, radius
+        for piece in self.pieces:
+            if left <= 0.0:
+                break
+            force = piece.force + piece.stiffness * min(left, piece.length)
+            left -= piece.length
+        return force
+
     def energy(self, radius: float) -> float:
         """∫F dR [J] up to `radius` [m]; beyond a rigid stop, what its edge costs."""
         total, left = 0.0, radius

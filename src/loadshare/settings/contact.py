@@ -38,6 +38,9 @@ class Contact(NamedTuple):
     """Passes that bring the largest entry of every row near 1."""
     directed: float = 1e-12
     """Offset, in lengths of the problem, that has no direction."""
+    yields: float = 1e-6
+    """Compression, in lengths of the problem, below which a contact is as good as rigid when a
+    claim is measured: its force does not show in its place."""
     far: float = 1e100
     """Coordinate, in units of the programme, at which a search has run away; its square is still a
     number."""
