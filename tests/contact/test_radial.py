@@ -125,6 +125,19 @@ def test_an_unbounded_complementary_energy_is_reported():
     assert complementary(law, 1.001) == math.inf
 
 
+def test_level_pieces_of_one_force_are_one():
+    law = RadialLaw(
+        (
+            Piece(0.0, 1.0, 2.0, "stick"),
+            Piece(2.0, 0.0, 3.0, "slip"),
+            Piece(2.0, 0.0, 4.0, "slip on"),
+            Piece(2.0, 1.0, math.inf, "stop"),
+        )
+    )
+    assert law.level(2.0, 0.0) == (2.0, 9.0)
+    assert law.level(1.0, 0.0) is None
+
+
 @pytest.mark.parametrize(("radius", "force"), [(0.0, 0.0), (0.5, 1.5), (1.0, 2.0), (2.0, 4.0)])
 def test_the_least_force_of_a_graph(radius, force):
     """From 1 N it rises by 1 N/m, steps to 3 N at 1 m and rises again, up to a stop at 2 m."""

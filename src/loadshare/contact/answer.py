@@ -9,9 +9,10 @@ import numpy as np
 
 from loadshare.contact.backends.backend import backend
 from loadshare.contact.findings import Unsolved
+from loadshare.contact.left_open import left_open
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan
-from loadshare.contact.problem import Array, ContactProblem, Row, of_unit_norm
+from loadshare.contact.problem import Array, ContactProblem, Row
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.contact.runaway import runaway
@@ -207,23 +208,6 @@ def _answer(problem: ContactProblem, settled: Settled) -> ContactAnswer:
             offset = radial.matrix @ settled.x - radial.centre
             pull[radial.name] = np.asarray(first.stiffness * offset)
     place = dict(zip(problem.coordinates, settled.x.tolist(), strict=True))
-    loose = _undetermined(problem, settled.x, force, pull)
+    loose = left_open(problem, settled.x, force, pull)
     found = residuals(problem, settled.x, force, pull)
     return ContactAnswer(problem, place, force, pull, loose, found)
-
-
-def _undetermined(
-    problem: ContactProblem, x: Array, force: Mapping[str, float], pull: Mapping[str, Array]
-) -> frozenset[str]:
-    """Coordinates that move along what no spring and no acting contact resists."""
-    acting = [row.vector for row in problem.rows_at(x) if force[row.name] > 0.0]
-    for radial in problem.radials:
-        if pull[radial.name].any():
-            acting += list(radial.matrix)
-    resisting = of_unit_norm(np.array([*problem.stiffness, *acting]).reshape(-1, problem.size))
-    _, values, right = np.linalg.svd(resisting, full_matrices=True)
-    rank = int((values > CONTACT.loose * values.max(initial=0.0)).sum())
-    moved = np.abs(right[rank:]).max(axis=0, initial=0.0)
-    return frozenset(
-        c for c, v in zip(problem.coordinates, moved, strict=True) if v > CONTACT.loose
-    )

@@ -124,10 +124,12 @@ class RadialLaw:
 
     def level(self, force: float, band: float) -> tuple[float, float] | None:
         """Radii [m] between which the graph admits a force, up to `band` [N]; None for one only."""
-        for k, piece in enumerate(self.pieces):
-            if piece.stiffness == 0.0 and piece.length > 0.0 and abs(force - piece.force) <= band:
-                return self.start(k), self.start(k) + piece.length
-        return None
+        at = [
+            k
+            for k, piece in enumerate(self.pieces)
+            if piece.stiffness == 0.0 and piece.length > 0.0 and abs(force - piece.force) <= band
+        ]
+        return (self.start(at[0]), self.start(at[-1] + 1)) if at else None
 
     def least(self, radius: float) -> float:
         """Least force [N] that the graph admits at a radius [m]; of a rigid stop, at its edge."""

@@ -44,6 +44,9 @@ class Contact(NamedTuple):
     far: float = 1e100
     """Coordinate, in units of the programme, at which a search has run away; its square is still a
     number."""
+    least_way: float = 1e-6
+    """Part of a move by which an end must be left behind at least, to count as one that is not
+    held."""
     loose: float = 1e-9
     """Part of a coordinate in a move that nothing resists from which on it is undetermined."""
     sign: float = 1e-11
