@@ -127,6 +127,17 @@ def test_a_load_beyond_all_friction_is_refused(load: tuple[float, float]) -> Non
         solve_contact(disc(load, slips))
 
 
+@pytest.mark.parametrize("angle", [0.0, 0.3, math.atan2(4.0, 3.0), math.pi / 2, 2.0, -2.9])
+@pytest.mark.parametrize("behind", [(), (Piece(10.0, 1e3, math.inf, "stop"),)])
+def test_friction_bears_exactly_what_it_can(angle: float, behind: tuple[Piece, ...]) -> None:
+    """Under 10 N a disc with a friction of 10 N is in equilibrium anywhere along the load."""
+    load = (10.0 * math.cos(angle), 10.0 * math.sin(angle))
+    slips = Piece(10.0, 0.0, 0.05 if behind else math.inf, "slip")
+    found = solve_contact(disc(load, RadialLaw((slips, *behind))))
+    assert found.pull["drum"] == pytest.approx(load, rel=1e-9, abs=1e-9)
+    assert found.undetermined == {c for c, f in zip("xy", load, strict=True) if abs(f) > 1e-6}
+
+
 def test_a_load_that_is_refused_without_running_away_is_not_said_to() -> None:
     """Stops that contradict one another by 1 mm; friction that is not used up."""
     stops = [Row(name, "stop", [s, 0.0], -5e-4, RIGID) for name, s in (("l", -1.0), ("r", 1.0))]

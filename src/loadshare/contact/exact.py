@@ -111,7 +111,11 @@ def solve_exact(
     for _ in range(limit):
         solved = _solve_fixed(programme, active, start, work, stay)
         if solved is None:
-            return None
+            active = _held_again(programme, active)
+            if active in seen:
+                return None
+            seen.add(active)
+            continue
         point, settled = solved
         better = _exchange(programme, active, point, one_only)
         if better == active:
@@ -122,6 +126,20 @@ def solve_exact(
         seen.add(better)
         active, start = better, point
     return None
+
+
+def _held_again(programme: Programme, active: ActiveSet) -> ActiveSet:
+    """Put elements that slip from the first back where friction holds them.
+
+    Under exactly its friction a disc is in equilibrium at rest too, and nothing says how far it
+    slips.
+    """
+    slipping = GraphState(0)
+    states = (
+        GraphState(0, corner=True) if state == slipping and cone.law.step(0)[1] > 0.0 else state
+        for cone, state in zip(programme.cones, active.graph_states, strict=True)
+    )
+    return replace(active, graph_states=tuple(states))
 
 
 def at_rest(programme: Programme) -> Point:
@@ -328,6 +346,6 @@ def _misplaced(
         low, high = law.step(k)
         back = GraphState(k, corner=True) if high > low else GraphState(k - 1)
         return (begin - radius) / length_band, back
-    if k == 0 and law.pieces[0].force > 0.0 and offset @ point.cone_forces[j] < 0.0:
+    if k == 0 and law.pieces[0].force > 0.0 and offset @ point.cone_forces[j] <= 0.0:
         return 2.0, GraphState(0, corner=True)
     return 0.0, graph_state
