@@ -140,6 +140,18 @@ def test_values_that_are_none(kind, given, message):
     assert caught.value.errors()[0]["msg"] == message
 
 
+@pytest.mark.parametrize(
+    "more", [" # kN*m", "#", "?", "!", ":", "=", ";", ";kg", '""', " 'x'", "@s", " \\ /s", "$"]
+)
+def test_nothing_follows_a_unit(more):
+    """Not even what the reader of units passes over."""
+    with pytest.raises(ValidationError) as caught:
+        read(q.Torque, f"5 N*m{more}")
+    message = f"{more.strip()} is no part of a unit, and nothing else follows a number"
+    allowed = 'Allowed: a torque such as "2175 N*m". '
+    assert caught.value.errors()[0]["msg"] == f"{message}. {allowed}"
+
+
 def test_pint_quantities_of_any_registry():
     theirs = pint.UnitRegistry()
     assert read(q.Length, theirs.Quantity(45.9, "mm")).si == 0.0459

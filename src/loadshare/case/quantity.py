@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic_core import PydanticCustomError, core_schema
 
-from loadshare.case.units import COMMON, KINDS, OTHERS, kind_of, si_factor, written_apart
+from loadshare.case.units import (
+    COMMON,
+    KINDS,
+    OTHERS,
+    beyond_unit,
+    kind_of,
+    si_factor,
+    written_apart,
+)
 from loadshare.case.words import did_you_mean
 from loadshare.settings import ALLOWED
 
@@ -164,6 +172,8 @@ class Dimension:
         if unit in OTHERS:
             hint = _rewritten(number, unit)
             return self._problem(f"the unit {unit} is not known", hint=hint)
+        if rest := beyond_unit(unit):
+            return self._problem(f"{rest} is no part of a unit, and nothing else follows a number")
         apart = written_apart(unit, self.unit)
         if apart is None:
             others = ((written_apart(unit, si), kind) for kind, si in KINDS.items())

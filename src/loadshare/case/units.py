@@ -125,6 +125,10 @@ _POWER = re.compile(
 """A unit, or several in brackets, to a power: a number, or a fraction in brackets."""
 
 
+_NO_SIGN = re.compile(r"[^\w\s\u200b°·⋅⁻*/^()+\-.,%]")
+"""What stands in no unit; the reader of units would end there, or skip it, without a word."""
+
+
 @cache
 def registry() -> pint.UnitRegistry[float]:
     """Return the registry of the units that a case may use.
@@ -192,6 +196,18 @@ def kind_of(unit: str) -> str | None:
     return next((kind for kind, si in KINDS.items() if si_factor(unit, si) is not None), None)
 
 
+def beyond_unit(unit: str) -> str:
+    """Return the end of a text, from the first sign that stands in no unit; or nothing.
+
+    Parameters
+    ----------
+    unit : str
+        What follows a number.
+    """
+    found = _NO_SIGN.search(unit)
+    return unit[found.start() :] if found else ""
+
+
 def written_apart(unit: str, target: str) -> str | None:
     """Return a unit with a product sign where one is missing, as in ``Nm/rad``, or None.
 
@@ -227,6 +243,7 @@ def _parse(unit: str) -> pint.Quantity[float]:
         len(unit) > ALLOWED.unit
         or "**" in _POWER.sub("", text)
         or max(powers, default=0.0) > ALLOWED.power
+        or beyond_unit(unit)
     ):
         raise ValueError(unit)
     try:
