@@ -7,9 +7,9 @@ import os
 import re
 import stat
 import sys
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
-from io import BytesIO
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +22,10 @@ STANDARD = Path("-")
 
 LONG = 100
 """Letters of a name that the temporary file has as well; file systems allow some 250 bytes."""
+
+
+class Closed(TextIOWrapper):
+    """In place of a standard stream that is closed: what is printed there goes nowhere."""
 
 
 class NotWritten(OSError):  # noqa: N818 -- what became of a file
@@ -50,43 +54,126 @@ def write_whole(path: Path, content: str | bytes) -> None:
     NotWritten
         If it cannot be written; what was there before is left as it was.
     """
+    held = content.encode() if isinstance(content, str) else content
+    with _naming(path):
+        if path == STANDARD:
+            _print(held)
+            return
+        with _staged(path, held) as put:
+            put()
+
+
+def write_together(contents: Mapping[Path, str], without: Iterable[Path], last: Path) -> None:
+    """Write files of one folder that belong together, in place of those of another time.
+
+    All are written next to their places before the first is put in place. While that is done, the
+    folder lacks one file without which it means nothing, so that no interruption leaves a mixture
+    of both times.
+
+    Parameters
+    ----------
+    contents : mapping of Path to str
+        None of them "-".
+    without : iterable of Path
+        Files that are to be there no more.
+    last : Path
+        The file, one of `contents`, that is taken away first and put in place last.
+
+    Raises
+    ------
+    NotWritten
+        If one of them cannot be written. Unless it is put in place already, all that was there
+        before is left as it was.
+    """
+    with ExitStack() as stack:
+        puts = {}
+        for path, content in contents.items():
+            with _naming(path):
+                puts[path] = stack.enter_context(_staged(path, content.encode()))
+        with _naming(last):
+            _remove(Path(os.path.realpath(last)))
+        for path in without:
+            remove(path)
+        for path in (*(one for one in contents if one != last), last):
+            with _naming(path):
+                puts[path]()
+
+
+def remove(path: Path) -> None:
+    """Remove a file, or a link to one, for good; what is neither stays.
+
+    Parameters
+    ----------
+    path : Path
+
+    Raises
+    ------
+    NotWritten
+        If it cannot be removed.
+    """
+    with _naming(path):
+        _remove(path)
+
+
+def _remove(path: Path) -> None:
+    if path.is_symlink() or path.is_file():
+        path.unlink()
+        _sync_folder(path.parent)
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Say of an error which file could not be written."""
     try:
-        _write(path, content.encode() if isinstance(content, str) else content)
+        yield
     except OSError as error:
         raise NotWritten(error.errno, error.strerror or str(error), str(path)) from error
 
 
-def _write(path: Path, content: bytes) -> None:
-    if path == STANDARD:
-        sys.stdout.flush()
-        sys.stdout.buffer.write(content)
-        sys.stdout.buffer.flush()
-        return
+def _print(content: bytes) -> None:
+    if sys.stdout is None or isinstance(sys.stdout, Closed):
+        raise OSError(errno.EBADF, "standard output is closed")
+    sys.stdout.flush()
+    sys.stdout.buffer.write(content)
+    sys.stdout.buffer.flush()
+
+
+@contextmanager
+def _staged(path: Path, content: bytes) -> Iterator[Callable[[], None]]:
+    """Write a file next to its place; yields what puts it there in one step."""
     try:
         known = path.stat()
     except FileNotFoundError:
         known = None
     if known is not None and not stat.S_ISREG(known.st_mode):
-        with path.open("wb") as stream:
-            stream.write(content)
+
+        def pour() -> None:
+            with path.open("wb") as stream:
+                stream.write(content)
+
+        yield pour
         return
     # Where a link leads; the link itself stays.
     place = Path(os.path.realpath(path))
     make_folder(place.parent)
     with _held(place.parent):
         temporary = place.with_name(f".{place.name[:LONG]}.{os.urandom(8).hex()}")
+
+        def put() -> None:
+            temporary.replace(place)
+            _sync_folder(place.parent)
+
         try:
             temporary.write_bytes(content)
             if known is not None:
                 temporary.chmod(stat.S_IMODE(known.st_mode))
                 _give(temporary, known)
             _sync(temporary)
-            temporary.replace(place)
+            yield put
         except BaseException:
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
             raise
-        _sync_folder(place.parent)
 
 
 def make_folder(folder: Path) -> None:

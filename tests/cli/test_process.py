@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from tests.cli.conftest import CASES, START
 
 HEAVY = (
     *("numpy", "scipy", "pint", "numba", "clarabel", "osqp", "cvxpy", "skfem"),
@@ -82,6 +83,44 @@ def test_exit_codes_reach_the_shell(process, words, code):
     done = process(*words)
     assert done.returncode == code
     assert "Traceback" not in done.stderr
+
+
+BASE = CASES / "fgfbstts/base.toml"
+CLOSED = {
+    ("run", BASE, "-o", "{}/out.json"): 0,
+    ("run", "{}/none.toml"): 2,
+    ("batch", CASES / "star", "-o", "{}/out", "-j", "2"): 0,
+    ("batch", BASE, "{}/none.toml", "-o", "{}/out", "-j", "1"): 1,
+    ("run", BASE, "-o", "-"): {1: 2},
+    ("run", BASE, "--json"): {1: 2},
+    ("new", "drive", "-o", "-"): {1: 2},
+}
+"""Exit codes; of what is asked for on stdout, where that is closed."""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="streams that are closed by a shell")
+@pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)], ids=str)
+@pytest.mark.parametrize(("words", "code"), CLOSED.items(), ids=str)
+def test_streams_may_be_closed(environment, tmp_path, words, code, closed):
+    """As by `2>&-`, by cron and by some services."""
+    given = [str(word).replace("{}", str(tmp_path)) for word in words]
+    redirections = "".join(f" {number}>&-" for number in closed)
+    done = subprocess.run(
+        ["sh", "-c", f'exec "$@"{redirections}', "sh", sys.executable, "-c", START, *given],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=False,
+        env=environment,
+    )
+    wanted = code if isinstance(code, int) else code[1] if 1 in closed else 0
+    assert (done.returncode, "Traceback" in done.stderr) == (wanted, False)
+    if isinstance(code, int):
+        assert (tmp_path / "out.json").exists() == ("{}/out.json" in words)
+    elif closed == (1,):
+        assert "cannot be written: standard output is closed" in done.stderr
+    elif closed == (2,):
+        assert len(done.stdout) > 1000
 
 
 def test_a_refusal_reaches_the_shell(process, half_held):

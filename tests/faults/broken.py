@@ -1,13 +1,17 @@
 """A library that writes files in their place, which the harness must find."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from loadshare import output
 
 
-def _in_place(path: Path, content: bytes) -> None:
+@contextmanager
+def _in_place(path: Path, content: bytes) -> Iterator[Callable[[], None]]:
     output.make_folder(path.parent)
     path.write_bytes(content)
+    yield lambda: None
 
 
-output._write = _in_place
+output._staged = _in_place

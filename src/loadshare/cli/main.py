@@ -7,10 +7,8 @@ needs it, so that the help comes at once and a run does not wait for what it doe
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable, Sequence
 from functools import cache
-from io import TextIOWrapper
 from typing import Annotated
 
 import typer
@@ -31,6 +29,7 @@ from loadshare.cli.new import new
 from loadshare.cli.page import report
 from loadshare.cli.run import run
 from loadshare.cli.schema import schema
+from loadshare.cli.streams import open_streams
 from loadshare.cli.study.compare import compare
 from loadshare.cli.study.critical import critical
 from loadshare.cli.study.fit import fit
@@ -108,10 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     # The matrices are far too small to share among threads, and a batch has its own processes.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            # A stream that cannot show Ω shall show a question mark and go on.
-            stream.reconfigure(errors="replace")
+    open_streams()
     with reporting_lack_of_room():
         _built()(arguments, prog_name="loadshare")
 
