@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import math
 import sys
@@ -20,6 +21,7 @@ from loadshare.exchange.spreadsheet import (
     export_tables,
     import_tables,
     workbook_of,
+    write_tables,
 )
 from loadshare.exchange.spreadsheet.exporting import case_tables
 
@@ -65,6 +67,15 @@ def test_a_few_lines_make_a_case(box) -> None:
     assert case.gears["a"].face_width.si == pytest.approx(0.01), "a space stands for _"
     assert case.gears["a"].teeth == 20
     assert ls.solve(case).positions[0].torque == pytest.approx({"a-b": 100.0})
+
+
+def test_whole_numbers_may_have_decimals(box) -> None:
+    """Some programs write all numbers so; what counts teeth stays a whole number."""
+    case = import_tables(box(gears=GEARS.replace("a,20,2", "a,20.0,2.0"))).case()
+    assert case == import_tables(box()).case().replace({"gears.a.module": "2.0 mm"})
+    assert isinstance(case.gears["a"].teeth, int)
+    with pytest.raises(CaseError, match=r"gears\.a\.teeth = .*20\.5.*Allowed: a whole number"):
+        import_tables(box(gears=GEARS.replace("a,20,2", "a,20.5,2"))).case()
 
 
 def test_cells_are_what_their_keys_take(box) -> None:
@@ -211,6 +222,74 @@ def test_the_command_writes_tables_that_the_command_reads(tmp_path) -> None:
             force = result.positions[int(row["position"]) - 1].loads.bearings[row["gear"]]
             assert (float(row["bearing_force x [N]"]), float(row["bearing_force y [N]"])) == force
     assert {*export_tables(result)} == {file.stem for file in folder.iterdir()}
+
+
+BESIDE = ("notes.csv", "Errors2.csv", "result_mine.csv", "errors.csv.old", "readme.txt")
+
+
+def test_tables_of_an_earlier_case_join_no_other(tmp_path) -> None:
+    command, folder = on_a_screen_of(200), tmp_path / "box"
+    first, second = (CASES / "fgfbstts" / f"{n}.toml" for n in ("installation_error", "base"))
+    assert command("run", first, "-o", f"{folder}/").exit_code == 0
+    assert (folder / "errors.csv").exists()
+    for name in BESIDE:
+        (folder / name).write_text("name\n", encoding="utf-8")
+    assert command("run", second, "-o", f"{folder}/").exit_code == 0
+    own = {f"{name}.csv" for name in export_tables(ls.solve(second))}
+    assert {file.name for file in folder.iterdir()} == {*own, *BESIDE}
+    for name in BESIDE:
+        (folder / name).unlink()
+    assert import_tables(folder).case() == ls.load_case(second)
+
+
+class Stopped(BaseException):
+    """What a signal does to a command."""
+
+
+@pytest.mark.parametrize("kind", [Stopped, OSError])
+def test_no_interruption_leaves_a_folder_of_two_cases(tmp_path, monkeypatch, kind) -> None:
+    cases = [shipped(f"fgfbstts/{name}") for name in ("installation_error", "base")]
+    first, second = (export_frames(ls.solve(case, positions=[1])) for case in cases)
+    now, found = {"left": -1}, []
+
+    def failing(do):
+        def step(path: Path, *given: object, **named: object) -> object:
+            now["left"] -= 1
+            if now["left"] == 0:
+                raise kind(28, "the disk is full")
+            return do(path, *given, **named)
+
+        return step
+
+    for name in ("write_bytes", "replace", "unlink"):
+        monkeypatch.setattr(Path, name, failing(getattr(Path, name)))
+    for count in range(1, 100):
+        folder = tmp_path / f"{count}"
+        write_tables(folder, first)
+        now["left"] = count
+        with contextlib.suppress(Stopped, OSError):
+            write_tables(folder, second)
+        done, now["left"] = now["left"] > 0, -1
+        try:
+            found.append(cases.index(import_tables(folder).case()))
+        except CaseError:
+            found.append(None)
+        assert not [file for file in folder.iterdir() if file.name.startswith(".")]
+        if done:
+            break
+    # The old case, then none, then the new one.
+    assert found == sorted(found, key=[0, None, 1].index)
+    assert found.count(0) > len(second)
+    assert found[-1] == 1
+
+
+def test_a_folder_that_cannot_be_written_names_the_table(tmp_path, monkeypatch) -> None:
+    folder = tmp_path / "box"
+    (folder / "gears.csv").mkdir(parents=True)
+    case = CASES / "fgfbstts" / "base.toml"
+    done = on_a_screen_of(200)("run", case, "-o", f"{folder}/", "-q")
+    assert done.exit_code == 2
+    assert f"{folder / 'gears.csv'}: cannot be written" in done.stderr
 
 
 def test_a_folder_has_its_name_for_the_case(box, monkeypatch) -> None:

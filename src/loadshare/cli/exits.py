@@ -57,7 +57,9 @@ def writing(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        fail([f"{path}: {unwritten(error)}"], UNUSABLE)
+        # Of a folder, the file in it.
+        file = error.filename if isinstance(error, NotWritten) else path
+        fail([f"{file}: {unwritten(error)}"], UNUSABLE)
 
 
 def unwritten(error: OSError) -> str:

@@ -10,13 +10,12 @@ import typer
 
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import REFUSED, fail, reporting_problems
-from loadshare.cli.files import document_text, save_text, tell_written
+from loadshare.cli.exits import REFUSED, fail, reporting_problems, writing
+from loadshare.cli.files import document_text, tell_written
 from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
 from loadshare.cli.refusal import refusal_lines, refused_document
 from loadshare.errors import Refused
-from loadshare.output import clear, csv_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -153,6 +152,7 @@ def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoRetu
 def _write(
     files: Sequence[Output] | None, result: Result, given: Case, case: str, picture: str
 ) -> None:
+    from loadshare.exchange.spreadsheet import write_tables
     from loadshare.results.writing import netcdf_content
 
     def report() -> str:
@@ -176,10 +176,8 @@ def _write(
     single = [output for output in files or () if output.form != FOLDER]
     for output in files or ():
         if output.form == FOLDER:
-            texts = {output.file / f"{name}.csv": csv_of(frame) for name, frame in made().items()}
-            clear(texts)
-            for name, text in texts.items():
-                save_text(name, text)
+            with writing(output.file):
+                write_tables(output.file, made())
             tell_written(output.file, err=True)
     frame = tables_of("run", result.to_frame)
     drawn = figure_of(lambda: getattr(result.plot, picture)())

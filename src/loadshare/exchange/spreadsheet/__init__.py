@@ -5,6 +5,14 @@ from loadshare.exchange.spreadsheet.exporting import (
     export_tables,
     workbook_of,
 )
+from loadshare.exchange.spreadsheet.folder import write_tables
 from loadshare.exchange.spreadsheet.importing import import_tables, is_spreadsheet
 
-__all__ = ["export_frames", "export_tables", "import_tables", "is_spreadsheet", "workbook_of"]
+__all__ = [
+    "export_frames",
+    "export_tables",
+    "import_tables",
+    "is_spreadsheet",
+    "workbook_of",
+    "write_tables",
+]

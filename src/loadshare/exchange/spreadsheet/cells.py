@@ -19,6 +19,8 @@ from loadshare.settings import ALLOWED
 Schema = Mapping[str, Any]
 
 NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?")
+WHOLE = re.compile(r"([+-]?\d+)(\.0*)?")
+"""Some programs write every number with decimals."""
 QUANTITY = re.compile(rf"({NUMBER.pattern}) (\S.*)")
 HEAD = re.compile(r"(.*?)\s*\[((?:1\s*/|[^\d\[\]])[^\[\]]*)\]\s*", re.DOTALL)
 LONG = 40
@@ -103,7 +105,9 @@ def value_of(text: str, unit: str, options: Sequence[Schema]) -> Any:
         return text.lower() == "true"
     if kinds & {"integer", "number"} and is_number and len(text) <= LONG:
         number = text.replace("−", "-")
-        return int(number) if re.fullmatch(r"[+-]?\d+", number) else float(number)
+        whole = WHOLE.fullmatch(number)
+        is_int = whole is not None and (not whole[2] or "number" not in kinds)
+        return int(whole[1]) if whole and is_int else float(number)
     return text[1:] if text.startswith("'") and FORMULA.match(text[1:]) else text
 
 

@@ -27,6 +27,11 @@ FILES = ("law_file", "geometry")
 """Keys that name files, which are next to the case file."""
 
 
+def sheet_names() -> list[str]:
+    """Return the names of all sheets of a case."""
+    return [ABOUT, *(n for n in Content.model_fields if taken((n, "x")) or n in ALONE)]
+
+
 def is_spreadsheet(path: FilePath) -> bool:
     """Tell whether a file or folder is for `import_tables`."""
     return path.is_dir() or path.suffix.lower() == ENDING
@@ -83,7 +88,7 @@ class _Reader:
         if sheet.name.startswith(FOUND):
             self.left_out.append("tables of a result, which follows from the case")
             return
-        known = [ABOUT, *(n for n in Content.model_fields if taken((n, "x")) or n in ALONE)]
+        known = sheet_names()
         if sheet.name not in known:
             hint = did_you_mean(sheet.name, known)
             self._tell(sheet.place, f"{sheet.name} is no table of a case", choices(known), hint)
