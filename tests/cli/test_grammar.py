@@ -153,7 +153,11 @@ def test_the_ending_or_a_word_tells_the_form(text, form, file):
         (("compare", RING, "-o", "x.toml"), "no case comes of this command"),
         (("run", RING, "-o", "-", "-o", "csv:-"), "only one file can go to standard output"),
         (("run", RING, "-o", "-", "--json"), "standard output takes one file only"),
-        (("run", RING, "-o", "x.csv", "-o", "json:x.csv"), "is to be written twice"),
+        (
+            ("run", RING, "-o", "x.csv", "-o", "json:x.csv"),
+            "is to be written twice, in different forms",
+        ),
+        (("run", RING, "-o", "x.csv", "-o", "x.csv"), "is to be written twice; name it once"),
         (("critical", RING), "is missing: KEY=FROM:TO"),
         (("critical", RING, "--over", "a=1"), "is not of the form KEY=FROM:TO"),
         (("critical", RING, "--over", "a=1:2:3"), "is not of the form KEY=FROM:TO"),

@@ -73,6 +73,9 @@ def box(tmp_path_factory):
     (folder / "law.toml").write_text('kind = "law"\n')
     (folder / "empty.toml").write_text("")
     (folder / "sixteen.toml").write_text('title = "x"', encoding="utf-16")
+    (folder / "little.toml").write_bytes('title = "x"'.encode("utf-16-le"))
+    (folder / "big.toml").write_bytes('title = "x"'.encode("utf-16-be"))
+    (folder / "dangling.toml").symlink_to("nowhere.toml")
     (folder / "other.toml").write_text('[tool.ruff]\nline-length = 100\n[project]\nname = "x"\n')
     return folder
 
@@ -92,6 +95,9 @@ WRONG_FILES = {
     ("run", "law.toml"): "is the law of a mesh, which names it by law_file",
     ("run", "empty.toml"): "is empty; `loadshare new NAME` writes a case to start from",
     ("run", "sixteen.toml"): "is UTF-16 text; save it as UTF-8",
+    ("run", "little.toml"): "is UTF-16 text; save it as UTF-8",
+    ("run", "big.toml"): "is UTF-16 text; save it as UTF-8",
+    ("run", "dangling.toml"): "nowhere.toml, where there is no file.\n",
     ("run", "other.toml"): "holds nothing that a case says",
     ("run", "pare.toml"): "no such file or directory. Did you mean pair.toml?",
     ("ltca", BASE): "is a case; `loadshare run` solves it",
@@ -128,6 +134,11 @@ WORDS = {
     ("run", RING, "--set", "gears.4.base_radius=46"): 'Allowed: a length such as "46 mm".',
     ("sensitivity", RING, "rings.4.flot"): "Did you mean rings.4.float?",
     ("tolerance", RING): "or inputs (--over)",
+    ("run", ""): "Invalid value for 'CASE': an empty text names no file; is a variable",
+    ("check", RING, ""): "Invalid value for 'CASES': an empty text names no file",
+    ("batch", "", "-o", "out"): "Invalid value for 'CASES': an empty text names no file",
+    ("batch", RING, "-o", ""): "Invalid value for '-o' / '--output': an empty text names no file",
+    ("import", ""): "Invalid value for 'UNIT': an empty text names no file",
 }
 
 

@@ -223,7 +223,9 @@ def read_toml(path: FilePath) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         why = f"is not UTF-8 text at byte {error.start}"
     except FileNotFoundError:
-        raise CaseError([Problem(str(path), "", "", NO_FILE, hint=near_names(path))]) from None
+        link = f"is a link to {real(path)}, where there is no file" if path.is_symlink() else ""
+        problem = Problem(str(path), "", "", link or NO_FILE, hint=near_names(path))
+        raise CaseError([problem]) from None
     except IsADirectoryError:
         why = what_folder_is(path)
     except OSError as error:

@@ -49,6 +49,8 @@ _STARTS = (
 _REXS = re.compile(rb'<model|"relations"')
 _HEAD = 4096
 """Bytes at the beginning of a file by which it is known."""
+_FEW = 64
+"""Bytes at the beginning of a text in which letters of other scripts are rare."""
 CASE = ("operating", "gears", "meshes")
 """Sections one of which at least every case has, or inherits."""
 
@@ -68,6 +70,8 @@ def what_is(content: bytes, name: str = "") -> str | None:
     str or None
         None for what may be TOML.
     """
+    if _is_utf16(content[:_HEAD]):
+        return TAKEN_BY["UTF-16"]
     head = content[:_HEAD].lstrip(b"\xef\xbb\xbf \t\r\n")
     if not head:
         return TAKEN_BY["nothing"]
@@ -84,6 +88,14 @@ def what_is(content: bytes, name: str = "") -> str | None:
     return None
 
 
+def _is_utf16(head: bytes) -> bool:
+    """Whether every other byte of a text is zero: UTF-16, of which not all programs put a mark."""
+    even, odd = head[0:_FEW:2], head[1:_FEW:2]
+    return bool(odd) and any(
+        all(one) and not any(other) for one, other in ((even, odd), (odd, even))
+    )
+
+
 def what_folder_is(folder: Path) -> str:
     """Return what a folder holds, and which command takes it."""
     held = {file.suffix for file in folder.iterdir()}
@@ -94,7 +106,9 @@ def what_folder_is(folder: Path) -> str:
 def near_names(path: Path) -> str:
     """Return a sentence that proposes a file next to one that is not there, or nothing."""
     try:
-        names = [file.name for file in path.parent.iterdir() if file.suffix == path.suffix]
+        files = [file for file in path.parent.iterdir() if file.suffix == path.suffix]
+        # A link that leads nowhere has the very name.
+        names = [file.name for file in files if file.name != path.name]
     except OSError:
         return ""
     return did_you_mean(path.name, names)

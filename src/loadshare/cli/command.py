@@ -45,7 +45,8 @@ class Command(TyperCommand):
             # The shell asks for the value of this option; without one, no argument would be read.
             words = words[:-1]
         try:
-            left = super().parse_args(ctx, words)
+            # The parser empties its list.
+            left = super().parse_args(ctx, list(words))
         except typer.BadParameter as error:
             error.message = error.message.removeprefix(PREFIX)
             raise
@@ -55,6 +56,7 @@ class Command(TyperCommand):
         if ctx.resilient_parsing:
             # The shell asks what may follow: nothing is done.
             return left
+        self._refuse_empty(ctx, words)
         machine = bool(ctx.params.get("json"))
         if machine and "file" in ctx.params:
             _add_json(ctx)
@@ -70,6 +72,21 @@ class Command(TyperCommand):
         ask_for(outputs)
         clear(file for _, file in outputs if file != STANDARD)
         return left
+
+    def _refuse_empty(self, ctx: Any, words: list[str]) -> None:
+        """Refuse an empty text for a file or folder, which would be the one at hand.
+
+        Raises
+        ------
+        typer.BadParameter
+            For the first.
+        """
+        given, _, _ = self.make_parser(ctx).parse_args(args=list(words))
+        for param in ctx.command.params:
+            texts, paths = given.get(param.name), _files(ctx.params.get(param.name))
+            if any(isinstance(path, Path) for path in paths) and "" in _several(texts):
+                message = "an empty text names no file; is a variable of the shell not set?"
+                raise typer.BadParameter(message, ctx, param)
 
     def invoke(self, ctx: Any) -> Any:
         """Do what was asked; if it is stopped, say what is kept and how to continue.
@@ -158,5 +175,8 @@ def _add_json(ctx: Any) -> None:
 
 def _files(given: Any) -> list[Any]:
     """Return the paths of an option for files: none, one or several."""
-    several = given if isinstance(given, list) else [given]
-    return [getattr(one, "file", one) for one in several if one is not None]
+    return [getattr(one, "file", one) for one in _several(given) if one is not None]
+
+
+def _several(given: Any) -> list[Any]:
+    return list(given) if isinstance(given, list | tuple) else [given]

@@ -124,7 +124,9 @@ def outputs(*forms: str, what: str = "Write what was found") -> Any:
         files = [output.file for output in made if output.file != STANDARD]
         twice = next((file for file in files if files.count(file) > 1), None)
         if twice is not None:
-            raise typer.BadParameter(f"{twice}: is to be written twice, in different forms.")
+            forms_of = {output.form for output in made if output.file == twice}
+            how = ", in different forms" if len(forms_of) > 1 else "; name it once"
+            raise typer.BadParameter(f"{twice}: is to be written twice{how}.")
         return made
 
     endings = ", ".join(f".{form}" for form in forms if form != FOLDER)
