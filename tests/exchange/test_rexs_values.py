@@ -56,6 +56,20 @@ def test_kilonewton_metres_are_torques(written, unit) -> None:
     assert import_rexs(written(xml(*parts))).case().operating.torque.si == pytest.approx(100.0)
 
 
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (4.724562306435156, "N m", "4.724562306435156 N*m"),
+        (0.3, "kN m", "300 N*m"),
+        (0.1234567890123456, "N m", "0.1234567890123456 N*m"),
+    ],
+)
+def test_a_torque_keeps_all_its_digits(written, value, unit, text) -> None:
+    """And takes none of the round-off of its unit."""
+    parts = changed(two_stages(), _30={"torque_around_u_axis": (value, unit)})
+    assert import_rexs(written(xml(*parts))).data["operating"]["torque"] == text
+
+
 def test_an_empty_unit_is_none(written) -> None:
     text = xml(*two_stages()).decode()
     plain = import_rexs(written(text.encode())).data

@@ -6,6 +6,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.exchange.imported import Data
 from loadshare.exchange.rexs.flow import Flow
+from loadshare.exchange.rexs.quantities import torque_of
 from loadshare.train.gear import Gear
 from loadshare.train.geometry import geometry_of
 
@@ -31,7 +32,7 @@ def balanced(data: Data, flow: Flow, assumed: list[str], left_out: list[str]) ->
     def loaded(torques: dict[str, float]) -> Data:
         if not torques:
             return data
-        external = {name: f"{torque:.12g} N*m" for name, torque in torques.items()}
+        external = {name: torque_of(torque) for name, torque in torques.items()}
         return {**data, "operating": {**data["operating"], "external": external}}
 
     try:

@@ -27,6 +27,7 @@ from loadshare.exchange.rexs.links import Links, links_of
 from loadshare.exchange.rexs.meshing import first_number, meshes_of, stages_of
 from loadshare.exchange.rexs.model import Component
 from loadshare.exchange.rexs.places import Vector
+from loadshare.exchange.rexs.quantities import torque_of
 from loadshare.exchange.rexs.reading import read_model
 
 SHIFTS = ("profile_shift_coefficient", "addendum_modification_coefficient")
@@ -95,7 +96,7 @@ class _Importer:
                 "input": flow.first,
                 "output": flow.last,
                 "running": flow.running,
-                "torque": f"{flow.torque:.12g} N*m",
+                "torque": torque_of(flow.torque),
             },
             "gears": gears,
             "meshes": meshes_of(self.of, flow.first, self.links, self.assumed),

@@ -93,6 +93,9 @@ STANDARD = {
 }
 """Units as the standard spells them: what they measure, and their SI value."""
 
+ROUND_OFF = 1e-15
+"""What a product or two change of a number, as a part of it."""
+
 TURNS = ("1/min", "min^-1", "min-1", "U/min")
 """Other spellings of revolutions per minute."""
 
@@ -172,3 +175,9 @@ def _usual(target: str) -> str:
     if target == PURE:
         return "no unit"
     return ", ".join(unit for unit, (measured, _) in STANDARD.items() if measured == target)
+
+
+def torque_of(value: float) -> str:
+    """Return a torque as a case has it: all its digits, without the round-off of a unit."""
+    short = f"{value:.12g}"
+    return f"{short if math.isclose(float(short), value, rel_tol=ROUND_OFF) else repr(value)} N*m"
