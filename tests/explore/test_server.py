@@ -270,7 +270,7 @@ def test_a_hundred_at_once_do_not_mix(served):
     assert len({str(rows) for rows in wanted.values()}) == len(texts)
 
 
-def test_someone_who_goes_away_does_no_harm(seed):
+def test_someone_who_goes_away_does_no_harm(seed, caplog):
     parts = urlsplit(seed)
     body = json.dumps({"changes": {}}).encode()
     for cut in (0, 5, len(body)):
@@ -281,6 +281,7 @@ def test_someone_who_goes_away_does_no_harm(seed):
             )
             line.sendall(head.encode() + body[:cut])
     assert answer(seed)["status"] == "certified"
+    assert caplog.records == [], "nothing has failed"
 
 
 def test_a_setting_is_saved_as_a_case_that_extends_the_original(seed, tmp_path):

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from starlette.applications import Starlette
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
@@ -204,6 +204,9 @@ def _failure(error: Exception, what: str) -> tuple[dict[str, Any], int]:
         return invalid(error), 200
     if isinstance(error, RequestError):
         return {"status": "failed", "messages": [str(error)]}, error.status
+    if isinstance(error, ClientDisconnect):
+        # In the middle of its request: nobody reads this, and nothing has failed.
+        return {"status": "failed", "messages": ["the page went away"]}, 499
     log.error("%s failed", what, exc_info=error)
     message = f"the server failed: {type(error).__name__}; its log says more"
     return {"status": "failed", "messages": [message]}, 500
