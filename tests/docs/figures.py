@@ -494,7 +494,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"1024 by default; 0 turns",
         r"0\.135 % lie beyond",
         r"blocks of (?:at least )?4096",
-        r"at least 4096 samples, its first 512\b",
+        r"an eighth and at most 640\b",
         r"about 1e-12 of the value|round-off, 1e-12 of the largest",
         r"After 120 passes",
         r"is used from 300 equilibria on",
