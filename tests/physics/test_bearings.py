@@ -4,6 +4,7 @@ Source: formulation, section 14.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -343,3 +344,56 @@ def test_a_full_matrix_turns_with_the_train():
 def test_what_is_no_stiffness_is_reported(matrix, message):
     with pytest.raises(ls.CaseError, match=message):
         pair().replace({"bearings": {}, "gears.a.support": matrix})
+
+
+PLANETS = np.array([0, 21, 42, 63, 84]) * 2.0 * math.pi / 104.0 + 0.3
+
+
+def rounded_set(digits: int, torque: float) -> ls.Case:
+    """A set with its sun afloat and its carrier in a bearing with clearance, centres rounded.
+
+    The carrier may move with the sun: nothing but the rounding of the centres presses it.
+    """
+    case: dict[str, Any] = {
+        "operating": {"input": "s", "output": "c", "torque": f"{torque} N*m"},
+        "gears": {
+            "s": {"teeth": 28, "module": "4 mm", "centre": ["0 mm", "0 mm"], "support": "free"},
+            "r": {
+                "type": "internal",
+                "teeth": 76,
+                "module": "4 mm",
+                "centre": ["0 mm", "0 mm"],
+                "held": True,
+            },
+            "c": {"type": "carrier", "centre": ["0 mm", "0 mm"]},
+        },
+        "meshes": {},
+        "bearings": {"c": {"clearance": "14 um", "stiffness": "6e8 N/m"}},
+    }
+    for i, angle in enumerate(PLANETS):
+        centre = [f"{104.0 * f(angle):.{digits}f} mm" for f in (math.cos, math.sin)]
+        case["gears"][f"p{i}"] = {
+            "teeth": 24,
+            "module": "4 mm",
+            "carrier": "c",
+            "centre": centre,
+            "support": "5e8 N/m",
+        }
+        for name in (f"s-p{i}", f"p{i}-r"):
+            case["meshes"][name] = {"stiffness": "3e5 N*m/rad"}
+    return ls.Case(case)
+
+
+@pytest.mark.parametrize("engine", ["vectorised", "compiled"])
+@pytest.mark.parametrize("digits", [4, 6, 7, 8, 9, 12])
+def test_what_only_rounding_presses_rests_at_the_end_of_its_clearance(digits, engine):
+    torques = np.geomspace(50.0, 2000.0, 12)
+    found = ls.solve_many(
+        rounded_set(digits, 100.0), {"operating.torque [N*m]": torques}, engine=engine
+    )
+    assert found.certified.all()
+    # The same of a set whose centres are exact; rounding moves these by half of the last digit.
+    exact = ls.solve(rounded_set(14, 100.0)).positions[0].torque
+    for i in range(5):
+        part = found.torque.sel(mesh=f"s-p{i}").values[:, 0] / torques
+        assert part == pytest.approx(exact[f"s-p{i}"] / 100.0, abs=10.0**-digits)

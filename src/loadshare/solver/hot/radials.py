@@ -77,8 +77,12 @@ def block(
             inner, start = np.zeros(count), np.zeros(count)
             outer = np.clip(radius, law.stick, law.reach) / np.maximum(law.bound, HOT.faint * push)
         else:
-            reached = np.maximum(radius, law.reach)
-            pull = law.bound + law.last * (reached - law.reach)
+            # Where a wall yields by less than the play before it, a turn of the offset looks like a
+            # large force.
+            stiff = (law.first == 0.0) & (size > 0.0) & (size < law.last * law.reach)
+            along = np.where(stiff[:, None], direction(force, offset), along)
+            reached = np.where(stiff, law.reach + size / law.last, np.maximum(radius, law.reach))
+            pull = np.where(stiff, size, law.bound + law.last * (reached - law.reach))
             inner = 1.0 / law.last
             outer = np.where(pull > 0.0, reached / np.where(pull > 0.0, pull, 1.0), inner)
             start = law.reach - law.bound / law.last

@@ -82,12 +82,20 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
         law = work.radial[t]
         p, q = work.force[2 * t], work.force[2 * t + 1]
         by_force = status in (CORNER, WALL)
+        # Where it yields by less than the play before it, a turn of the offset looks like a force.
+        wall = status == STOP and s.radial[0, s.turning_radials[t], 0] == 0.0
         for m in range(width):
             a, b = (p[m], q[m]) if by_force else (law[U, m], law[V, m])
             other_a, other_b = (law[U, m], law[V, m]) if by_force else (p[m], q[m])
             square = a * a + b * b
-            a, b = (a, b) if square > 0.0 else (other_a, other_b)
             one[m] = np.sqrt(square)
+            if wall:
+                pull = np.sqrt(other_a * other_a + other_b * other_b)
+                if 0.0 < pull < law[LAST, m] * law[REACH, m]:
+                    a, b, square = other_a, other_b, pull * pull
+                    # Its sign tells that this is a force.
+                    one[m] = -pull
+            a, b = (a, b) if square > 0.0 else (other_a, other_b)
             square = a * a + b * b
             inverse = 1.0 / np.sqrt(square) if square > 0.0 else 0.0
             a = a * inverse if square > 0.0 else 1.0
@@ -108,6 +116,8 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
                 inner, reached = 1.0 / law[LAST, m], max(size, reach)
                 begin = reach - bound * inner
                 pull = bound + law[LAST, m] * (reached - reach)
+                if size < 0.0:
+                    pull, reached = -size, reach - size * inner
                 outer = reached / pull if pull > 0.0 else inner
             outer = min(outer, HOT.softest)
             going = work.go[m] > 0.0
