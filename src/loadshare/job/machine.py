@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from loadshare import compilation
 from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
+from loadshare.job.judging import Judging
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.structure import Structure, structure_of
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
-from loadshare.solver.hot.answer import equilibria, pin, without_noise
+from loadshare.solver.hot.answer import pin, without_noise
 from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Engine, Found, States, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
@@ -26,6 +27,11 @@ from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.placed import standing
 from loadshare.train.situations import Situations, situations_of
+
+Some = NDArray[np.bool_] | None
+"""Samples (S,) to solve; None for all."""
+Way = Callable[[Some], tuple[Iterate, Found]]
+"""How samples are solved."""
 
 
 def _parts(count: int, parts: int) -> list[slice]:
@@ -84,45 +90,6 @@ class _Start:
 
     states: States
     share: NDArray[np.float64]
-
-
-class _Judging:
-    """Answers of samples and what the certificate says of them, renewed where they change."""
-
-    def __init__(
-        self,
-        machine: Machine,
-        situations: Situations,
-        iterate: Iterate,
-        tolerance: float,
-        compiled: bool,
-    ) -> None:
-        self.structure, self.judge = machine.structure, machine.judge
-        self.situations, self.iterate = situations, iterate
-        self.tolerance, self.compiled = tolerance, compiled
-        self.answers: Equilibria
-        self._verdicts: Verdicts | None = None
-
-    def renewed(self, rows: NDArray[np.bool_], bounded: bool = True) -> Verdicts:
-        """Judge samples that have changed, the first time all; return the verdicts on all.
-
-        Errors are bounded with every effort, or only where that takes no time (see `Judge.judge`).
-        """
-        if self._verdicts is None:
-            self.answers = equilibria(self.structure, self.iterate, self.compiled)
-            self._verdicts = self._judged(self.situations, self.answers, bounded)
-        elif rows.any():
-            some = np.flatnonzero(rows)
-            answers = equilibria(self.structure, self.iterate.take(some), self.compiled)
-            self.answers.put_all(some, answers)
-            verdicts = self._judged(self.situations.take(some), answers, bounded)
-            self._verdicts = self._verdicts.replaced(some, verdicts)
-        return self._verdicts
-
-    def _judged(self, situations: Situations, answers: Equilibria, bounded: bool) -> Verdicts:
-        return self.judge.judge(
-            situations, answers, self.tolerance, compiled=self.compiled, bounded=bounded
-        )
 
 
 class Machine:
@@ -227,7 +194,7 @@ class Machine:
         left = ~found.solved
         tries = np.ones(loading.count, dtype=np.intp)
         searched = np.zeros(loading.count, dtype=bool)
-        judging = _Judging(self, situations, iterate, tolerance, quick)
+        judging = Judging(self.structure, self.judge, situations, iterate, tolerance, quick)
         # What a rule has end on the verge takes long to bound; another way may end clear of it.
         at_once = by_rule and quick and self.judge.compiles(situations)
         while True:
@@ -269,7 +236,7 @@ class Machine:
 
     def _ways(
         self, loading: Loading, engine: Engine, starts: Sequence[int]
-    ) -> tuple[list[Callable[[NDArray[np.bool_] | None], tuple[Iterate, Found]]], bool]:
+    ) -> tuple[list[Way], bool]:
         """Ways to solve some of the samples, one after another; whether a rule is the first.
 
         A beginning or compiled code that fails: once more from rest, then with NumPy, at last by
@@ -277,7 +244,7 @@ class Machine:
         """
         learn_from = samples_to_learn(loading.count if starts else 0)
         by_rule, numpy = len(learn_from) > 0, vectorised.settle
-        ways: list[Callable[[NDArray[np.bool_] | None], tuple[Iterate, Found]]] = []
+        ways: list[Way] = []
         if by_rule:
             ways.append(lambda _: self._by_rule(loading, engine, learn_from))
         if starts or self._beside(loading.count) is not None:
@@ -292,7 +259,7 @@ class Machine:
         self,
         loading: Loading,
         engine: Engine,
-        some: NDArray[np.bool_] | None,
+        some: Some,
         singly: bool = False,
     ) -> tuple[Iterate, Found]:
         iterate = at_rest(self.structure, loading)
@@ -303,7 +270,7 @@ class Machine:
         loading: Loading,
         engine: Engine,
         starts: Sequence[int],
-        some: NDArray[np.bool_] | None,
+        some: Some,
     ) -> tuple[Iterate, Found]:
         """Let samples begin where the train itself stands, or a machine that differs little."""
         iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)

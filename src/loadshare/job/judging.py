@@ -1,0 +1,71 @@
+"""The certificate of samples that are being solved, renewed where their answers change."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify import Judge, Verdicts
+from loadshare.scene.structure import Structure
+from loadshare.solver.hot.answer import equilibria
+from loadshare.solver.hot.iterate import Iterate
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.situations import Situations
+
+
+class Judging:
+    """Answers of samples and what the certificate says of them.
+
+    Parameters
+    ----------
+    structure : Structure
+    judge : Judge
+    situations : Situations
+    iterate : Iterate
+        Of the samples; answers follow it.
+    tolerance : float
+        Largest scaled residual of a certified answer.
+    compiled : bool
+        See `Judge.judge`.
+
+    Attributes
+    ----------
+    answers : Equilibria
+        Once they were judged.
+    """
+
+    def __init__(
+        self,
+        structure: Structure,
+        judge: Judge,
+        situations: Situations,
+        iterate: Iterate,
+        tolerance: float,
+        compiled: bool,
+    ) -> None:
+        self.structure, self.judge = structure, judge
+        self.situations, self.iterate = situations, iterate
+        self.tolerance, self.compiled = tolerance, compiled
+        self.answers: Equilibria
+        self._verdicts: Verdicts | None = None
+
+    def renewed(self, rows: NDArray[np.bool_], bounded: bool = True) -> Verdicts:
+        """Judge samples that have changed, the first time all; return the verdicts on all.
+
+        Errors are bounded with every effort, or only where that takes no time (see `Judge.judge`).
+        """
+        if self._verdicts is None:
+            self.answers = equilibria(self.structure, self.iterate, self.compiled)
+            self._verdicts = self._judged(self.situations, self.answers, bounded)
+        elif rows.any():
+            some = np.flatnonzero(rows)
+            answers = equilibria(self.structure, self.iterate.take(some), self.compiled)
+            self.answers.put_all(some, answers)
+            verdicts = self._judged(self.situations.take(some), answers, bounded)
+            self._verdicts = self._verdicts.replaced(some, verdicts)
+        return self._verdicts
+
+    def _judged(self, situations: Situations, answers: Equilibria, bounded: bool) -> Verdicts:
+        return self.judge.judge(
+            situations, answers, self.tolerance, compiled=self.compiled, bounded=bounded
+        )
