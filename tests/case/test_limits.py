@@ -8,6 +8,7 @@ import sys
 import tomllib
 
 import pytest
+from tests.support import shipped
 from typer.testing import CliRunner
 
 import loadshare as ls
@@ -263,3 +264,8 @@ def test_links_in_a_circle(tmp_path):
     done = CliRunner().invoke(app, ["check", str(tmp_path / "loop.toml")])
     assert done.exit_code == 2
     assert "too many levels of symbolic links" in done.output
+
+
+def test_a_number_of_teeth_that_no_float_holds_is_reported():
+    with pytest.raises(ls.CaseError, match="teeth"):
+        shipped("planetary/four_planets").replace({"gears.sun.teeth": 10**320})

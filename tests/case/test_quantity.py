@@ -2,10 +2,13 @@ import math
 import subprocess
 import sys
 
+import numpy as np
 import pint
 import pytest
 from pydantic import TypeAdapter, ValidationError
+from tests.support import shipped
 
+import loadshare as ls
 from loadshare.case import quantity as q
 from loadshare.case import units
 
@@ -194,3 +197,10 @@ def test_common_units_are_known_without_the_registry_and_as_it_says(si):
         for other in units.FACTORS:
             same = given.dimensionality == units._parse(other).dimensionality
             assert (units.si_factor(unit, other) is not None) == same == (other == si)
+
+
+def test_a_table_of_quantities_for_one_value_is_reported():
+    ureg = pint.UnitRegistry()
+    case = shipped("fgfbstts/limit_ring")
+    with pytest.raises(ls.CaseError, match=r"rings\.4\.float"):
+        case.replace({"rings.4.float": np.array([[4.0, 5.0]]) * ureg.um})

@@ -91,6 +91,18 @@ def test_failing_cases_do_not_stop_the_others(command, star, unheld, half_held, 
     assert not (out / "broken.json").exists()
 
 
+def test_a_case_that_is_none_any_more_names_the_result_that_it_had(command, star, tmp_path):
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text((star / "floating_sun_3.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    command("batch", case, "-o", out, "--jobs", "1")
+    before = (out / "case.json").read_bytes()
+    case.write_text("nonsense = 1\n", encoding="utf-8")
+    result = command("batch", case, "-o", out, "--jobs", "1")
+    assert result.exit_code == 1
+    assert "case.json: left by an earlier run, not of the case as it is now" in result.stdout
+    assert (out / "case.json").read_bytes() == before
+
+
 def test_a_bug_met_in_one_case_is_an_outcome(command, star, tmp_path, monkeypatch):
     solve = ls.solve
 

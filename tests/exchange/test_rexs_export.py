@@ -100,3 +100,22 @@ def test_seats_of_pins_take_the_force_of_their_planets(written) -> None:
             else:
                 assert sides["outer"] == pytest.approx(part * force)
                 assert sides["inner"] == pytest.approx(-part * force)
+
+
+def test_a_mesh_that_jams_has_the_stiffness_of_its_flank(written) -> None:
+    """Force and compression are those of one flank, not what both push together."""
+    unit = written(xml(*two_stages()))
+    law = {"b": "1e-6 rad/(N*m)", "c": "2e-5 rad/(N*m)^(2/3)"}
+    mesh = "gear_20-gear_21"
+    jammed = {
+        f'meshes."{mesh}"': {"law": law, "backlash": "0 um"},
+        "errors.gear_21": {"installation": ["0 um", "-60 um", "0 um"]},
+    }
+    result = ls.solve(import_rexs(unit).case().replace(jammed))
+    forces = result.positions[0].equilibrium.flank_force
+    force = max(forces[mesh], forces[f"{mesh} coast"])
+    assert min(forces[mesh], forces[f"{mesh} coast"]) > 0.0
+    flank = result.positions[0].train.meshes[mesh].law(1)
+    found = read_model(written(export_rexs(result, unit).encode(), "copy.rexs")).components
+    (stiffness,) = found["40"].attributes["meshing_stiffness_characteristic"]
+    assert stiffness == pytest.approx(force / flank.compression(force), rel=1e-9)

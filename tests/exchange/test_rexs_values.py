@@ -232,3 +232,34 @@ def test_a_carriers_shaft_may_be_known_by_its_stage_alone(written) -> None:
     by_stage = ("planet_carrier_shaft", {"planetary_stage": 9, "shaft": 4})
     plain = import_rexs(written(xml(*planetary()))).data
     assert import_rexs(written(xml(components, [*relations, by_stage]))).data == plain
+
+
+def test_planets_may_sit_in_a_shaft_that_is_part_of_their_carrier(written) -> None:
+    """Without pins: a shaft that bears several planets is the carrier's, whoever says so."""
+    components, relations = planetary()
+    seated = [
+        (kind, {**roles, "inner_part": 4} if roles.get("inner_part") in (235, 236, 237) else roles)
+        for kind, roles in relations
+        if kind != "planet_pin" and roles.get("part") not in (235, 236, 237)
+    ]
+    components = [c for c in components if c[0] not in (235, 236, 237)]
+    by_stage = ("planet_carrier_shaft", {"planetary_stage": 9, "shaft": 4})
+    found = import_rexs(written(xml(components, seated))).data
+    assert found == import_rexs(written(xml(components, [*seated, by_stage]))).data
+    assert found["operating"]["output"] == "carrier_3"
+
+
+def test_what_is_taken_for_the_width_of_a_mesh_is_listed(written) -> None:
+    """Where the file says otherwise, or nothing."""
+    density = {
+        "mesh_stiffness_for_load_distribution_along_face_width": (20.0, "N / (mm mum)"),
+        "common_face_width": None,
+    }
+    for changes, line in (
+        ({"common_face_width": (30.0, "mm")}, "whatever the common_face_width of 30 mm"),
+        ({"common_face_width": (50.0, "mm")}, None),
+        (density, "carries on all of the narrower face, 50 mm"),
+    ):
+        found = import_rexs(written(xml(*changed(two_stages(), _40=changes)))).assumed
+        lines = [one for one in found if one.startswith("mesh gear_20-gear_21: carries")]
+        assert [one.endswith(line or "") for one in lines] == ([True] if line else []), changes

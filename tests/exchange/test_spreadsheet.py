@@ -372,6 +372,15 @@ def book(tmp_path):
     return book, read
 
 
+def test_a_sheet_that_is_lost_is_no_case_without_it(book) -> None:
+    """Of an archive that is damaged, or was written by half."""
+    sheets, read = book
+    sheets.create_sheet("errors")["A1"] = "name"
+    assert read()
+    with pytest.raises(CaseError, match="damaged workbook: it lacks its sheet 'errors'"):
+        read((b"sheet4.xml", b"sheet9.xml"))
+
+
 def test_a_formula_without_a_saved_value_is_no_empty_cell(book) -> None:
     """Programs that write formulas calculate none; a spreadsheet program saves values."""
     sheets, read = book

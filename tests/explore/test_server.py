@@ -192,6 +192,7 @@ BODIES = [
     (b"null", 400),
     (b"{", 400),
     (b'{"position": NaN}', 400),
+    (b'{"changes": {"rings.4.float": "\\ud800 um"}}', 400),
     (b'{"position": 1e308}', 400),
     (b'{"position": -1}', 400),
     (b'{"position": true}', 400),
@@ -297,6 +298,10 @@ def test_a_setting_is_saved_as_a_case_that_extends_the_original(seed, tmp_path):
     inputs = Inputs(load_case(SEED))
     assert case == inputs.case.replace(inputs.changes(changes))
     assert ask(seed, "/toml", {"changes": {FLOAT: "3"}})[2]["status"] == "invalid"
+    # What the file itself does not contradict, but its train does.
+    wrong = {"gears.6.base_radius": "200 mm"}
+    for path in ("/answer", "/toml"):
+        assert ask(seed, path, {"changes": wrong})[2]["status"] == "invalid", path
 
 
 def test_what_the_command_line_changed_is_saved_as_well(served, tmp_path):

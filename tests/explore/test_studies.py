@@ -101,6 +101,18 @@ def test_what_matters_comes_in_parts(seed):
     assert effects["rings.5.float"] > effects["rings.4.float"] == 0.0
 
 
+def test_a_slope_to_a_side_that_is_none_is_no_zero(seed):
+    """A float of nothing can only grow."""
+    none = {"rings.4.float": "0 um"}
+    (line,) = study(seed, "slopes", {"keys": ["rings.4.float"], "changes": none})
+    ((key, slope, _), effect), *_ = line["rows"]
+    case = ls.load_case(SEED).replace(none)
+    wanted = ls.sensitivity(case, "rings.4.float", positions=[1]).omega["rings.4.float", "rising"]
+    assert key == "rings.4.float"
+    assert slope == f"– | {wanted['system'] * 1e-6:+.3g} per um"
+    assert effect > 0.0
+
+
 RANGES = {"rings.*.float": [0.0, 12.0], "errors.6.installation.direction": [-180.0, 180.0]}
 
 

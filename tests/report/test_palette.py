@@ -84,7 +84,7 @@ def test_pictures_agree_on_a_gears_colour(limit_ring, picture, drawing, read):
     assert drawn == [palette_of(limit_ring).gear(g).colour for g in ("1", "4", "5")]
     circles = read(drawing("fgfbstts/limit_ring").spec).marks("line")
     found = {
-        u["mark"]["stroke"]
+        r["colour"]
         for u in circles
         for r in u["rows"]
         if "circle" in r and r["circle"].startswith("gear 4,")

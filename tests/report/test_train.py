@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import groupby
 
 import numpy as np
 import pytest
@@ -105,15 +106,18 @@ def test_bent_arrows_run_in_the_running_sense(drawing, read):
     turned = {}
     for unit in spec.marks("line"):
         if unit["mark"].get("strokeWidth") == 1.8:
-            points = [(r["x"], r["y"]) for r in unit["rows"][:60]]
-            middle = min(
-                built.gears.values(),
-                key=lambda g, p=points: float(
-                    np.std([math.dist(1e3 * g.centre[:2], q) for q in p])
-                ),
-            )
-            a, b = (np.array(p) - 1e3 * middle.centre[:2] for p in (points[0], points[10]))
-            turned.setdefault(middle.name, []).append(math.copysign(1.0, a[0] * b[1] - a[1] * b[0]))
+            for gear, drawn in groupby(unit["rows"], key=lambda row: row["gear"]):
+                points = [(r["x"], r["y"]) for r in list(drawn)[:60]]
+                middle = min(
+                    built.gears.values(),
+                    key=lambda g, p=points: float(
+                        np.std([math.dist(1e3 * g.centre[:2], q) for q in p])
+                    ),
+                )
+                assert middle.centre == pytest.approx(built.gears[gear].centre)
+                a, b = (np.array(p) - 1e3 * middle.centre[:2] for p in (points[0], points[10]))
+                sense = math.copysign(1.0, a[0] * b[1] - a[1] * b[0])
+                turned.setdefault(gear, []).append(sense)
     for number in (1, 2, 3):
         assert turned[f"planet{number}"] == [built.gears[f"planet{number}"].sense]
     # Sun and ring are coaxial and run in opposite senses.

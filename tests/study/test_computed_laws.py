@@ -57,3 +57,19 @@ def test_a_number_of_the_law_itself_is_varied_as_it_stands() -> None:
     both = ls.sweep(CASE, grids, positions=[1])
     values = both.dataset.omega.sel(stage="system").values
     assert len(np.unique(values)) == 4
+
+
+def test_a_file_of_teeth_must_agree_with_every_point() -> None:
+    """Teeth in a file do not follow the case: a point is what a case says that gives it."""
+    case = ls.load_case(CASES / "fgfbstts" / "from_geometry.toml")
+    turned = {"gears.4.centre.angle": ["59.99 deg", "60.01 deg"]}
+    found = ls.sweep(case, turned, positions=[1])
+    assert [point.status for point in found.points] == ["certified"] * 2
+    alone = ls.solve(case.replace({"gears.4.centre.angle": "60.01 deg"}), positions=[1])
+    for mesh, torque in alone.positions[0].torque.items():
+        _, second = found.dataset.torque.sel(mesh=mesh).values.ravel()
+        assert second == pytest.approx(torque, rel=1e-12)
+    angles = {'meshes."4-6".pressure_angle': ["18.5 deg", "18.67 deg"]}
+    wrong = ls.sweep(case, angles, positions=[1])
+    assert [point.status for point in wrong.points] == ["invalid", "certified"]
+    assert "p46 has" in wrong.points[0].message

@@ -16,6 +16,7 @@ from tests.support import mostly_slow
 from loadshare.study.answers import certified
 from loadshare.study.memory import stepped
 from loadshare.train import Train
+from loadshare.train.memory import slip_of
 
 LOADS = (1000.0, 1400.0, 700.0, 701.0, 1300.0)
 """Input torque of every step [N·m]."""
@@ -79,3 +80,13 @@ def test_every_step_is_within_what_its_own_torque_allows(friction, rooms):
             if (way := np.linalg.norm(slip - before[gear])) > 1e-10:
                 assert held == pytest.approx(-bound / way * (slip - before[gear]), abs=1e-3)
             before[gear] = slip
+
+
+def test_a_load_that_all_but_ends_leaves_a_spline_next_to_no_friction():
+    """Without a stop, a spline whose friction is none reaches without end."""
+    train = with_splines(1437.0, 0.002, {"a": 8e-6})
+    slips = {"a": np.zeros(3)}
+    answer = stepped(train.remembering(slips), 1)
+    slips = {"a": slip_of(train.splines["a"], answer.equilibrium)}
+    light = with_splines(1.0, 0.002, {"a": 8e-6})
+    assert stepped(light.remembering(slips), 1).certificate.passed

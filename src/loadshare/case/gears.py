@@ -39,6 +39,7 @@ from loadshare.case.quantity import (
     Temperature,
 )
 from loadshare.involute import InvoluteTooth, inv
+from loadshare.settings import ALLOWED
 
 OF_TEETH = (
     "pressure_angle",
@@ -176,7 +177,7 @@ class Gear(Element):
     outer_radius: Radius | None = None
     """Outer radius of a face gear's teeth [length]."""
 
-    teeth: Annotated[int, Strict(), Field(ge=5)] | None = None
+    teeth: Annotated[int, Strict(), Field(ge=5, le=ALLOWED.teeth)] | None = None
     """Number of teeth [-]; sets how far gears turn in a cycle and what position they reach."""
 
     module: Radius | None = None

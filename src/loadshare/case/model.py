@@ -95,15 +95,18 @@ class Case(Content):
     @property
     def files(self) -> tuple[FilePath, ...]:
         """Files that the case is read from: its own, those it extends, and those of mesh laws."""
-        origin, found = self._origin, [self._origin.file, *self._origin.files.values()]
-        files = [FilePath(name) for name in dict.fromkeys(found)]
+        found = [self._origin.file, *self._origin.files.values()]
+        return (*(FilePath(name) for name in dict.fromkeys(found)), *self.law_files)
+
+    @property
+    def law_files(self) -> tuple[FilePath, ...]:
+        """Files that mesh laws are read from, or computed from."""
         named = [(n, key) for n in self.meshes for key in ("law_file", "geometry")]
-        laws = [
-            FilePath(origin.of(("meshes", name, key))).parent / file
+        return tuple(
+            FilePath(self._origin.of(("meshes", name, key))).parent / file
             for name, key in named
             if (file := getattr(self.meshes[name], key)) is not None
-        ]
-        return (*files, *laws)
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the case as plain data, with every value as it was written.

@@ -249,9 +249,14 @@ def as_text(given: object) -> object:
         # To ask for NumPy's types would import it for every command.
         is_scalar = hasattr(given, "dtype") and getattr(given, "ndim", None) == 0
         return given.item() if is_scalar else given  # type: ignore[attr-defined]
-    if getattr(magnitude, "ndim", 0):
-        return [f"{float(number)!r} {units:~C}" for number in magnitude]
-    return f"{float(magnitude)!r} {units:~C}".strip()
+    return _texts(magnitude.tolist() if getattr(magnitude, "ndim", 0) else magnitude, f"{units:~C}")
+
+
+def _texts(magnitude: Any, unit: str) -> object:
+    """A number, or lists of them, with their unit."""
+    if isinstance(magnitude, list):
+        return [_texts(number, unit) for number in magnitude]
+    return f"{float(magnitude)!r} {unit}".strip()
 
 
 def _written(value: Quantity | str, info: core_schema.SerializationInfo) -> str | float:

@@ -11,6 +11,7 @@ import tomlkit
 from loadshare.case.reader import load_case
 from loadshare.case.writer import toml_text
 from loadshare.explore.inputs import Inputs
+from loadshare.job.positions import prepared
 
 
 def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) -> dict[str, str]:
@@ -31,6 +32,8 @@ def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) ->
         If the setting makes no case.
     """
     changed = inputs.case.replace(inputs.changes(given))
+    # Some faults of a case are found where its train is built.
+    prepared(changed)
     name = f"{inputs.case.name or 'case'}_explored.toml"
     if file is None:
         return {"name": name, "text": changed.to_toml(), "note": ""}

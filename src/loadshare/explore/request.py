@@ -44,6 +44,8 @@ async def body_of(request: Request) -> dict[str, Any]:
             raise RequestError(413, f"the request is longer than {EXPLORE.body} bytes")
     try:
         found = json.loads(held, parse_constant=_no_number)
+        # Half a character, as JSON may write it, is in no file and no message.
+        json.dumps(found, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
         raise RequestError(400, "the request is no JSON") from None
     if not isinstance(found, dict):

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from loadshare.errors import CaseError, LoadshareError
 from loadshare.explore.questions import Along, Slopes
-from loadshare.report.numbers import omega, significant
+from loadshare.report.numbers import NONE, omega, significant
 from loadshare.report.units import MICROMETRE
 from loadshare.report.words import boundary_name
 from loadshare.study.event import Event
@@ -105,10 +105,18 @@ def rates(question: Slopes) -> Plain:
         for side in found.sides:
             rate = found.omega[item.key, side]["system"] * item.value.factor
             error = found.omega_error[item.key, side]["system"] * item.value.factor
-            cells[side] = rate if math.isfinite(rate) and abs(rate) > error else 0.0
-        effect = max(cells.values(), key=abs) * reach[item.key]
-        texts = list(dict.fromkeys(f"{rate:+.3g}" if rate else "0" for rate in cells.values()))
+            cells[side] = 0.0 if abs(rate) <= error else rate
+        # To one side there may be none: at the end of what an input can be.
+        effect = max((r for r in cells.values() if math.isfinite(r)), key=abs, default=0.0)
+        effect *= reach[item.key]
+        texts = list(dict.fromkeys(map(_slope, cells.values())))
         per = f"per {item.value.unit}" if item.value.unit else "per 1"
         slope = f"{' | '.join(texts)} {per}"
         rows.append([[item.key, slope, omega(effect) if effect else "0"], abs(effect)])
     return {"rows": rows, "notes": [remark.message for remark in found.remarks][:3]}
+
+
+def _slope(rate: float) -> str:
+    if not math.isfinite(rate):
+        return NONE
+    return f"{rate:+.3g}" if rate else "0"

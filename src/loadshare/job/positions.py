@@ -208,14 +208,24 @@ def prepared(case: Case | str | Path) -> tuple[Case, Machine]:
     differs in numbers from one before has its geometry.
     """
     case = opened(case)
-    found = _recent.of(case)
+    written = tuple(map(_when_written, case.law_files))
+    found = _recent.of(case, written)
     if found is None:
         solved = with_laws(case)
         train, geometry = _built(solved)
         machine = Machine(train)
         share(machine)
-        found = _recent.keep(case, (solved, machine, geometry))
+        found = _recent.keep(case, (solved, machine, geometry), written)
     return found[:2]
+
+
+def _when_written(file: Path) -> tuple[int, int]:
+    """What tells a file from the one that was there before; one that is gone is reported later."""
+    try:
+        status = file.stat()
+    except OSError:
+        return 0, 0
+    return status.st_mtime_ns, status.st_size
 
 
 def _built(case: Case) -> tuple[Train, Geometry]:

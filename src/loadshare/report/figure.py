@@ -13,10 +13,13 @@ from typing import TYPE_CHECKING, Any
 from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
 from loadshare.output import write_whole
+from loadshare.report import beside
 from loadshare.report.palette import FAINT, INK, SOFT
 from loadshare.report.vega import vega_lite_version
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     import altair as alt
 
 ENDINGS = (".png", ".svg", ".pdf", ".html", ".json")
@@ -203,7 +206,7 @@ class Figure:
         if form == "json":
             return json.dumps(self.spec, indent=1, ensure_ascii=False) + "\n"
         settings = {"scale": scale} if form == "png" else {}
-        return bytes(self._converted(form, **settings))
+        return bytes(self._begun(form, **settings).result())
 
     def to_svg(self, prefix: str = "") -> str:
         """Return the picture as SVG text, the same text for the same picture.
@@ -217,14 +220,20 @@ class Figure:
         numbers: dict[str, int] = {}
         return _CLIP.sub(
             lambda m: f"{m[1]}{prefix}clip{numbers.setdefault(m[2], len(numbers) + 1)}{m[3]}",
-            str(self._converted("svg")),
+            self._as_svg.result(),
         )
 
-    def _converted(self, form: str, **settings: float) -> Any:
-        import vl_convert
+    def begin(self) -> Figure:
+        """Begin to draw the picture as SVG, beside what is done before it is asked for."""
+        _ = self._as_svg
+        return self
 
-        convert = getattr(vl_convert, f"vegalite_to_{form}")
-        return convert(self.spec, vl_version=vega_lite_version(), **settings)
+    @cached_property
+    def _as_svg(self) -> Future[str]:
+        return self._begun("svg")
+
+    def _begun(self, form: str, **settings: float) -> Future[Any]:
+        return beside.begin(form, self.spec, vl_version=vega_lite_version(), **settings)
 
     def _repr_mimebundle_(self, *_: object, **__: object) -> dict[str, Any]:
         """Show the picture in a notebook, which draws SVG without any extension."""

@@ -273,7 +273,15 @@ class Structure:
     def gaps_of_flanks(self, situations: Situations) -> Array:
         """Gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
         flat = situations.offset.reshape(len(situations.offset), -1)
-        return np.asarray(situations.gap - self.at_rest - (self.nearer @ flat.T).T)
+        nearer = self.nearer if len(flat) < STATICS.samples else self._nearer_sparse
+        return np.asarray(situations.gap - self.at_rest - (nearer @ flat.T).T)
+
+    @cached_property
+    def _nearer_sparse(self) -> Any:
+        """The same without its zeros; SciPy has no types."""
+        from scipy.sparse import csr_array
+
+        return csr_array(self.nearer)
 
     @property
     def switches(self) -> int:

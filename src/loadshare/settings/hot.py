@@ -124,6 +124,8 @@ class Statics(NamedTuple):
     many: int = 8
     """Redundants in one element from which on they are coupled in a chain instead: fewer take no
     longer as they are."""
+    samples: int = 256
+    """From which on SciPy is loaded, for products with matrices that are all but empty."""
     uneven: float = 1.0
     """Logarithm of the ratio of their forces there up to which that is done: next to nothing is
     lost in the differences."""

@@ -8,6 +8,7 @@ import pytest
 from platformdirs import user_cache_path
 from tests.tooth.use.pairs import CASE, FACE, SPUR, written
 
+import loadshare as ls
 from loadshare import tooth
 from loadshare.case import load_case
 from loadshare.errors import CaseError
@@ -67,6 +68,23 @@ def test_a_law_that_yields_nothing_is_refused_by_its_file(spur, tmp_path):
     (problem,) = caught.value.problems
     assert (problem.file, problem.key) == (str(file), "b[1]")
     assert problem.message == "and c are both 0 here: the mesh would be rigid"
+
+
+def test_a_case_that_is_solved_again_has_the_law_of_the_file_as_it_is(spur, tmp_path):
+    pair = load_pair(spur)
+    law = law_of(pair, pair.analyse())
+    twice = {b.text: f"{2.0 * b.si!r} rad/(N*m)" for b in law.b}
+    stiff = soft = law_text(law)
+    for once, other in twice.items():
+        soft = soft.replace(once, other)
+    written(tmp_path, stiff, "law.toml")
+    case = load_case(written(tmp_path, CASE + 'law_file = "law.toml"\n', "case.toml"))
+    before = ls.solve(case).positions[0].rotation["a"]
+    written(tmp_path, soft, "law.toml")
+    again = ls.solve(case).positions[0].rotation["a"]
+    fresh = ls.solve(load_case(tmp_path / "case.toml")).positions[0].rotation["a"]
+    assert again == pytest.approx(fresh, rel=1e-12)
+    assert again > 1.2 * before
 
 
 def test_a_law_file_describes_its_gears(tmp_path):

@@ -102,6 +102,8 @@ def work(task: Task) -> Outcome:
         messages = (out_of_memory(str(error)),)
     except Exception as error:  # noqa: BLE001 -- a bug met in one case must not cost the others theirs
         messages = (f"{type(error).__name__}: {error}",)
+    if outcome in ("invalid", "crashed") and task.target.exists():
+        messages += (f"{task.target}: left by an earlier run, not of the case as it is now",)
     return Outcome(
         name=task.name,
         case=str(task.case),

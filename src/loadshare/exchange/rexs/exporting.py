@@ -172,13 +172,16 @@ def _of_bearings(result: Result, gearing: Gearing) -> Values:
 
 
 def _stiffness(result: Result, name: str) -> list[float]:
-    """Force over compression of a mesh at every position [N/mm]; 0 where it carries nothing."""
+    """Force over compression of a mesh at every position [N/mm]; 0 where it carries nothing.
+
+    Where a mesh jams, that of the flank which carries more.
+    """
     values = []
     for position in result.positions:
-        force = abs(position.loads.meshes[name])
         mesh, pressed = position.train.meshes[name], position.equilibrium.flank_force
         flank = max(map(mesh.flank_name, mesh.flanks), key=lambda one: pressed[one])
         law = mesh.law(position.train.flank_positions(position.position)[flank])
+        force = pressed[flank]
         yielded = law.compression(force)
         values.append(1e-3 * force / yielded if yielded > 0.0 else 0.0)
     return values

@@ -126,26 +126,35 @@ class Gearing:
 
     @cached_property
     def pins(self) -> set[str]:
-        """Ids of the shafts on which planets sit: as the file says, or by their bearings."""
+        """Ids of the shafts on which planets sit: as the file says, or by their bearings.
+
+        What is part of a carrier and bears several planets is a shaft of the carrier.
+        """
         found = {s.id for _, s in self.model.related("planet_pin", "planetary_stage", "shaft")}
         riders = {self.shaft_of[planet].id for planet in self.carrier_of}
         geared = {self.shaft_of[g.id].id for g in self.gears if g.id in self.shaft_of}
         others = geared | set(self._on_carriers("planet_carrier_shaft"))
+        borne: dict[str, set[str]] = {}
         for _, *both in self.joined(*BEARINGS):
             for pin, rider in (both, both[::-1]):
                 if rider.id in riders and pin.type == "shaft" and pin.id not in others:
-                    found.add(pin.id)
-        return found
+                    borne.setdefault(pin.id, set()).add(rider.id)
+        own = self._parts_of_carriers
+        return found | {pin for pin, ones in borne.items() if pin not in own or len(ones) == 1}
 
     @cached_property
-    def carrier_shafts(self) -> dict[str, Component]:
-        """Carrier to which a shaft belongs, by id of the shaft."""
-        found = {
+    def _parts_of_carriers(self) -> dict[str, Component]:
+        """Carriers of which shafts are parts, by id of the shaft."""
+        return {
             part.id: whole
             for whole, part in self.model.related("assembly", "assembly", "part")
             if whole.type == "planet_carrier" and part.type == "shaft"
         }
-        found |= self._on_carriers("planet_carrier_shaft")
+
+    @cached_property
+    def carrier_shafts(self) -> dict[str, Component]:
+        """Carrier to which a shaft belongs, by id of the shaft."""
+        found = self._parts_of_carriers | self._on_carriers("planet_carrier_shaft")
         return {id_: c for id_, c in found.items() if id_ not in self.pins and c in self.carriers}
 
     def parts_of(self, carrier: Component) -> set[str]:

@@ -14,6 +14,8 @@ from loadshare.exchange.rexs.shafts import material_of
 
 LIKE_STEEL = 0.05
 """Part by which a modulus of elasticity may differ from that of steel unreported."""
+ALIKE = 1e-3
+"""Part by which widths may differ unreported."""
 
 
 def meshes_of(of: Gearing, first: str, links: Links, assumed: list[str]) -> Data:
@@ -28,7 +30,9 @@ def meshes_of(of: Gearing, first: str, links: Links, assumed: list[str]) -> Data
         driver, driven = sorted(
             (one, other), key=lambda gear: (reached[of.names[gear.id]], gear.id in of.carrier_of)
         )
-        made[f"{of.names[driver.id]}-{of.names[driven.id]}"] = _law(of, stage, driver, driven)
+        name = f"{of.names[driver.id]}-{of.names[driven.id]}"
+        made[name] = _law(of, stage, driver, driven)
+        assumed += _width_assumed(name, made[name], stage, driver, driven)
     if any("law" in law for law in made.values()):
         assumed.append('meshes: their law is "iso", ISO 6336-1 method B')
         assumed += _not_of_steel(of)
@@ -88,14 +92,32 @@ def _reached(of: Gearing, first: str, links: Links) -> dict[str, int]:
 
 def _law(of: Gearing, stage: Component, driver: Component, driven: Component) -> Data:
     density = stage.number("mesh_stiffness_for_load_distribution_along_face_width")
-    width = stage.number("common_face_width") or min(
-        driver.number("face_width") or 0.0, driven.number("face_width") or 0.0
-    )
+    width = stage.number("common_face_width") or _narrower(driver, driven)
     angle = first_number([*of.flanks(driver), driver], "normal_pressure_angle")
     radius = _base_radius(driver, angle or math.radians(20.0))
     if density and width and radius:
         return {"stiffness": f"{density * width * radius**2:.12g} N*m/rad"}
     return {"law": "iso"}
+
+
+def _narrower(one: Component, other: Component) -> float:
+    """Width of the narrower of two faces [m]; 0 where a file does not give both."""
+    return min(one.number("face_width") or 0.0, other.number("face_width") or 0.0)
+
+
+def _width_assumed(
+    name: str, law: Data, stage: Component, driver: Component, driven: Component
+) -> list[str]:
+    """What is assumed of the width on which a mesh carries."""
+    given, narrower = stage.number("common_face_width"), _narrower(driver, driven)
+    if "stiffness" in law and not given:
+        return [f"mesh {name}: carries on all of the narrower face, {1e3 * narrower:g} mm"]
+    if "law" in law and given and abs(given - narrower) > ALIKE * given:
+        return [
+            f"mesh {name}: carries where its faces overlap, whatever the common_face_width of "
+            f"{1e3 * given:g} mm"
+        ]
+    return []
 
 
 def _not_of_steel(of: Gearing) -> list[str]:

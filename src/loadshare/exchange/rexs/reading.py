@@ -29,6 +29,7 @@ OTHERS = {
     ".toml": "is a case already; `loadshare run` solves it",
     ".nc": "is a result, which holds its case: there is nothing to import",
     ".csv": "is one table; give the folder that holds all tables of a case",
+    **dict.fromkeys((".xlsm", ".xls", ".xlsb", ".ods"), "is a workbook; save it as .xlsx"),
 }
 """Files that are no gear unit, by their endings."""
 

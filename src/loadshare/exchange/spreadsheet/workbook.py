@@ -38,8 +38,9 @@ def sheets_of_workbook(path: Path) -> list[Sheet]:
         )
         raise unread(path, "is a workbook, which needs openpyxl to be read", hint) from None
     try:
-        content, calculated = _content(path)
+        content, calculated, named = _content(path)
         book = load_workbook(content, read_only=True, data_only=True)
+        _check_whole(book.sheetnames, named)
         return [_sheet(path, sheet, calculated) for sheet in book.worksheets]
     except OSError as error:
         raise unread(path, (error.strerror or "cannot be read").lower()) from None
@@ -49,18 +50,27 @@ def sheets_of_workbook(path: Path) -> list[Sheet]:
         raise unread(path, f"is a damaged workbook ({type(error).__name__})") from None
 
 
-def _content(path: Path) -> tuple[BytesIO, bool]:
-    """What a workbook holds, and whether the values of its formulas are calculated.
+def _check_whole(found: list[str], named: list[str]) -> None:
+    """Refuse a workbook that lacks sheets which it names: openpyxl passes over them."""
+    if lost := [name for name in named if name not in found]:
+        raise Unreadable(f"is a damaged workbook: it lacks its sheet {lost[0]!r}")
+
+
+def _content(path: Path) -> tuple[BytesIO, bool, list[str]]:
+    """What a workbook holds, whether values of its formulas are calculated, and names of sheets.
 
     It must not unpack into very much more.
     """
     content = BytesIO(read_file(path, ALLOWED.other_bytes))
+    from openpyxl.xml.functions import fromstring
+
     with zipfile.ZipFile(content) as archive:
         parts = archive.infolist()
         if sum(part.file_size for part in parts) > 4 * ALLOWED.other_bytes:
             raise Unreadable(f"unpacks into more than {4 * ALLOWED.other_bytes // 2**20} MiB")
         heads = [archive.read(p) for p in parts if p.filename.endswith("workbook.xml")]
-    return content, not any(map(NOT_CALCULATED.search, heads))
+    sheets = (e for head in heads for e in fromstring(head).iter() if e.tag.endswith("}sheet"))
+    return content, not any(map(NOT_CALCULATED.search, heads)), [e.get("name") for e in sheets]
 
 
 def _sheet(path: Path, sheet: Any, calculated: bool) -> Sheet:

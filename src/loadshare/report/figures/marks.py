@@ -291,11 +291,17 @@ class Panel:
     def line(
         self, rows: Sequence[Row], by: str = "", tooltip: Any = None, **style: Any
     ) -> list[Drawing]:
-        """Return paths as a layer, one for each value of the field `by`; no layer without rows."""
+        """Return paths as a layer, one for each value of the field `by`; no layer without rows.
+
+        Rows may have a colour each; a filled path is filled with it.
+        """
         # Channels, not their short forms: to find out which is meant, Altair hashes its schema.
         encoding: dict[str, Any] = {"order": alt.Order("order:Q")}
         encoding |= {"detail": alt.Detail(f"{by}:N")} if by else {}
         encoding |= {"tooltip": tooltip} if tooltip else {}
+        if rows and "colour" in rows[0]:
+            encoding["stroke"] = alt.Stroke("colour:N", scale=None)
+            encoding |= {"fill": alt.Fill("colour:N", scale=None)} if style.get("filled") else {}
         drawn = chart(rows).mark_line(**style)
         return [drawn.encode(x=self.x, y=self.y, **encoding)] if rows else []
 

@@ -176,24 +176,22 @@ class _View(Panel):
         return abs(float(np.cross(self.frame[0], self.frame[1]) @ body.axis)) > 1.0 - 1e-6
 
     def _circles(self) -> list[Any]:
-        layers: list[Any] = []
+        hollow, full, dashed = list[Row](), list[Row](), list[Row]()
         for body in self.bodies:
-            stroke = {"stroke": self.palette.gear(body.name).colour, "strokeWidth": 1.3}
-            area = {"filled": True, "fillOpacity": 0.05, "fill": stroke["stroke"]}
-            full, dashed = self.layout.radii(body)
-            for radii, style in (
-                (full, area if body.kind != "internal" else {}),
-                (dashed, {"strokeDash": [4, 3]}),
-            ):
-                rows: list[Row] = []
+            colour = self.palette.gear(body.name).colour
+            inside = hollow if body.kind == "internal" else full
+            for rows, radii in zip((inside, dashed), self.layout.radii(body), strict=True):
                 for what, radius in radii.items():
                     points = self._flat(body.circle(radius))
                     label = f"gear {body.name}, {what}: radius {MILLIMETRE.of(radius):.4f} mm"
-                    rows += path_rows(points, circle=label)
+                    rows += path_rows(points, circle=label, colour=colour)
                     self.labels.avoid(points)
-                (tip,) = hover("circle:N")
-                layers += self.line(rows, "circle", tip, **stroke, **style)
-        return layers
+        (tip,) = hover("circle:N")
+        return [
+            *self.line(hollow, "circle", tip, strokeWidth=1.3),
+            *self.line(full, "circle", tip, strokeWidth=1.3, filled=True, fillOpacity=0.05),
+            *self.line(dashed, "circle", tip, strokeWidth=1.3, strokeDash=[4, 3]),
+        ]
 
     def _lines(self) -> list[Any]:
         """Centre lines, shafts between gears that are not coaxial, axes of crossed gears."""
@@ -249,7 +247,7 @@ class _View(Panel):
         return self.line(rows, "part", color=INK, strokeWidth=1.5)
 
     def _senses(self) -> list[Any]:
-        layers: list[Any] = []
+        rows: list[Row] = []
         head = 0.014 * (self.high[0] - self.low[0])
         for body in self.bodies:
             if body.sense == 0 or not self._is_round(body):
@@ -262,8 +260,8 @@ class _View(Panel):
             shown = [*points, *arrow(points[-9], points[-1], head)[1:]]
             self.labels.avoid(shown)
             colour = self.palette.gear(body.name).colour
-            layers += self.line(path_rows(shown, part=1), "part", color=colour, strokeWidth=1.8)
-        return layers
+            rows += path_rows(shown, gear=body.name, colour=colour)
+        return self.line(rows, "gear", strokeWidth=1.8)
 
     def _centres(self) -> list[Any]:
         tooltip = hover("gear:N", "kind:N", ("centre:N", "centre [mm]"), "turns:N", "held:N")

@@ -161,8 +161,8 @@ def chapter(
         problems=problems,
         case=case,
         result=result,
-        drawing=draw(case, result),
-        figures=tuple(_figures(result)) if result else (),
+        drawing=draw(case, result).begin(),
+        figures=tuple(f.begin() for f in _figures(result)) if result else (),
         summary=tuple(verdict_tables(result)) if result else (),
         trust=trust(result) if result else {},
         tables=tuple(_tables(result)) if result else (),
@@ -178,7 +178,7 @@ def _unusable(file: str, error: CaseError) -> Chapter:
     try:
         draft = load_draft(file)
         title = draft.title or title
-        drawing = draw(draft)
+        drawing = draw(draft).begin()
     except LoadshareError:
         # A file that cannot be read at all, or places no gear: its problems say so.
         pass

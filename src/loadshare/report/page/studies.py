@@ -74,7 +74,7 @@ def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
         name=name,
         title=f"{name}: {type(found).__name__.lower()}",
         facts={what: text for what, text in view.facts if text},
-        figures=tuple(_figures(found, case)),
+        figures=tuple(figure.begin() for figure in _figures(found, case)),
         tables=(*tables, *_more_tables(found)),
         problems=tuple(left_open(found)),
     )

@@ -550,7 +550,9 @@ class _Passes:
             column = structure.radial_column(j)
             matrix = structure.vectors[column : column + 2] @ loose
             offset = self._offset(j)
-            discs.append((matrix, offset[k], float(self._graph(j, offset).reach[k])))
+            reach = float(self._graph(j, offset).reach[k])
+            # Without friction and without an end a spline is nowhere.
+            discs += [(matrix, offset[k], reach)] if np.isfinite(reach) else []
         closes = vectors @ loose
         finite = np.isfinite(room)
         return closes[finite], room[finite], discs

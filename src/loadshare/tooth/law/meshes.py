@@ -31,11 +31,18 @@ SOURCES = ("geometry", "law_file")
 """Keys of a mesh that name a file its law follows from."""
 
 
+OF_A_MESH = ("rated_torque", "pressure_angle", "helix_angle")
+"""Keys of a mesh that bear on its law."""
+
+
 def bears_on_laws(path: KeyPath) -> bool:
-    """Tell whether laws that are computed may follow from what is at a key path, or a pattern."""
+    """Tell whether laws that are computed may follow from what is at a key path, or a pattern.
+
+    Or whether the file from which a law is must agree with it.
+    """
     section, key = (str(path[k]) if k < len(path) else "" for k in (0, 2))
     if fnmatchcase("meshes", section):
-        return fnmatchcase("rated_torque", key)
+        return any(fnmatchcase(known, key) for known in OF_A_MESH)
     return fnmatchcase("gears", section) or path == ("operating", "positions")
 
 
@@ -51,7 +58,7 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     progress : callable, optional
         Called after each computed position with how many are done, and how many there are.
     leave : collection of str
-        Meshes whose word for `law` stays as it is.
+        Meshes whose word for `law`, or name of a file, stays as it is.
 
     Returns
     -------
@@ -69,7 +76,7 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
         name: source
         for name, mesh in case.meshes.items()
         for source in SOURCES
-        if getattr(mesh, source) is not None
+        if getattr(mesh, source) is not None and name not in leave
     }
     words = [n for n, m in case.meshes.items() if isinstance(m.law, str) and n not in leave]
     if not sources and not words:
