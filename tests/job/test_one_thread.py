@@ -1,10 +1,15 @@
-"""BLAS works with one thread during a batch, and as before afterwards."""
+"""BLAS works with one thread while contacts are solved, and as before afterwards."""
 
 from __future__ import annotations
 
+from importlib import import_module
+
+from tests.support import shipped
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from loadshare.job.one_thread import one_thread
+import loadshare as ls
+from loadshare.one_thread import one_thread
+from loadshare.solver import solve_scene
 
 
 def _threads() -> dict[str, int]:
@@ -25,3 +30,23 @@ def test_batches_that_overlap_leave_blas_as_it_was() -> None:
         assert {*_threads().values()} == {1}
         second.__exit__(None, None, None)
         assert _threads() == before
+
+
+def test_hard_cases_and_marches_have_one_thread(monkeypatch) -> None:
+    seen = []
+
+    def solved(*given, **more):
+        seen.append({*_threads().values()})
+        return solve_scene(*given, **more)
+
+    monkeypatch.setattr("loadshare.job.ladder.solve_scene", solved)
+    monkeypatch.setattr("loadshare.study.memory.solve_scene", solved)
+    # SciPy brings a BLAS of its own, when it is imported.
+    import_module("scipy.linalg")
+    with threadpool_limits(2, "blas"):
+        ls.solve(shipped("fgfbstts/limit_ring"), positions=[1], solver="clarabel")
+        ls.march(shipped("fgfbstts/spline_clearance"), gear="4", revolutions=0.1, steps=1)
+        before = _threads()
+    assert len(seen) >= 2
+    assert all(threads == {1} for threads in seen)
+    assert {*before.values()} == {2}

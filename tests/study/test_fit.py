@@ -182,6 +182,7 @@ def test_several_starts_find_what_one_misses():
         ({"rings.4.float": ("1 um", "2 um", "3 um")}, "is no range"),
         ({"rings.4.float": ("1 um", "2 N")}, "cannot be expressed"),
         ({"rings.4.flot": ("1 um", "2 um")}, "Did you mean float"),
+        ({"rings.*.float": ("1 um", "2 um"), "rings.4.float": ("1 um", "3 um")}, "is set by"),
     ],
 )
 def test_what_cannot_be_fitted_is_reported(unknowns, message):
@@ -240,3 +241,28 @@ def test_the_entries_off_a_support_s_diagonal_are_one_unknown() -> None:
     found = ls.fit(case.replace(start), {tied: ("0.2e8 N/m", "0.9e8 N/m")})
     assert found.chi_square < 1e-12
     assert found.unknowns[0].value == pytest.approx(0.6e8, rel=1e-6)
+
+
+def test_a_fit_starts_where_the_case_is_or_in_the_middle():
+    case = both_errors(bench=measured(shipped("fgfbstts/both_errors")))
+    key = "errors.6.installation.amount"
+    (within,) = ls.fit(case, {key: ("45 um", "59 um")}).unknowns
+    (beyond,) = ls.fit(case, {key: ("55 um", "59 um")}).unknowns
+    assert (within.start, beyond.start) == (50.0, 57.0)
+
+
+def test_a_figure_of_what_carries_no_load_is_reported():
+    """Of a stage without load there is no share, in any of its positions."""
+    case = shipped("fgfbstts/installation_error").replace(
+        {
+            "operating.power": None,
+            "operating.torque": ["0 N*m", "500 N*m", "500 N*m", "500 N*m", "500 N*m"],
+            "measured.mean": {"pair_share": {"6-10": 0.8}, "uncertainty": 0.01},
+        }
+    )
+    unknown = {"errors.6.installation[0]": ("0 um", "100 um")}
+    for ask in (ls.compare, lambda case: ls.fit(case, unknown)):
+        with pytest.raises(ls.CaseError, match=r'mean\.pair_share\."6-10".*carries no load'):
+            ask(case)
+    there = {"measured.mean.position": 2}
+    assert ls.compare(case.replace(there)).deviations

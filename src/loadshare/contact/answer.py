@@ -17,6 +17,7 @@ from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.contact.runaway import runaway
 from loadshare.errors import Refused
+from loadshare.one_thread import one_thread
 from loadshare.settings import CONTACT
 
 
@@ -76,6 +77,7 @@ class ContactAnswer:
         return self.residuals.worst <= CONTACT.tolerance
 
 
+@one_thread()
 def solve_contact(
     problem: ContactProblem, *, solver: str = "clarabel", method: str = "newton"
 ) -> ContactAnswer:

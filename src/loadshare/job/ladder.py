@@ -22,6 +22,7 @@ from loadshare.errors import Refused
 from loadshare.job.answer import Answer
 from loadshare.job.hot import hot_answers
 from loadshare.job.machine import Machine
+from loadshare.one_thread import one_thread
 from loadshare.scene.assemble import scene_of
 from loadshare.scene.scene import Scene
 from loadshare.scene.structure import structure_of
@@ -101,6 +102,7 @@ def climb_all(
             yield refusal
 
 
+@one_thread()
 def climb(
     train: Train, index: int, options: Options, tolerance: float, steps: float = math.inf
 ) -> Answer:

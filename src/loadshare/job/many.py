@@ -25,10 +25,10 @@ from loadshare.job.allocation import keep_freed_memory
 from loadshare.job.block import Block, solve_block
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
-from loadshare.job.one_thread import one_thread
 from loadshare.job.positions import Progress, wanted_of
 from loadshare.job.recent import Recent
 from loadshare.job.table import KEPT, Table, checked
+from loadshare.one_thread import one_thread
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.columns import Columns, columns_of
 from loadshare.train.samples import Samples, samples_of, unusable

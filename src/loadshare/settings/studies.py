@@ -169,6 +169,8 @@ class March(NamedTuple):
     """Passes in which friction follows the torque."""
     settled: float = 1e-14
     """Friction, over its bound under all of the torque, that may be missing at the end."""
+    close: float = 1e-11
+    """Friction, over the bound, that may be missing where more passes bring no more."""
     singular: float = 1e-3
     """Part of a step that a step must explain."""
     turns: int = 40

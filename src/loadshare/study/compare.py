@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
@@ -153,7 +153,7 @@ def compare(case: Case | str | FilePath, *, progress: Progress | None = None) ->
     Raises
     ------
     CaseError
-        If the case holds no measurement, or cannot be used.
+        If the case holds no measurement, or of what carries no load, or cannot be used.
     Refused
         If a position has no certified equilibrium.
 
@@ -170,7 +170,8 @@ def compare(case: Case | str | FilePath, *, progress: Progress | None = None) ->
     case = loaded(case)
     wanted = targets(case)
     result = solve(case, positions=needed(wanted), progress=progress)
-    return Comparison(tuple(Deviation(t, computed(t, result)) for t in wanted), result)
+    found = zip(wanted, computed(case, wanted, result), strict=True)
+    return Comparison(tuple(Deviation(t, value) for t, value in found), result)
 
 
 def targets(case: Case) -> list[Target]:
@@ -209,8 +210,25 @@ def needed(wanted: list[Target]) -> list[int] | None:
     return sorted(set(positions)) if len(positions) == len(wanted) else None
 
 
-def computed(target: Target, result: Result) -> float:
-    """Return the computed figure for a measured one [N·m] or [-]; NaN where there is none."""
+def computed(case: Case, wanted: Iterable[Target], result: Result) -> list[float]:
+    """Return the computed figures for measured ones [N·m] or [-].
+
+    Raises
+    ------
+    CaseError
+        If there is none for some.
+    """
+    found = {target: _computed(target, result) for target in wanted}
+    message = "has nothing to be compared with: what it is of carries no load"
+    hint = "Name a position at which it does, or leave the figure out."
+    problems = [case.problem(t.key, message, hint=hint) for t, v in found.items() if math.isnan(v)]
+    if problems:
+        raise CaseError(problems)
+    return list(found.values())
+
+
+def _computed(target: Target, result: Result) -> float:
+    """Return one of them; NaN where there is none."""
     at = [p for p in result.positions if target.position in (None, p.position)]
     if target.quantity in MEANS:
         values = [getattr(p, target.quantity)[target.where] for p in at]

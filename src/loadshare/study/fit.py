@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -25,6 +26,7 @@ from loadshare.study.parameter import (
     Parameter,
     Value,
     applied,
+    check_apart,
     grid,
     named,
     read_parameter,
@@ -226,6 +228,7 @@ class _Problem:
             self.parameters.append(read_parameter(case, key, unit))
             lows.append(numbers[0])
             highs.append(numbers[1])
+        check_apart(self.parameters)
         self.low, self.high = np.array(lows), np.array(highs)
         self.spread = np.array([t.uncertainty for t in self.targets])
         self.measured = np.array([t.value for t in self.targets])
@@ -233,9 +236,8 @@ class _Problem:
         self._last: tuple[bytes, Case, Result] | None = None
 
     def starting_points(self, count: int, seed: int) -> list[Array]:
-        """Return the case's own values, then Sobol points."""
-        own = np.clip((self.own() - self.low) / (self.high - self.low), 0.0, 1.0)
-        points = [own]
+        """Return the values of `own`, then Sobol points."""
+        points = [(self.own() - self.low) / (self.high - self.low)]
         if count > 1:
             from scipy.stats import qmc
 
@@ -245,18 +247,16 @@ class _Problem:
         return points
 
     def own(self) -> Array:
-        """Values of the case itself; the middle of the bounds where it gives none."""
+        """Values of the case itself; the middle of the bounds where it gives none between them."""
         from loadshare.case.keys import look_up, parse
 
-        data = self.case.to_dict()
-        found = []
-        for parameter, middle in zip(self.parameters, (self.low + self.high) / 2, strict=True):
+        data, found = self.case.to_dict(), np.array((self.low + self.high) / 2)
+        for k, parameter in enumerate(self.parameters):
             value = read_value(look_up(data, parse(parameter.keys[0])))
-            try:
-                found.append(middle if value is None else value.in_unit(parameter.unit).number)
-            except ValueError:
-                found.append(middle)
-        return np.array(found)
+            with suppress(ValueError):
+                number = math.nan if value is None else value.in_unit(parameter.unit).number
+                found[k] = number if self.low[k] <= number <= self.high[k] else found[k]
+        return found
 
     def numbers(self, u: Array) -> Array:
         """Values of the unknowns from their places between the bounds."""
@@ -278,7 +278,7 @@ class _Problem:
     def residual(self, u: Array) -> Array:
         """Computed less measured figures, in standard deviations."""
         _, result = self.solved(u)
-        found = np.array([computed(t, result) for t in self.targets])
+        found = np.array(computed(self.case, self.targets, result))
         return np.asarray((found - self.measured) / self.spread)
 
     def jacobian(self, u: Array) -> Array:
@@ -356,7 +356,8 @@ class _Problem:
         figures = zip(*(column.tolist() for column in columns), at_bound, strict=True)
         unknowns = [Unknown(p, *of) for p, of in zip(self.parameters, figures, strict=True)]
         warnings += [f"{u.parameter.name} is at its bound." for u in unknowns if u.at_bound]
-        deviations = tuple(Deviation(t, computed(t, result)) for t in self.targets)
+        values = computed(self.case, self.targets, result)
+        deviations = tuple(map(Deviation, self.targets, values))
         return Fit(
             case=case,
             unknowns=tuple(unknowns),

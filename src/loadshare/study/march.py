@@ -20,6 +20,7 @@ from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
 from loadshare.job.answer import Answer
 from loadshare.job.positions import result_of
+from loadshare.one_thread import one_thread
 from loadshare.pictures import picture
 from loadshare.results import Result
 from loadshare.settings import CERTIFY, MARCH
@@ -179,6 +180,7 @@ def march(
     return _marched(case, solved, build_train(solved), progress)
 
 
+@one_thread()
 def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) -> March:
     answers: list[Answer] = []
     slips: list[dict[str, Slip]] = []

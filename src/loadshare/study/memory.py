@@ -95,7 +95,7 @@ def _followed(train: Train, index: int) -> Answer | None:
         return None
     rate = np.array([train.splines[g].friction_per_torque for g in gears])
     drive = float(np.abs(situation_of(train, index).torque).max(initial=0.0))
-    bounds, inverse = np.zeros(len(gears)), np.eye(len(gears))
+    bounds, inverse, least = np.zeros(len(gears)), np.eye(len(gears)), math.inf
     before: tuple[Array, Array] | None = None
     for _ in range(MARCH.passes):
         try:
@@ -105,8 +105,12 @@ def _followed(train: Train, index: int) -> Answer | None:
         found = answer.equilibrium
         torque = [train.transmitted(g, found.flank_force) for g in gears]
         off = rate * np.abs(torque) - bounds
-        if float(np.abs(off).max()) <= MARCH.settled * float(rate.max()) * drive:
+        far = float(np.abs(off).max())
+        # What is that close and comes no closer is as close as rounding of the torques lets it.
+        as_close = far <= MARCH.close * float(bounds.max()) and far > 0.5 * least
+        if as_close or far <= MARCH.settled * float(rate.max()) * drive:
             break
+        least = min(least, far)
         if before is not None:
             inverse = _broyden(inverse, bounds - before[0], off - before[1])
         before = bounds, off

@@ -142,6 +142,24 @@ class Parameter:
         return dict.fromkeys(self.keys, Value(float(number), self.unit).text)
 
 
+def check_apart(parameters: Iterable[Parameter]) -> None:
+    """Refuse parameters of a study that set one key twice.
+
+    Raises
+    ------
+    CaseError
+        With the first such key.
+    """
+    seen: dict[str, str] = {}
+    for parameter in parameters:
+        for key in parameter.keys:
+            if key in seen:
+                message = f"is set by {seen[key]} and by {parameter.name}"
+                allowed = "one parameter for each key"
+                raise CaseError([Problem(STUDY, key, "", message, allowed)])
+            seen[key] = parameter.name
+
+
 def applied(case: Case, parameters: Iterable[Parameter], numbers: Iterable[float]) -> Case:
     """Return the case with the values of several parameters.
 

@@ -26,6 +26,7 @@ from loadshare.study.parameter import (
     STUDY,
     Parameter,
     applied,
+    check_apart,
     grid,
     named,
     read_parameter,
@@ -249,7 +250,7 @@ def sweep(
         values, unit = grid(given, named(key))
         chosen.append(read_parameter(case, key, unit))
         grids.append(values)
-    _check_apart(chosen)
+    check_apart(chosen)
     total = prod(len(values) for values in grids)
     if total > ALLOWED.points:
         raise too_many("sweep", total)
@@ -307,16 +308,6 @@ def _unusable(case: Case, chosen: Sequence[Parameter], values: Array) -> dict[in
         except CaseError as error:
             found[number] = error
     return found
-
-
-def _check_apart(parameters: Sequence[Parameter]) -> None:
-    seen: dict[str, str] = {}
-    for parameter in parameters:
-        for key in parameter.keys:
-            if key in seen:
-                message = f"is set by {seen[key]} and by {parameter.name}"
-                raise CaseError([Problem(STUDY, key, "", message, "one parameter for each key")])
-            seen[key] = parameter.name
 
 
 def _point(values: tuple[float, ...], answered: Answered, sample: int) -> Point:

@@ -66,7 +66,8 @@ def sensitivity(
     Raises
     ------
     CaseError
-        If an input is not there or is no number, or cannot be varied on its own.
+        If an input is not there or is no number, or cannot be varied on its own. Of a table, and of
+        all that a pattern or nothing names, those that cannot are left out (`skipped`).
     Refused
         If a position has no certified equilibrium.
 
@@ -97,7 +98,7 @@ def sensitivity(
             trains = Trains((case, geometry, train), own, item, chosen)
             rates |= _rates(corners, trains, item)
         except CaseError as refusal:
-            if inputs is not None:
+            if item.key in (inputs or ()) or len(wanted) == 1:
                 raise
             skipped.append((item.key, refusal.problems[0].message))
         else:

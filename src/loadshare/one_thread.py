@@ -1,7 +1,9 @@
-"""BLAS works with one thread while a batch is solved.
+"""BLAS works with one thread while contacts are solved.
 
-Its matrices are small: threads of BLAS would take the time of those that solve blocks (a third of a
-batch on two cores), and would let sums round differently from one machine to the next.
+Its matrices are small. Threads of BLAS would take the time of those that solve blocks (a third of a
+batch on two cores), wait for one another where another program works as well (eigenvalues of forty
+unknowns take ten milliseconds in place of a fifth of one), and would let sums round differently
+from one machine to the next.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from functools import lru_cache
 from typing import Any
 
 _lock = threading.Lock()
-_batches: list[object] = []
+_asking: list[object] = []
 _limits: list[Any] = []
 
 
@@ -28,17 +30,17 @@ def _libraries(_modules: int) -> Any:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Limit BLAS to one thread until the last of all batches of this process has ended."""
-    batch = object()
+    """Limit BLAS to one thread until the last of all that asks for it in this process has ended."""
+    asking = object()
     with _lock:
-        if not _batches:
+        if not _asking:
             # Another library comes with another module.
             _limits.append(_libraries(len(sys.modules)).limit(limits=1, user_api="blas"))
-        _batches.append(batch)
+        _asking.append(asking)
     try:
         yield
     finally:
         with _lock:
-            _batches.remove(batch)
-            if not _batches:
+            _asking.remove(asking)
+            if not _asking:
                 _limits.pop().restore_original_limits()
