@@ -1,21 +1,16 @@
-"""Converts a picture: specification, form and settings on standard input, the file on output."""
+"""Converts a picture: conversion, what, and settings on standard input, the file on output."""
 
 from __future__ import annotations
 
 import json
 import sys
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, cast
-
-if TYPE_CHECKING:
-    from loadshare.report.figure import Figure
 
 
 def _draw() -> None:
-    from loadshare.report.figure import Figure
+    from loadshare.report import beside
 
-    spec, form, how = json.load(sys.stdin)
-    drawn: Any = Figure._converted(cast("Figure", SimpleNamespace(spec=spec)), form, **how)
+    conversion, what, how = json.load(sys.stdin)
+    drawn = beside.begin(conversion, what, **how).result()
     sys.stdout.buffer.write(drawn.encode() if isinstance(drawn, str) else drawn)
 
 

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import traceback
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
@@ -148,7 +149,7 @@ def _run(words: Sequence[str], folder: Path) -> int:
 def _keep_answers() -> None:
     """Let what was solved once be looked up."""
     import loadshare.job
-    from loadshare.report.figure import Figure
+    from loadshare.report import beside
     from loadshare.results import files, writing
     from loadshare.study.tolerance import design, figures, omegas, study, worst
 
@@ -160,9 +161,8 @@ def _keep_answers() -> None:
     loadshare.job.solve = worst.solve = kept  # type: ignore[attr-defined]
 
     # What was solved once is one object, and says the same.
-    Figure._converted = _keeping(  # type: ignore[method-assign]
-        _drawn, lambda figure, form, **how: (json.dumps(figure.spec), form, repr(how))
-    )
+    beside.start = lambda: None
+    beside.begin = _keeping(_drawn, lambda *given, **how: json.dumps([*given, how]))
     writing.text_of = _keeping(writing.text_of, id)
     files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
 
@@ -184,15 +184,17 @@ def _keep_answers() -> None:
             setattr(module, name, _keeping(getattr(module, name), array_key))
 
 
-def _drawn(figure: Any, form: str, **how: float) -> str | bytes:
+def _drawn(conversion: str, what: object, **how: Any) -> Future[str | bytes]:
     """Draw in another process: a fork of one that has drawn would wait for threads it lacks."""
     drawn = subprocess.run(
         [sys.executable, "-m", "tests.faults.drawing"],
-        input=json.dumps([figure.spec, form, how]).encode(),
+        input=json.dumps([conversion, what, how]).encode(),
         stdout=subprocess.PIPE,
         check=True,
     ).stdout
-    return drawn.decode() if form == "svg" else drawn
+    found: Future[str | bytes] = Future()
+    found.set_result(drawn.decode() if conversion.endswith("svg") else drawn)
+    return found
 
 
 def _solve_here(here: bool) -> None:

@@ -71,7 +71,7 @@ def test_nothing_is_left_of_a_picture_that_failed(picture, tmp_path, monkeypatch
     def broken(*_, **__):
         raise ValueError("no")
 
-    monkeypatch.setattr(vl_convert, "vegalite_to_png", broken)
+    monkeypatch.setattr(vl_convert, "svg_to_png", broken)
     with pytest.raises(ValueError, match="no"):
         picture("limit_ring", "share").save(tmp_path / "a.png")
     assert list(tmp_path.iterdir()) == []

@@ -193,7 +193,7 @@ def _written(folder: Path, pair: PairFile, found: Ltca, law: MeshLaw) -> Iterato
         file = folder / name
         save_text(file, text)
         yield file
-    for figure in _figures(pair, found):
+    for figure in [figure.begin() for figure in _figures(pair, found)]:
         for ending in PICTURES:
             file = folder / f"{figure.name}{ending}"
             with writing(file):

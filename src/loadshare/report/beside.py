@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 def start() -> None:
     """Start the converter, for pictures that will be drawn soon."""
-    _thread().submit(_convert, "svg", {"mark": "point", "data": {"values": []}})
+    begin("vegalite_to_svg", {"mark": "point", "data": {"values": []}})
 
 
-def begin(form: str, spec: dict[str, Any], **settings: Any) -> Future[Any]:
-    """Begin to convert a Vega-Lite specification; settings are those of vl-convert."""
-    return _thread().submit(_convert, form, spec, **settings)
+def begin(conversion: str, what: object, **settings: Any) -> Future[Any]:
+    """Begin a conversion, by the name of vl-convert, of a specification or of SVG."""
+    return _thread().submit(_convert, conversion, what, settings)
 
 
-def _convert(form: str, spec: dict[str, Any], **settings: Any) -> Any:
+def _convert(conversion: str, what: object, settings: dict[str, Any]) -> Any:
     import vl_convert
 
-    return getattr(vl_convert, f"vegalite_to_{form}")(spec, **settings)
+    return getattr(vl_convert, conversion)(what, **settings)
 
 
 @cache

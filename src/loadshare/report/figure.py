@@ -205,8 +205,9 @@ class Figure:
             return figure_page(self.spec, title["text"] if isinstance(title, dict) else title)
         if form == "json":
             return json.dumps(self.spec, indent=1, ensure_ascii=False) + "\n"
+        # What paper and pixels show is drawn once, as SVG.
         settings = {"scale": scale} if form == "png" else {}
-        return bytes(self._begun(form, **settings).result())
+        return bytes(beside.begin(f"svg_to_{form}", self.to_svg(), **settings).result())
 
     def to_svg(self, prefix: str = "") -> str:
         """Return the picture as SVG text, the same text for the same picture.
@@ -230,10 +231,7 @@ class Figure:
 
     @cached_property
     def _as_svg(self) -> Future[str]:
-        return self._begun("svg")
-
-    def _begun(self, form: str, **settings: float) -> Future[Any]:
-        return beside.begin(form, self.spec, vl_version=vega_lite_version(), **settings)
+        return beside.begin("vegalite_to_svg", self.spec, vl_version=vega_lite_version())
 
     def _repr_mimebundle_(self, *_: object, **__: object) -> dict[str, Any]:
         """Show the picture in a notebook, which draws SVG without any extension."""
