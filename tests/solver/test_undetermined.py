@@ -178,7 +178,7 @@ def polygon(region: Region, sides: int = 720) -> tuple[np.ndarray, np.ndarray]:
     return np.vstack(rows), np.concatenate(bounds)
 
 
-@settings(TRAINS, max_examples=150)
+@settings(TRAINS, max_examples=60)
 @given(regions())
 def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
     region, _ = given_region

@@ -431,13 +431,13 @@ def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone():
         "bearings.planet1.clearance": {"distribution": "uniform", "low": "10 um", "high": "60 um"},
         "gears.carrier.temperature": {"distribution": "uniform", "low": "0 K", "high": "80 K"},
     }
-    found = ls.tolerance(case, inputs, samples=40, indices=0)
+    found = ls.tolerance(case, inputs, samples=16, indices=0)
     frame = found.to_frame()
     # The pin grows by 11.5e-6 of its 50 mm in diameter for every kelvin.
     left = frame["bearings.planet1.clearance [um]"]
     left = left - 0.5 * 11.5e-6 * 50e3 * frame["gears.carrier.temperature [K]"]
     assert (frame["certified"] == (left > 0.0)).all()
-    assert 0 < found.refused < 20
+    assert 0 < found.refused < 8
     assert all("is used up" in text for text in found.messages)
     samples = {
         "bearings.planet1.clearance [um]": [10.0, 60.0, 10.0],
