@@ -15,6 +15,7 @@ from loadshare.certify.validity import Measuring, measuring
 from loadshare.job.judging import Judging
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.structure import Structure, structure_of
+from loadshare.settings import JOB
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import pin, without_noise
@@ -26,7 +27,7 @@ from loadshare.solver.hot.rule import rule_of, samples_to_learn
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.placed import standing
-from loadshare.train.situations import Situations, situations_of
+from loadshare.train.situations import Situations, situation_of, situations_of
 
 Some = NDArray[np.bool_] | None
 """Samples (S,) to solve; None for all."""
@@ -155,6 +156,13 @@ class Machine:
         if self._own is None or self._own[0] != key:
             self._own = key, situations_of(self.train, key)
         return self._own[1]
+
+    @property
+    def first_situation(self) -> Situations:
+        """The train's own situation at the first position: one of all, where these are few."""
+        if self.train.count > JOB.each:
+            return situation_of(self.train, 1)
+        return self.situations(range(1, self.train.count + 1)).take(slice(0, 1))
 
     def answer(
         self,

@@ -35,7 +35,6 @@ from loadshare.train.alike import train_alike
 from loadshare.train.build import train_of, with_laws
 from loadshare.train.geometry import Geometry, geometry_of
 from loadshare.train.shape import shape_of
-from loadshare.train.situations import situation_of
 
 
 class Progress(Protocol):
@@ -250,7 +249,7 @@ def share(machine: Machine) -> None:
         known = _shapes.setdefault(shape, {})
         _shapes.move_to_end(shape)
         first = next(iter(known.values()), machine).structure
-        like = known.setdefault(units_of(first, situation_of(machine.train, 1)), machine)
+        like = known.setdefault(units_of(first, machine.first_situation), machine)
         if like is not machine:
             machine.share(like)
         while len(_shapes) > JOB.recent:

@@ -35,6 +35,9 @@ class Job(NamedTuple):
     """Bytes that are kept from block to block: with less, pages are fetched again."""
     workers: int = 2
     """Threads; the compiled passes hold no lock."""
+    each: int = 20
+    """Positions of a train up to which what the first one brings is worked out with all others,
+    which are mostly asked for next."""
     recent: int = 16
     """Machines that are kept, for those who solve samples of one case again and again."""
     starts: int = 64
