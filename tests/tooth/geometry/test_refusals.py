@@ -101,6 +101,16 @@ def test_each_fault_is_named(build, expected):
     assert keys(build) == expected
 
 
+def test_the_room_of_a_root_radius_is_that_of_the_space_at_its_root():
+    """Of an internal gear: narrower the deeper the space is, so that less dedendum gives more."""
+    ring = {"internal": True, "addendum": 0.8, "profile_shift": -0.5013}
+    (problem,) = gear_problems(gear(56, **ring), "driven")
+    assert problem.key == "driven.tip_radius"
+    assert problem.allowed == "a smaller tip radius, or a smaller dedendum"
+    assert gear_problems(gear(56, dedendum=1.2, **ring), "driven") == []
+    assert gear_problems(gear(56, dedendum=1.3, **ring), "driven")
+
+
 def test_tips_of_internal_pairs_meet_when_the_tooth_counts_are_close():
     # Second way: the tips' corners, followed over the rotation in which they pass each other.
     pinion = gear(24, addendum=0.6)

@@ -121,15 +121,16 @@ def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
         pointed = "the teeth are pointed below this tip"
         allowed = "a smaller addendum or a larger profile shift"
         yield problem(addendum, gear.addendum, pointed, allowed)
-    fits = (
+    deep = (
         gear.root - gear.tip_radius * gear.module > gear.base_radius
-        and fillet_angle(gear) <= math.pi / gear.teeth
         and gear.base_radius * math.hypot(1.0, gear.form_roll) > gear.tip
     )
-    if not fits:
+    # The space is narrower the deeper it is.
+    wide = deep and fillet_angle(gear) <= math.pi / gear.teeth
+    if not (deep and wide):
         yield problem(
             f"{key}.tip_radius",
             gear.tip_radius,
             "the tooth space has no room for this root radius",
-            "a smaller tip radius, or a larger dedendum",
+            f"a smaller tip radius, or a {'smaller' if deep else 'larger'} dedendum",
         )

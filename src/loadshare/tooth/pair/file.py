@@ -19,6 +19,7 @@ from loadshare.case.recognise import TAKEN_BY, is_case
 from loadshare.case.translate import translate
 from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
+from loadshare.one_thread import one_thread
 from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.analysis.sampling import cells
@@ -134,6 +135,7 @@ class PairFile:
             changed.model_fields_set.discard("points")  # it follows the model
         return replace(self, content=content.model_copy(update={"analysis": changed}))
 
+    @one_thread()
     def analyse(self, progress: Tick | None = None) -> Ltca:
         """Analyse the loaded contact at all positions.
 
