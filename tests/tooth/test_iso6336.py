@@ -5,7 +5,7 @@ import math
 import pytest
 
 from loadshare.case import Gear
-from loadshare.tooth.law.iso6336 import formula_stiffness, mesh_stiffness
+from loadshare.tooth.law.iso6336 import basis_of, formula_stiffness, mesh_stiffness
 
 UNIT = 1e9  # N/(mm·µm)
 
@@ -70,3 +70,15 @@ def test_equal_gears_with_unequal_shifts_are_one_pair_either_way():
     one, two = (Gear.model_validate({**teeth, "profile_shift": x}) for x in (0.4, -0.1))
     there, back = (mesh_stiffness(pair, 0.1012) for pair in ((one, two), (two, one)))
     assert there == back
+
+
+def test_a_contact_ratio_below_that_of_the_formula_is_part_of_its_basis():
+    """By the lengths of the paths to both tips: 1.066 for 25/50 teeth with addenda of 0.6."""
+    stub = {"module": "4 mm", "face_width": "40 mm", "centre": ["0 mm", "0 mm"]}
+    short, long = (
+        tuple(Gear.model_validate({**stub, "teeth": z, "addendum": a}) for z in (25, 50))
+        for a in (0.6, 1.0)
+    )
+    distance = 0.5 * 4e-3 * 75
+    assert basis_of(short, distance, measured=True).endswith("holds from ε_α = 1.2, here 1.07")
+    assert basis_of(long, distance, measured=True).endswith("solid bodies")

@@ -19,6 +19,8 @@ SHIFTS = (-0.5, 2.0)
 """Least and largest x1 + x2 to which the standard's series was fitted."""
 MEASURED = 0.8
 """C_M, the standard's."""
+LEAST_RATIO = 1.2
+"""Transverse contact ratio from which the standard's mesh stiffness holds for spur gears [-]."""
 LEAST_LOAD = 100e3
 """Tangential force per face width below which the standard's c' falls [N/m]."""
 
@@ -76,7 +78,7 @@ def formula_stiffness(
     dedendum : tuple of two floats
         h_fP of both basic racks in modules; their mean counts.
     contact_ratio : float
-        Transverse contact ratio ε_α; the mesh formula holds from 1.2 for spur gears.
+        Transverse contact ratio ε_α; the mesh formula holds from `LEAST_RATIO` for spur gears.
     pressure_angle, helix_angle : float
         α_n and β [rad].
     blank_factor : float
@@ -136,13 +138,26 @@ def blank_factor(web: float, rim: float) -> float:
     return 1.0 + math.log(web) / (5.0 * math.exp(rim / 5.0))
 
 
-def basis_of(gears: tuple[Gear, Gear], *, measured: bool) -> str:
-    """Say which of the standard's factors are in a mesh's stiffness."""
+def basis_of(gears: tuple[Gear, Gear], distance: float, *, measured: bool) -> str:
+    """Say which of the standard's factors are in a mesh's stiffness, and where it is outside.
+
+    Parameters
+    ----------
+    gears, distance, measured
+        As for `mesh_stiffness`.
+    """
     width = min(gear.face_width.si for gear in gears if gear.face_width is not None)
     blank = 0.5 * sum(_blank(gear, width) for gear in gears)
     with_measured = "with" if measured else "without"
     body = "solid bodies" if blank == 1.0 else f"C_R {blank:.3g} for thin webs"
-    return f"ISO 6336-1 method B, {with_measured} C_M, {body}"
+    basis = f"ISO 6336-1 method B, {with_measured} C_M, {body}"
+    one, two = (gear.tooth for gear in gears)
+    assert one is not None
+    assert two is not None
+    ratio = contact_ratio(one, two, distance)
+    if ratio < LEAST_RATIO and one.helix_angle == 0.0:
+        return f"{basis}; for spur gears it holds from ε_α = {LEAST_RATIO:g}, here {ratio:.3g}"
+    return basis
 
 
 def least_torque(gears: tuple[Gear, Gear]) -> float:

@@ -196,7 +196,7 @@ def _by_formula(
         compliance = 1.0 / (stiffness * pair[0].acting_radius ** 2)
         found[name] = {
             "b": f"{compliance!r} rad/(N*m)",
-            "basis": basis_of(pair, measured=measured),
+            "basis": basis_of(pair, distance, measured=measured),
             "holds_from": f"{least_torque(pair)!r} N*m",
         }
     return found, problems
