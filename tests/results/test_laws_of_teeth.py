@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import loadshare as ls
+from loadshare.case.checks.law_origin import teeth_digest
 from loadshare.exchange.spreadsheet.exporting import export_tables
 from loadshare.exchange.spreadsheet.importing import import_tables
 
@@ -69,3 +70,20 @@ def test_what_no_law_follows_from_may_change(found, tmp_path) -> None:
     placed = {n: case.gears[n].centre.angle.si for n in GEARS if n.startswith("planet")}
     turned = {f"gears.{n}.centre.angle": f"{a + 0.3} rad" for n, a in placed.items()}
     assert ls.solve(case.replace(turned)).passed
+
+
+def test_what_teeth_have_anyway_may_be_written_out(found, tmp_path) -> None:
+    """And laws that were marked with what was written out stay those of their teeth."""
+    found.to_json(tmp_path / "found.json")
+    case = ls.load_result(tmp_path / "found.json").case
+    usual = {"pressure_angle": "20 deg", "profile_shift": 0.0, "dedendum": 1.25}
+    out = case.replace({f"gears.{gear}.{key}": v for gear in GEARS for key, v in usual.items()})
+    assert stiffness(ls.solve(out)) == stiffness(found)
+    marks = {
+        f'meshes."{name}".law.teeth': teeth_digest(mesh, out.gears, out.centres(), written=True)
+        for name, mesh in out.meshes.items()
+    }
+    assert marks[f'meshes."{next(iter(out.meshes))}".law.teeth'] not in str(case.to_dict())
+    assert stiffness(ls.solve(out.replace(marks))) == stiffness(found)
+    with pytest.raises(ls.CaseError, match="computed from other teeth"):
+        case.replace({f"gears.{gear}.pressure_angle": "20.5 deg" for gear in GEARS})

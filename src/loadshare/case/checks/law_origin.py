@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Iterator, Mapping
 
 from loadshare.case.draft import Draft
@@ -20,9 +21,20 @@ OF_LAWS = (
     *(key for key in OF_TEETH if key not in WITHOUT_STIFFNESS),
 )
 """Keys of a gear that its mesh laws follow from."""
+LEFT_OUT = {
+    "pressure_angle": math.radians(20.0),
+    "helix_angle": 0.0,
+    "profile_shift": 0.0,
+    "addendum": 1.0,
+    "dedendum": 1.25,
+    "tip_alteration": 0.0,
+}
+"""What teeth have that say nothing of these; to write it out changes no tooth."""
 
 
-def teeth_digest(mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]) -> str:
+def teeth_digest(
+    mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector], *, written: bool = False
+) -> str:
     """Return a digest of the teeth of a mesh and of where they meet.
 
     Parameters
@@ -31,13 +43,15 @@ def teeth_digest(mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Ve
     gears : mapping of str to Gear
     centres : mapping of str to tuple of float
         Centres of both gears [m].
+    written : bool
+        Whether what is written out counts, even where it might be left out: laws were so marked.
     """
     pair = gears[mesh.driver], gears[mesh.driven]
     offset = minus(centres[mesh.driven], centres[mesh.driver])
     lengths = centre_distance(pair[0], offset), abs(dot(offset, axis_of(pair[0])))
     # To the picometre: centres that are turned or moved as a whole differ by round-off.
     content = [f"{length:.12f}" for length in lengths]
-    content += [f"{_number(getattr(gear, key))!r}" for gear in pair for key in OF_LAWS]
+    content += [f"{_value(gear, key, written)!r}" for gear in pair for key in OF_LAWS]
     return hashlib.sha256("\n".join(content).encode()).hexdigest()[:16]
 
 
@@ -48,11 +62,17 @@ def check_law_origins(draft: Draft) -> Iterator[Problem]:
         law = mesh.power_law
         if law is None or not law.teeth or not {*mesh.ends} <= draft.gears.keys() & centres.keys():
             continue
-        if law.teeth != teeth_digest(mesh, draft.gears, centres):
+        if law.teeth not in (
+            teeth_digest(mesh, draft.gears, centres),
+            teeth_digest(mesh, draft.gears, centres, written=True),
+        ):
             message = "its numbers were computed from other teeth than those of its gears"
             hint = 'law = "iso" or "ltca" computes them from these; without law.teeth they stay.'
             yield draft.problem(("meshes", name, "law"), message, hint=hint)
 
 
-def _number(value: object) -> object:
-    return value.si if isinstance(value, Quantity) else value
+def _value(gear: Gear, key: str, written: bool) -> object:
+    given = getattr(gear, key)
+    value = given.si if isinstance(given, Quantity) else given
+    usual = None if written or gear.tooth is None else LEFT_OUT.get(key)
+    return None if value == usual else value
