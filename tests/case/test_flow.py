@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from tests.support import shipped
 
 import loadshare as ls
 from loadshare.case import Case
@@ -84,3 +85,25 @@ def test_power_may_go_round_over_shafts(torque, clocking):
     found = ls.solve(case).positions[0].torque
     # The ratio of both pairs is 1 : 2, so that no torque but that of the clocking goes round.
     assert abs(found["C-D"]) > 1.0
+
+
+@pytest.mark.parametrize("backlash", ["100 um", "0 um", None])
+def test_planets_of_a_gear_are_named_alike_where_there_is_backlash(backlash):
+    """It is behind the flank with which the gear named first drives: one planet carried nothing."""
+    case = shipped("planetary/four_planets")
+    every = {"law": "iso", **({"backlash": backlash} if backlash else {})}
+    mixed = {f"sun-planet{k}": every for k in (1, 3, 4)} | {"planet2-sun": every}
+    rings = {f"planet{k}-ring": every for k in (1, 2, 3, 4)}
+    changes = {
+        **{f'meshes."{name}"': None for name in case.to_dict()["meshes"]},
+        **{f'meshes."{name}"': law for name, law in (mixed | rings).items()},
+        **dict.fromkeys(("stages", "assumed", "errors")),
+    }
+    if backlash == "100 um":
+        with pytest.raises(CaseError, match='"planet2-sun": names its planet first, sun-planet1'):
+            case.replace(changes)
+        return
+    torque = ls.solve(case.replace(changes)).positions[0].torque
+    # That of the gear named first; a planet has twice the teeth of the sun.
+    expected = [250.0, 250.0, 250.0, 500.0]
+    assert [abs(torque[name]) for name in mixed] == pytest.approx(expected, rel=1e-9)

@@ -248,6 +248,12 @@ class Mesh(Element):
         """Whether the law is not given in numbers, but by what it is computed from."""
         return bool(self.geometry or self.law_file or isinstance(self.law, str))
 
+    @property
+    def has_backlash(self) -> bool:
+        """Whether there is a backlash, or one that follows from the teeth."""
+        known = (self.backlash, self.normal_backlash)
+        return any(isinstance(b, str) or (b is not None and b.si > 0.0) for b in known)
+
     def per_position(self) -> Iterator[tuple[Path, object]]:
         """Yield what may be given once or once per position, with its key."""
         yield from (((key,), getattr(self, key)) for key in ("stiffness", "gap"))

@@ -41,6 +41,7 @@ CHECKS = (
     layout.check_shafts,
     carriers.check_carriers,
     carriers.check_planet_meshes,
+    carriers.check_names_of_planet_meshes,
     carriers.check_planet_shafts,
     carriers.check_held,
     carriers.check_planet_errors,

@@ -75,6 +75,32 @@ def check_planet_meshes(draft: Draft) -> Iterator[Problem]:
                 yield draft.problem(path, what, hint=hint)
 
 
+def check_names_of_planet_meshes(draft: Draft) -> Iterator[Problem]:
+    """Yield meshes with backlash that name their planet first where others of a gear name it last.
+
+    Backlash is behind the flank with which the gear named first drives. Of planets named this way
+    and that, some would begin in touch and some with all of their backlash.
+    """
+    named: dict[tuple[str, str], dict[bool, str]] = {}
+    for name, mesh in draft.meshes.items():
+        carrier = rides_on(draft.gears, *mesh.ends)
+        riding = [end in draft.gears and draft.gears[end].carrier == carrier for end in mesh.ends]
+        if carrier is None or riding[0] == riding[1] or not mesh.has_backlash:
+            continue
+        planet_first = riding[0]
+        central = mesh.driven if planet_first else mesh.driver
+        known = named.setdefault((central, carrier), {})
+        known.setdefault(planet_first, name)
+        if len(known) == 2 and known[planet_first] == name:
+            other = known[not planet_first]
+            what = f"names its planet {'first' if planet_first else 'last'}, {other} does not"
+            hint = (
+                "Backlash is behind the flank with which the gear named first drives: name all "
+                f"meshes of {central} with planets of {carrier} in one order."
+            )
+            yield draft.problem(("meshes", name), what, hint=hint)
+
+
 def check_held(draft: Draft) -> Iterator[Problem]:
     """Yield held gears that would have to turn, or that rigid shafts hold a second time."""
     held = {name for name, gear in draft.gears.items() if gear.held}

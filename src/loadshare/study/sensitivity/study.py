@@ -66,8 +66,8 @@ def sensitivity(
     Raises
     ------
     CaseError
-        If an input is not there or is no number, or cannot be varied on its own. Of a table, and of
-        all that a pattern or nothing names, those that cannot are left out (`skipped`).
+        If an input is not there, is no number, or cannot be varied on its own; of several that a
+        table or pattern names, those that cannot are left out (`skipped`).
     Refused
         If a position has no certified equilibrium.
 
@@ -84,8 +84,7 @@ def sensitivity(
     geometry = geometry_of(case)
     train = train_of(case, geometry)
     chosen = wanted_positions(train, positions)
-    answers = each_certified(train, chosen)
-    corners = [Corner(train, answer) for answer in answers]
+    corners = [Corner(train, answer) for answer in each_certified(train, chosen)]
     rates: dict[tuple[int, str, str], Rates] = {}
     usable, skipped = [], []
     wanted = inputs_of(case, inputs)
