@@ -6,6 +6,7 @@ nothing shares makes friction what it is when it is given.
 
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,10 +14,10 @@ from tests.certify.oracle import ClaimedState
 from tests.certify.test_bound_following import two_shafts
 from tests.support import mostly_slow
 
+import loadshare as ls
 from loadshare.study.answers import certified
 from loadshare.study.memory import stepped
 from loadshare.train import Train
-from loadshare.train.memory import slip_of
 
 LOADS = (1000.0, 1400.0, 700.0, 701.0, 1300.0)
 """Input torque of every step [N·m]."""
@@ -82,11 +83,12 @@ def test_every_step_is_within_what_its_own_torque_allows(friction, rooms):
             before[gear] = slip
 
 
-def test_a_load_that_all_but_ends_leaves_a_spline_next_to_no_friction():
-    """Without a stop, a spline whose friction is none reaches without end."""
-    train = with_splines(1437.0, 0.002, {"a": 8e-6})
-    slips = {"a": np.zeros(3)}
-    answer = stepped(train.remembering(slips), 1)
-    slips = {"a": slip_of(train.splines["a"], answer.equilibrium)}
-    light = with_splines(1.0, 0.002, {"a": 8e-6})
-    assert stepped(light.remembering(slips), 1).certificate.passed
+def test_a_spline_without_friction_reaches_without_end():
+    """With memory, before it meets its stop: the load turns back and all but ends."""
+    found = ls.march(Path(__file__).with_name("turned_back.toml"))
+    assert found.result.passed
+    first, last = ([p.torque["4-6"], p.torque["4-7"]] for p in found.result.positions)
+    assert first == pytest.approx([-718.7, -718.7], rel=2e-3)
+    # So light a load leaves one of the branches apart.
+    assert last == pytest.approx([0.0, 1.0], abs=1e-9)
+    assert found.dissipated == 0.0

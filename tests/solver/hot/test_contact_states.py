@@ -295,3 +295,14 @@ def test_a_ring_without_play_relieves_a_spline_that_would_pin_its_gear_too():
     found = ls.explain(aside, 1).equilibrium
     pushed = 50.0 + 2e7 * 5e-6
     assert np.linalg.norm(found.radial_reaction["spline sun"]) == pytest.approx(pushed, rel=1e-9)
+
+
+def test_a_spline_without_an_end_beside_a_rolling_bearing_has_its_graph():
+    """The wall of a ball bearing is its tangent, 1.5 K √gap (R − begin); warnings are errors."""
+    spline, ball = (
+        [1.0, np.nan, np.inf, 2.0, np.nan, 1.0, 1.0],
+        [0, np.nan, 1e-5, 0, np.nan, 1e9, 1.5],
+    )
+    found = at.graph(np.array([spline, ball]), np.zeros(2), np.array([0.0, 2e-5]))
+    assert found.reach.tolist() == pytest.approx([np.inf, 1e-5 + 1e-5 / 3.0])
+    assert found.last.tolist() == pytest.approx([1.0, 1.5e9 * np.sqrt(1e-5)])
