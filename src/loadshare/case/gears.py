@@ -60,6 +60,16 @@ OF_TEETH = (
     "ovalisation",
 )
 """Keys of a gear that say more of its teeth, besides their number and module."""
+USUAL_TEETH = {
+    "pressure_angle": math.radians(20.0),
+    "helix_angle": 0.0,
+    "profile_shift": 0.0,
+    "addendum": 1.0,
+    "dedendum": 1.25,
+    "tip_alteration": 0.0,
+    "thickness_allowance": 0.0,
+}
+"""Shape of teeth of which a gear says nothing, in SI units or modules."""
 OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
 """Keys of a gear that a carrier does not have."""
 STEEL_EXPANSION = 11.5e-6
@@ -386,17 +396,15 @@ class Gear(Element):
         """The teeth, where the gear says what they are."""
         if self.module is None or self.teeth is None or self.type == "face":
             return None
-        altered = self.tip_alteration.si / self.module.si if self.tip_alteration else 0.0
+        given = {key: getattr(self, key) for key in USUAL_TEETH}
+        shape = USUAL_TEETH | {
+            key: value.si if isinstance(value, Quantity) else value
+            for key, value in given.items()
+            if value is not None
+        }
+        shape["addendum"] += shape.pop("tip_alteration") / self.module.si
         return Tooth(
-            module=self.module.si,
-            teeth=self.teeth,
-            pressure_angle=self.pressure_angle.si if self.pressure_angle else math.radians(20.0),
-            helix_angle=self.helix_angle.si if self.helix_angle else 0.0,
-            profile_shift=self.profile_shift or 0.0,
-            addendum=(self.addendum or 1.0) + altered,
-            dedendum=self.dedendum or 1.25,
-            internal=self.type == "internal",
-            thickness_allowance=self.thickness_allowance.si if self.thickness_allowance else 0.0,
+            module=self.module.si, teeth=self.teeth, internal=self.type == "internal", **shape
         )
 
     @property

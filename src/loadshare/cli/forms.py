@@ -19,7 +19,6 @@ from loadshare.cli.options import OUTPUT
 from loadshare.cli.waiting import speak
 from loadshare.errors import LoadshareError
 from loadshare.output import STANDARD, csv_of, write_whole
-from loadshare.report import beside
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -128,8 +127,6 @@ def outputs(*forms: str, what: str = "Write what was found") -> Any:
             forms_of = {output.form for output in made if output.file == twice}
             how = ", in different forms" if len(forms_of) > 1 else "; name it once"
             raise typer.BadParameter(f"{twice}: is to be written twice{how}.")
-        if any(FORMS[output.form] == "picture" for output in made):
-            beside.start()
         return made
 
     endings = ", ".join(f".{form}" for form in forms if form != FOLDER)

@@ -99,6 +99,8 @@ def test_what_slices_leave_out_of_narrow_helical_teeth_is_noted(tmp_path, module
     pair = load_pair(written(tmp_path, narrow(modules, "slices")))
     law = law_of(pair, pair.analyse())
     assert any("bend sideways" in line for line in law.findings) is noted
+    # A case that computes its law says so with the law.
+    assert ("bending sideways" in law.as_law()["basis"]) is noted
     solid = law.computed.model_copy(update={"compliance": "finite elements"})
     other = law.model_copy(update={"computed": solid})
     assert not any("bend sideways" in line for line in other.findings)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Iterator, Mapping
 
 from loadshare.case.draft import Draft
-from loadshare.case.gears import OF_TEETH, Gear
+from loadshare.case.gears import OF_TEETH, USUAL_TEETH, Gear
 from loadshare.case.line_of_action import centre_distance
 from loadshare.case.meshes import Mesh
 from loadshare.case.place import Vector, axis_of, dot, minus
@@ -21,15 +20,6 @@ OF_LAWS = (
     *(key for key in OF_TEETH if key not in WITHOUT_STIFFNESS),
 )
 """Keys of a gear that its mesh laws follow from."""
-LEFT_OUT = {
-    "pressure_angle": math.radians(20.0),
-    "helix_angle": 0.0,
-    "profile_shift": 0.0,
-    "addendum": 1.0,
-    "dedendum": 1.25,
-    "tip_alteration": 0.0,
-}
-"""What teeth have that say nothing of these; to write it out changes no tooth."""
 
 
 def teeth_digest(
@@ -74,5 +64,6 @@ def check_law_origins(draft: Draft) -> Iterator[Problem]:
 def _value(gear: Gear, key: str, written: bool) -> object:
     given = getattr(gear, key)
     value = given.si if isinstance(given, Quantity) else given
-    usual = None if written or gear.tooth is None else LEFT_OUT.get(key)
+    usual = None if written or gear.tooth is None else USUAL_TEETH.get(key)
+    # To write out what teeth have anyway changes no tooth.
     return None if value == usual else value

@@ -97,7 +97,9 @@ def sensitivity(
             trains = Trains((case, geometry, train), own, item, chosen)
             rates |= _rates(corners, trains, item)
         except CaseError as refusal:
-            if item.key in (inputs or ()) or len(wanted) == 1:
+            if len(wanted) == 1 or item.key in (
+                [inputs] if isinstance(inputs, str) else inputs or ()
+            ):
                 raise
             skipped.append((item.key, refusal.problems[0].message))
         else:

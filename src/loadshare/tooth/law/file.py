@@ -158,24 +158,24 @@ class MeshLaw(Element):
                 f"{100.0 * missed:+.1f} % off that of the whole cycle; analysis.sampling = "
                 '"means" carries it right.'
             )
-        return (*lines, *self._too_narrow(), *self._most_loaded())
+        if self.sideways > SLICES:
+            lines.append(
+                "Slices leave out that helical teeth on so narrow a face bend sideways: the mesh "
+                f"yields some {100.0 * self.sideways:.0f} % more. Finite elements follow it."
+            )
+        return (*lines, *self._most_loaded())
 
-    def _too_narrow(self) -> Iterator[str]:
-        """Yield what slices leave out of helical teeth on narrow faces, where it is much."""
+    @property
+    def sideways(self) -> float:
+        """By how much slices yield too little, since helical teeth bend sideways as well [-]."""
         gears = self.computed.gears
         if self.computed.compliance != "slices" or gears is None or gears.driver.module is None:
-            return
+            return 0.0
         widths = [g.face_width.si for g in (gears.driver, gears.driven) if g.face_width]
-        if not widths:
-            return
-        modules = min(widths) / gears.helices / gears.driver.module.si
-        missed = SIDEWAYS * (math.sin(gears.base_helix_angle.si) / modules) ** 2
-        if missed > SLICES:
-            yield (
-                f"Slices leave out that helical teeth on narrow faces, here {modules:.2g} modules, "
-                f"bend sideways: the mesh yields some {100.0 * missed:.0f} % more. Finite elements "
-                "follow it."
-            )
+        width = min(widths, default=math.inf) / gears.helices
+        return (
+            SIDEWAYS * (math.sin(gears.base_helix_angle.si) * gears.driver.module.si / width) ** 2
+        )
 
     def _most_loaded(self) -> Iterator[str]:
         """Yield which teeth are in contact under T, and which carry most."""
@@ -201,9 +201,11 @@ class MeshLaw(Element):
         means = ", means over the cycle" if made.sampling == "means" else ""
         taken = f"; assumed: {', '.join(assumed)}" if assumed else ""
         unknown = "" if made.gears else f"; {UNKNOWN}"
+        more = f"; yields some {100.0 * self.sideways:.0f} % more, bending sideways"
+        left = more if self.sideways > SLICES else ""
         return {key: [value.text for value in getattr(self, key)] for key in "abc"} | {
             "sampling": made.sampling,
-            "basis": f"LTCA, {made.compliance}{means}{taken}{unknown}",
+            "basis": f"LTCA, {made.compliance}{means}{taken}{left}{unknown}",
             "misfit": max(self.misfit),
             "holds_from": f"{min(FIT_LOADS) * made.torque.si:.9g} N*m",
             "holds_to": f"{made.torque.si:.9g} N*m",
