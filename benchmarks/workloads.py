@@ -39,6 +39,8 @@ class Workload:
         By key and unit, as `loadshare.solve_many` takes them.
     peers : int
         How many samples peers are given: the first ones.
+    limits : mapping of str to (float, float)
+        Between which the samples of a key are drawn.
     """
 
     name: str
@@ -47,6 +49,7 @@ class Workload:
     case: Case
     samples: Samples
     peers: int
+    limits: Mapping[str, tuple[float, float]]
 
     @property
     def count(self) -> int:
@@ -61,6 +64,10 @@ class Workload:
                 name, unit = _split(key)
                 changes[name] = f"{float(values[k])!r} {unit}"
             yield self.case.replace(changes)
+
+    def drawn(self, count: int) -> dict[str, Array]:
+        """Return so many samples, drawn as these are."""
+        return _drawn(self.name, self.limits, count)
 
     def some(self, count: int) -> dict[str, Array]:
         """Return the first samples as arrays."""
@@ -236,6 +243,9 @@ def _workload(
     count: int,
     peers: int,
 ) -> Workload:
+    return Workload(name, title, kind, case, _drawn(name, draws, count), min(peers, count), draws)
+
+
+def _drawn(name: str, draws: Mapping[str, tuple[float, float]], count: int) -> dict[str, Array]:
     generator = np.random.default_rng(zlib.crc32(name.encode()))
-    samples = {key: generator.uniform(*limits, count) for key, limits in draws.items()}
-    return Workload(name, title, kind, case, samples, min(peers, count))
+    return {key: generator.uniform(*limits, count) for key, limits in draws.items()}

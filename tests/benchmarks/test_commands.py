@@ -1,4 +1,4 @@
-"""The commands `stress` and `chart` of the benchmarks: what they say, write and refuse."""
+"""The commands of the benchmarks that publish: what they say, write and refuse."""
 
 import json
 
@@ -9,13 +9,14 @@ from benchmarks.chart.__main__ import app as chart
 from benchmarks.chart.draw import draw_branches, draw_precision
 from benchmarks.chart.measure import Measure
 from benchmarks.documents import read_figures, write_figures
+from benchmarks.graphics.__main__ import app as graphics
 from benchmarks.stress.__main__ import app as stress
 from loadshare.cli.main import app as loadshare
 
 
 @pytest.fixture
 def run():
-    runner, apps = CliRunner(), {"stress": stress, "chart": chart}
+    runner, apps = CliRunner(), {"stress": stress, "chart": chart, "graphics": graphics}
     return lambda name, *words: runner.invoke(apps[name], list(words))
 
 
@@ -42,6 +43,7 @@ def test_a_problem_without_an_answer_is_refused_by_name(run):
         (("stress", "--problem", "3"), "goes with --family"),
         (("stress", "--family", "verge", "--problem", "200"), "problems 0 to 199"),
         (("chart", "--redraw", "-o", "nowhere"), "leave --redraw out"),
+        (("graphics", "--draw", "-o", "nowhere"), "leave --draw out"),
         (("chart", "--cases", "nowhere", "-o", "elsewhere", "--quiet"), "--cases"),
     ],
 )
@@ -50,6 +52,18 @@ def test_wrong_words_are_reported(run, words, message, tmp_path, monkeypatch):
     done = run(*words)
     assert done.exit_code == 2
     assert message in done.output
+
+
+def test_the_page_of_the_graphics_processor_has_what_was_measured(run, tmp_path):
+    row = {"workload": "rings", "title": "limit rings", "equilibria": 300, "threads": 64}
+    row |= {"core": 1.2, "device": 0.05, "moved": 0.02, "sets": 7, "visits": 1.5}
+    row |= {"settled": 300, "settled_by_core": 299, "alike": 298, "worst": 2e-13}
+    write_figures(tmp_path / "graphics.json", {"facts": {"device": "any"}, "rows": [row]})
+    assert run("graphics", "--draw", "-o", str(tmp_path)).exit_code == 0
+    page = (tmp_path / "graphics.md").read_text()
+    assert "| limit rings | 1.20 | 0.050 | 24 | 0.020 | 7 | 1.50 | 300, 299 | 298 |" in page
+    assert "| device | any |" in page
+    assert "limit rings" in (tmp_path / "graphics.svg").read_text()
 
 
 @pytest.mark.slow
