@@ -56,6 +56,23 @@ def test_what_a_base_assumes_stays_assumed(tmp_path, drive_text):
     assert not case.is_assumed('meshes."a-b".stiffness')
 
 
+def test_what_is_removed_is_assumed_no_more(tmp_path, drive_text):
+    """Patterns that covered nothing else go with it; those that never covered a key are told."""
+    base = f'assumed = ["stages.*", "meshes.*", "stages.none"]\n{drive_text}'
+    base = base.replace('assumed = ["gears.*.base_radius"]\n', "")
+    own = 'extends = "base.toml"\nremove = ["stages"]\nassumed = ["gears.b"]\n'
+    path = write(tmp_path, base=base, own=own)
+    assert message_of(path, tmp_path).splitlines() == [
+        'base.toml: assumed[1] = "stages.none": matches no key of the case.'
+    ]
+    path = write(tmp_path, base=base.replace(', "stages.none"', ""), own=own)
+    assert load_case(path).assumed == ("meshes.*", "gears.b")
+    whole = load_case(tmp_path / "base.toml")
+    assert whole.assumed == ("stages.*", "meshes.*")
+    assert whole.replace({"stages": None}).assumed == ("meshes.*",)
+    assert whole.replace({"title": None}).assumed == whole.assumed
+
+
 def test_inheritance_chains_and_problems_name_the_file_of_the_key(tmp_path, drive_text):
     middle = 'extends = "base.toml"\n[gears.a]\nsupport = "3 kg"\nteeth = 20\n'
     top = 'extends = "middle.toml"\nassumed = ["x"]\n[gears.a]\nteeth = 2\n'

@@ -169,6 +169,12 @@ MODULES = {
         except KeyboardInterrupt as met:
             raise SystemError("a class returned a result with an exception set") from met
 """,
+    "what drops it": """
+        try:
+            exec(MET)
+        except KeyboardInterrupt:
+            pass
+""",
 }
 
 
@@ -185,3 +191,22 @@ def test_a_command_that_is_stopped_while_it_loads_ends_with_its_code(
     (tmp_path / "interrupted.py").write_text(text, encoding="utf-8")
     words = [sys.executable, "-m", "interrupted"]
     assert subprocess.run(words, cwd=tmp_path, env=environment, check=False).returncode == 143
+
+
+def test_what_is_interrupted_before_there_is_a_command_ends_in_silence(environment):
+    script = """
+import sys
+
+class Interrupted:
+    def find_spec(self, name, *_):
+        if name == "loadshare.cli.main":
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupted())
+from loadshare.__main__ import main
+main()
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False, env=environment
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")

@@ -6,6 +6,7 @@ round-off times its condition: 1e-12. Solved alone it may begin elsewhere: 1e-9,
 """
 
 import inspect
+import pickle
 import tracemalloc
 from itertools import islice
 
@@ -60,7 +61,7 @@ def apart(one, other, name: str) -> float:
 
 def test_shapes_labels_and_units():
     case = shipped(LIMIT_RING)
-    found = ls.solve_many(case, RINGS)
+    found = ls.solve_many(case, RINGS, keep=KEPT)
     assert dict(found.sizes) == {
         "sample": 3,
         "position": 5,
@@ -105,14 +106,14 @@ def test_only_what_is_kept(keep):
     always = {"residual", "torque_bound", "certified", "determined", "displaced", "rung"}
     always |= {"convex", "arc_curvature"}
     assert set(found.data_vars) == {*keep, *always}
-    whole = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
+    whole = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1], keep=KEPT)
     for name in keep:
         np.testing.assert_array_equal(found[name], whole[name])
 
 
 def test_some_positions():
-    whole = ls.solve_many(shipped(LIMIT_RING), RINGS)
-    some = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[4, 2])
+    whole = ls.solve_many(shipped(LIMIT_RING), RINGS, keep=KEPT)
+    some = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[4, 2], keep=KEPT)
     assert some.position.values.tolist() == [4, 2]
     for name in KEPT:
         chosen = whole.sel(position=[4, 2])
@@ -131,7 +132,7 @@ def test_a_case_file_will_do(tmp_path):
 def test_each_sample_is_the_case_solved_alone(name):
     """Torques, shares, floats, contact forces and what is determined, sample by sample."""
     case, samples = varied(name, 4, seed=11)
-    found = ls.solve_many(case, samples, positions=[1])
+    found = ls.solve_many(case, samples, positions=[1], keep=KEPT)
     ((_, group),) = samples_of(case, samples)
     for sample in range(4):
         alone = ls.solve(group.one(sample), positions=[1])
@@ -188,7 +189,7 @@ def mixed() -> tuple[ls.Case, dict[str, list[float]]]:
 
 def test_a_sample_whose_limits_contradict_is_refused_and_the_others_are_not():
     case, samples = mixed()
-    found = ls.solve_many(case, samples, positions=[1, 2])
+    found = ls.solve_many(case, samples, positions=[1, 2], keep=KEPT)
     bad = ~found.certified.values.all(axis=1)
     assert bad.sum() == 1
     (number,) = np.flatnonzero(bad).tolist()
@@ -227,7 +228,7 @@ def test_a_law_that_drops_is_refused_sample_by_sample():
     """S1 is given and the friction varies: where K_w S1 exceeds F_m there is no one equilibrium."""
     case = shipped("fgfbstts/all_elements").replace({"splines.5.stick_limit": "0.5 um"})
     samples = {"splines.5.friction": [0.002, 1e-5, 0.01]}
-    found = ls.solve_many(case, samples, positions=[1])
+    found = ls.solve_many(case, samples, positions=[1], keep=KEPT)
     assert found.certified.values[:, 0].tolist() == [True, False, True]
     (message,) = found.attrs["refused"].splitlines()
     assert "drop" in message
@@ -250,7 +251,7 @@ def test_values_that_do_not_go_together_are_refused_sample_by_sample():
     with pytest.raises(CaseError, match="stick limit"):
         # The smallest clearance with the largest stick limit is what the checks look at.
         ls.solve(case.replace({"splines.4.stick_limit": "4 um", "splines.4.clearance": "3 um"}))
-    found = ls.solve_many(case, samples, positions=[1])
+    found = ls.solve_many(case, samples, positions=[1], keep=KEPT)
     assert found.certified.values[:, 0].tolist() == [True, False, True]
     (message,) = found.attrs["refused"].splitlines()
     assert "stick limit" in message
@@ -292,7 +293,7 @@ def test_what_the_hot_path_leaves_climbs_and_says_so(monkeypatch):
     found = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
     assert (named(found.rung)[:, 0] == HOT).tolist() == [True, False, True]
     assert found.certified.all()
-    for name in ("torque", "share", "contact_force"):
+    for name in ("torque", "share", "pair_share"):
         assert apart(expected, found, name) < 1e-9
 
 
@@ -334,9 +335,9 @@ def test_the_number_of_workers_does_not_matter(monkeypatch):
 @pytest.mark.parametrize("name", ["drums", "every element"])
 def test_the_size_of_blocks_does_not_matter(name, block, monkeypatch):
     case, samples = varied(name, 24, seed=2)
-    whole = ls.solve_many(case, samples, positions=[1])
+    whole = ls.solve_many(case, samples, positions=[1], keep=KEPT)
     small_blocks(monkeypatch, block)
-    parts = ls.solve_many(case, samples, positions=[1])
+    parts = ls.solve_many(case, samples, positions=[1], keep=KEPT)
     for name in ("torque", "contact_force", "displacement"):
         assert apart(whole, parts, name) < 1e-12
     for name in ("certified", "determined", "rung"):
@@ -346,8 +347,8 @@ def test_the_size_of_blocks_does_not_matter(name, block, monkeypatch):
 def test_the_company_does_not_matter():
     """The first ten of forty samples are the ten alone."""
     many_, few = floats(40), {key: v[:10] for key, v in floats(40).items()}
-    one = ls.solve_many(shipped(LIMIT_RING), many_, positions=[1]).isel(sample=slice(10))
-    other = ls.solve_many(shipped(LIMIT_RING), few, positions=[1])
+    one = ls.solve_many(shipped(LIMIT_RING), many_, positions=[1], keep=KEPT).isel(sample=slice(10))
+    other = ls.solve_many(shipped(LIMIT_RING), few, positions=[1], keep=KEPT)
     for name in ("torque", "contact_force", "displacement"):
         assert apart(one, other, name) < 1e-12
 
@@ -359,7 +360,7 @@ def test_samples_of_different_machines_come_back_in_their_places():
         "rings.4.stiffness": ["rigid", "1e8 N/m", "rigid", "1e8 N/m"],
         "rings.4.float [um]": [2.0, 2.0, 5.0, 5.0],
     }
-    found = ls.solve_many(case, samples, positions=[1])
+    found = ls.solve_many(case, samples, positions=[1], keep=KEPT)
     for sample in range(4):
         alone = ls.solve(
             case.replace(
@@ -472,7 +473,7 @@ def test_gears_keep_their_names_whichever_end_drives():
         "operating.output": ["carrier", "sun"],
         "operating.torque": ["1000 N*m", "6000 N*m"],
     }
-    found = ls.solve_many(case, samples, least_norm=True)
+    found = ls.solve_many(case, samples, least_norm=True, keep=KEPT)
     for row in range(2):
         alone = ls.solve(case.replace({key: values[row] for key, values in samples.items()}))
         for gear in found.gear.values:
@@ -492,3 +493,27 @@ def test_extremes_need_not_go_together():
     assert found.certified.all()
     with pytest.raises(ls.CaseError, match="both 0"):
         ls.solve_many(case, {b: [9e-7, 0.0, 0.0], c: [0.0, 2e-6, 0.0]})
+
+
+def test_shares_are_computed_when_they_are_read(tmp_path):
+    case, samples = shipped(LIMIT_RING), floats(40)
+    meshes = [*case.meshes]
+    found = ls.solve_many(case, samples)
+    alone = ls.solve(case.replace({key.split(" [")[0]: f"{v[7]} um" for key, v in samples.items()}))
+    for name in ("share", "pair_share"):
+        one = found[name].isel(sample=7)
+        for p, position in enumerate(alone.positions):
+            expected = getattr(position, name)
+            assert one.isel(position=p).values == pytest.approx(
+                [np.nan if expected.get(m) is None else expected[m] for m in meshes],
+                rel=1e-9,
+                nan_ok=True,
+            )
+        part = found[name].isel(sample=[3, 1], mesh=slice(2, None, 3)).sel(position=4)
+        whole = found[name].values
+        np.testing.assert_array_equal(part, whole[[3, 1], 3, 2::3])
+    again = ls.solve_many(case, samples)
+    assert pickle.loads(pickle.dumps(again)).identical(found)
+    again.to_netcdf(tmp_path / "found.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "found.nc", engine="h5netcdf") as read:
+        np.testing.assert_array_equal(read.share, found.share)

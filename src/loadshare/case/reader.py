@@ -19,7 +19,7 @@ from loadshare.case.keys import Path, dotted, merge, parse, walk
 from loadshare.case.model import Case
 from loadshare.case.origin import Origin
 from loadshare.case.recognise import KINDS, near_names, what_folder_is, what_is
-from loadshare.case.revise import change, revise
+from loadshare.case.revise import change, revise, still_assumed
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
 from loadshare.input import Unreadable, read_file, real
@@ -141,6 +141,7 @@ def _read(
             Problem(str(path), "remove", as_given(removals), "is not valid here", allowed)
         )
         removals = []
+    before = [*walk(data)] if removals else []
     for number, key in enumerate(removals):
         wrong = _remove(data, files, key)
         if wrong:
@@ -148,7 +149,10 @@ def _read(
     # What the base assumes stays assumed: a case may only add to it.
     inherited, added = data.get("assumed", []), own.get("assumed", [])
     merge(data, own)
-    if isinstance(inherited, list) and isinstance(added, list) and (inherited or added):
+    if isinstance(inherited, list):
+        kept = still_assumed(inherited, before, walk(data))
+        inherited = [inherited[number] for number in kept]
+    if isinstance(inherited, list) and isinstance(added, list) and "assumed" in data:
         data["assumed"] = [*inherited, *(item for item in added if item not in inherited)]
         files |= {("assumed", number): files[("assumed",)] for number in range(len(inherited))}
     files.update(dict.fromkeys(walk(own), str(path)))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from loadshare.case.content import Content
 from loadshare.case.draft import as_data
-from loadshare.case.keys import Path, dotted, look_up, parse
+from loadshare.case.keys import Path, covers, dotted, look_up, parse, walk
 from loadshare.case.origin import CHANGES, Origin
 from loadshare.case.words import as_given, did_you_mean
 from loadshare.errors import CaseError, Problem
@@ -66,7 +66,47 @@ def revise(
         for known, file in origin.files.items()
         if not any(known[:length] in moved for length in range(1, len(known) + 1))
     }
-    return changed, replace(origin, files=files | dict.fromkeys(moved, CHANGES))
+    files |= dict.fromkeys(moved, CHANGES)
+    patterns = changed.get("assumed")
+    if isinstance(patterns, list) and any(value is None for value in changes.values()):
+        kept = still_assumed(patterns, walk(data), walk(changed))
+        if len(kept) < len(patterns):
+            changed["assumed"] = [patterns[number] for number in kept]
+            own = {n: files.pop(("assumed", n), None) for n in range(len(patterns))}
+            files |= {("assumed", k): file for k, n in enumerate(kept) if (file := own[n])}
+    return changed, replace(origin, files=files)
+
+
+def still_assumed(
+    patterns: Sequence[Any], before: Iterable[Path], after: Iterable[Path]
+) -> list[int]:
+    """Return the numbers of patterns that stay when keys are removed.
+
+    One that covered nothing but what is removed goes with it; one that never covered a key is left
+    to be reported.
+
+    Parameters
+    ----------
+    patterns : sequence
+        Of ``assumed``, as they were written.
+    before, after : iterable of Path
+        The keys.
+    """
+    left = set(after)
+    gone = [key for key in before if key not in left]
+
+    def covered(pattern: object, keys: Iterable[Path]) -> bool:
+        try:
+            wanted = parse(str(pattern))
+        except ValueError:
+            return False
+        return any(covers(wanted, key) for key in keys)
+
+    return [
+        number
+        for number, pattern in enumerate(patterns)
+        if not covered(pattern, gone) or covered(pattern, left)
+    ]
 
 
 def _own(data: dict[str, Any], path: Path, owned: set[int]) -> None:
@@ -155,6 +195,8 @@ def nearest(data: Mapping[str, Any], path: Path) -> str:
     for length in range(len(path)):
         above = look_up(data, path[:length])
         if isinstance(above, Mapping) and path[length] not in above:
+            if "*" in str(path[length]):
+                return "A star is no name here: give one key for each."
             options = {dotted((*path[:length], key)): key for key in above}
             wrong = dotted(path[: length + 1])
             near = did_you_mean(wrong, options)

@@ -50,8 +50,9 @@ class Stop:
             # text that exec() runs, as dataclasses do, CPython under -m would end it by SIGINT in
             # place of its exit code; the next text makes it forget that.
             exec("")
-            if self._thrown and isinstance(error, SystemError | ImportError):
-                # What a compiled module makes of an interruption that meets it while it loads.
+            if self._thrown and (error is None or isinstance(error, SystemError | ImportError)):
+                # Nothing of it is left, or what a compiled module makes of it, where it was met
+                # while modules were loading.
                 raise KeyboardInterrupt
             return
         for number, handler in self._before.items():

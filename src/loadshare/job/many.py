@@ -27,7 +27,7 @@ from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
 from loadshare.job.positions import Progress, wanted_of
 from loadshare.job.recent import Recent
-from loadshare.job.table import KEPT, Table, checked
+from loadshare.job.table import USUAL, Table, checked
 from loadshare.one_thread import one_thread
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.columns import Columns, columns_of
@@ -129,7 +129,7 @@ def solve_many(
     samples: Columns,
     *,
     positions: Iterable[int] | None = None,
-    keep: Iterable[str] = tuple(KEPT),
+    keep: Iterable[str] = USUAL,
     tolerance: float = CERTIFY.tolerance,
     engine: str = "auto",
     workers: int = JOB.workers,
@@ -148,7 +148,8 @@ def solve_many(
     positions : iterable of int, optional
         1-based positions to solve; all by default. What only some samples have is NaN for others.
     keep : iterable of str
-        Variables to keep: "torque", "share", "pair_share", "displacement", "contact_force".
+        Variables to keep: "torque", "share", "pair_share"; also "displacement" and "contact_force".
+        Shares are computed from torques when they are first read.
     tolerance : float
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}

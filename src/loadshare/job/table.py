@@ -33,6 +33,9 @@ KEPT: dict[str, Variable] = {
     "contact_force": Variable(("contact",), "N", "force of a contact of a ring"),
 }
 """Of each sample at each position, if it is requested."""
+SHARES = ("share", "pair_share")
+USUAL = ("torque", "share", "pair_share")
+"""What is kept where nothing else is requested."""
 
 
 def checked(names: Iterable[str]) -> tuple[str, ...]:
@@ -124,7 +127,16 @@ class Table:
             "component": list(COMPONENTS),
             "contact": list(contacts),
         }
-        self.variables = {name: self._empty(np.nan, KEPT[name].dims) for name in keep}
+        self.keep = keep
+        self.stages = trains[0].stages
+        # Shares follow from torques, unless samples are grouped into stages in several ways.
+        alike = all(train.stages == self.stages for train in trains)
+        later = [name for name in keep if alike and name in SHARES]
+        self.largest = self._empty(np.nan, ())
+        written = [name for name in keep if name not in later]
+        if later and "torque" not in written:
+            written.append("torque")
+        self.variables = {name: self._empty(np.nan, KEPT[name].dims) for name in written}
         self.each = {name: self._empty(e.none, (), e.type_) for name, e in EACH.items()}
         self.message: dict[tuple[int, int], str] = {}
 
@@ -150,6 +162,7 @@ class Table:
         self.message |= block.message
         for p, answers in enumerate(block.equilibria):
             torques = mesh_torques(answers.names.train, answers.flank_force)
+            self.largest[place, p] = torques.largest
             for name, values in self.variables.items():
                 elements, found = self._read(name, answers, torques)
                 dim = KEPT[name].dims[0]
@@ -175,13 +188,20 @@ class Table:
             found = shares(torques, train.stages, pairs=name == "pair_share")
         return list(torques.meshes), found
 
+    def _values(self, name: str) -> Any:
+        """Return what was written, or what is computed from it when it is read."""
+        if name in self.variables:
+            return self.variables[name]
+        from loadshare.job.derived import shares_when_read
+
+        meshes, torque, pairs = self.coords["mesh"], self.variables["torque"], name == "pair_share"
+        return shares_when_read(meshes, torque, self.largest, self.stages, pairs)
+
     def dataset(self, case: Case, tolerance: float) -> xr.Dataset:
         """Return everything with labels."""
         import xarray as xr
 
-        found = [
-            (name, *KEPT[name].labelled(values, *EVERY)) for name, values in self.variables.items()
-        ]
+        found = [(name, *KEPT[name].labelled(self._values(name), *EVERY)) for name in self.keep]
         for name, each in EACH.items():
             attributes: dict[str, object] = {"units": each.units, "long_name": each.long_name}
             if name == "rung":

@@ -16,7 +16,13 @@ from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import RESIDUALS, pushed_by_rings, scaled_residuals
 from loadshare.certify.state import ClaimedState
 from loadshare.certify.validity import measuring
-from loadshare.results.share import MeshTorques, carries, mesh_torques, shares
+from loadshare.results.share import (
+    MeshTorques,
+    carries,
+    mesh_torques,
+    shares,
+    torques_of_flanks,
+)
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Range
@@ -83,7 +89,8 @@ class Figures:
     @cached_property
     def coast_torque(self) -> Array:
         """Part on the coast flank [N·m], (S, meshes)."""
-        return self._over_meshes(np.maximum(-self._torques.flanks, 0.0))
+        torques = torques_of_flanks(self.train, self.answers.flank_force)
+        return self._over_meshes(np.maximum(-torques, 0.0))
 
     @cached_property
     def share(self) -> Array:

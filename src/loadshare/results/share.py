@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -29,18 +28,13 @@ class MeshTorques:
     meshes : tuple of str
     net : ndarray, shape (S, meshes)
         Drive flank less coast flank [N·m].
-    flanks : ndarray, shape (S, flanks)
-        Net torque of each [N·m].
+    largest : ndarray, shape (S,)
+        Largest torque on any flank [N·m].
     """
 
     meshes: tuple[str, ...]
     net: Array
-    flanks: Array
-
-    @cached_property
-    def largest(self) -> Array:
-        """Largest torque on any flank [N·m], (S,)."""
-        return np.asarray(np.abs(self.flanks).max(axis=1, initial=0.0))
+    largest: Array
 
 
 def flank_torques(train: Train, flank_force: Mapping[str, float]) -> dict[str, list[float]]:
@@ -132,14 +126,19 @@ def load_factors(train: Train, torque: Mapping[str, float], stage: Stage) -> dic
     return {m: f / mean for m, f in force.items()}
 
 
+def torques_of_flanks(train: Train, force: Array) -> Array:
+    """Return the torque that each force of a flank [N] exerts on the driver [N·m], (S, flanks)."""
+    lever = np.array([m.lever(d) for m in train.meshes.values() for d in m.flanks])
+    return np.asarray(force * lever)
+
+
 def mesh_torques(train: Train, force: Array) -> MeshTorques:
     """Return the torques that forces of flanks, (S, flanks) [N], exert on the drivers."""
-    lever = np.array([m.lever(d) for m in train.meshes.values() for d in m.flanks])
     flanks = np.array([len(mesh.flanks) for mesh in train.meshes.values()])
-    torque, last = force * lever, flanks.cumsum() - 1
+    torque, last = torques_of_flanks(train, force), flanks.cumsum() - 1
     net = torque[:, last]
     net[:, flanks == 2] += torque[:, last[flanks == 2] - 1]
-    return MeshTorques(tuple(train.meshes), net, torque)
+    return MeshTorques(tuple(train.meshes), net, np.abs(torque).max(axis=1, initial=0.0))
 
 
 def shares(torques: MeshTorques, stages: Iterable[Stage], pairs: bool = False) -> Array:

@@ -121,7 +121,9 @@ class Gear:
     @property
     def is_tilted(self) -> bool:
         """Whether its frame is not that of its plane."""
-        return self.frame is not self.plane
+        # The same object, unless the gear was pickled.
+        plane = self.plane
+        return self.frame is not plane and not np.array_equal(self.frame, plane)
 
     def in_plane(self, components: Vector) -> Vector:
         """Components (2,) along `plane` of those along `frame`."""

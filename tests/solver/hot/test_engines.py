@@ -18,6 +18,7 @@ from tests.support import EVERY_SHIPPED, mostly_slow, shipped
 import loadshare as ls
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Answers, Machine
+from loadshare.job.table import KEPT
 from loadshare.settings import ABREAST, CERTIFY, JOB
 from loadshare.solver.hot import compiled, radials, vectorised
 from loadshare.solver.hot import contact_states as at
@@ -169,7 +170,7 @@ def test_solve_many_with_either_engine():
     """And by name: "auto" compiles from a few thousand equilibria on."""
     case, samples = varied("drums", 60, seed=5)
     one, other = (
-        ls.solve_many(case, samples, positions=[2], engine=engine)
+        ls.solve_many(case, samples, positions=[2], keep=KEPT, engine=engine)
         for engine in ("vectorised", "compiled")
     )
     for name in ("torque", "contact_force", "displacement"):
