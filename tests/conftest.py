@@ -2,6 +2,7 @@
 
 import os
 import random
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -27,8 +28,31 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--shuffle", metavar="SEED", type=int, help="Run in a random order.")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Shuffle files, and tests within each, where a seed is given: what a file shares stays so."""
+    """Choose what is quick, and shuffle tests if a seed is given."""
+    _choose_quick(items)
+    _shuffle(config, items)
+
+
+def _choose_quick(items: list[pytest.Item]) -> None:
+    """Of the sets of parameters of a test leave so many as it says, and mark the others as slow.
+
+    Which ones hangs on their names alone: in their own order, those of one engine might be left.
+    """
+    alike: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("quick") and not item.get_closest_marker("slow"):
+            alike.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for several in alike.values():
+        (count,) = several[0].get_closest_marker("quick").args
+        several.sort(key=lambda item: zlib.crc32(item.nodeid.encode()))
+        for item in several[count:]:
+            item.add_marker(pytest.mark.slow)
+
+
+def _shuffle(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Shuffle files, and tests within each: what a file shares stays so."""
     seed = config.getoption("--shuffle")
     if seed is None:
         return

@@ -6,32 +6,22 @@ import math
 
 import numpy as np
 
-from benchmarks.stress.dressing import maybe, maybe_hertz
+from benchmarks.stress.dressing import maybe_hertz
 from benchmarks.stress.workbench import (
     DEFLECTION,
     Workbench,
     pair_of,
     split_torque,
     star,
-    two_path,
 )
 
 
 def without_answer(excess: float, generator: np.random.Generator) -> Workbench:
     """Return a train that must be refused; by `excess` it misses an answer."""
-    kinds = (_pulled, _squeezed, _one_sided, _unheld)
+    kinds = (_squeezed, _one_sided, _unheld)
     kind = kinds[int(generator.integers(len(kinds)))]
     bench = kind(excess, generator)
     maybe_hertz(bench, generator)
-    return bench
-
-
-def _pulled(excess: float, generator: np.random.Generator) -> Workbench:
-    """A gear is turned against the power flow, and flanks without backlash cannot pull."""
-    bench = two_path() if maybe(generator) else split_torque(4)
-    wheels = [g for g in bench.gears if g.startswith(("wheel", "idler"))]
-    gear = str(generator.choice(wheels))
-    bench.external(gear, -(1.0 + excess) * 40.0 * bench.rated)
     return bench
 
 

@@ -66,10 +66,6 @@ class Workbench:
             operating.pop(key, None)
         operating["torque"] = written(value, "N*m")
 
-    def external(self, gear: str, value: Number) -> None:
-        """Put a further torque [N·m] on a gear."""
-        self.data["operating"].setdefault("external", {})[gear] = written(value, "N*m")
-
     def _mesh(self, mesh: str) -> dict[str, Any]:
         table: dict[str, Any] = self.data["meshes"][mesh]
         return table

@@ -68,6 +68,11 @@ def test_copies_are_written_out() -> None:
     assert Case(case.to_dict()) == case
 
 
+def test_the_name_of_all_copies_is_none_of_them() -> None:
+    with pytest.raises(CaseError, match=r"Give one: planet1, planet2, planet3\."):
+        Case(changed()).replace({"operating.output": "planet"})
+
+
 def test_angles_may_be_given_one_by_one() -> None:
     data = changed()
     data["gears"]["planet"]["copies"] = ["0 deg", "1.7 rad", "240 deg"]

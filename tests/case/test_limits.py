@@ -231,6 +231,7 @@ GEAR = "[gears.g{0}]\ncentre = ['0 mm', '0 mm']\nbase_radius = '1 mm'\n"
         ),
     ],
 )
+@pytest.mark.quick(2)
 def test_problems_without_number_take_a_moment(tmp_path, text, wanted):
     """Each of these took minutes: what is near to a name was looked for among all others."""
     with limited(10.0):

@@ -66,6 +66,7 @@ def problems() -> list[tuple[str, int]]:
 
 
 @pytest.mark.parametrize(("family", "number"), problems())
+@pytest.mark.quick(6)
 def test_bound_holds_against_fifty_digits(family: str, number: int) -> None:
     problem = list(FAMILIES[family].problems(100))[number]
     train = build_train(problem.case)
@@ -110,6 +111,7 @@ def test_bound_holds_against_fifty_digits(family: str, number: int) -> None:
         ("soft-supports", 188),
     ],
 )
+@pytest.mark.quick(2)
 def test_bounds_hold_of_what_all_but_idles(family: str, number: int) -> None:
     (found,) = judged(FAMILIES[family].problem(number).case)["positions"]
     assert found["outcome"] == "agrees"

@@ -99,6 +99,7 @@ def plain():
 
 
 @pytest.mark.parametrize("name", mostly_slow(NAMES, {*NAMES} - LIKE_OTHERS))
+@pytest.mark.quick(3)
 def test_bounds_hold_and_are_those_of_the_source(name, plain, monkeypatch):
     train = build_train(WAYS[name]())
     columns = Columns(train)

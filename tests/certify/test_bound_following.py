@@ -128,6 +128,7 @@ def test_bound_on_friction_covers_what_follows(friction: float) -> None:
 @pytest.mark.parametrize("friction", [0.02, 0.05, 0.1, 0.3])
 @pytest.mark.parametrize("slip", [(0.0, 0.0, 0.0), (0.0, -8e-6, 0.0), (3e-6, 5e-6, 0.0)])
 @pytest.mark.parametrize("off", [1e-9, 1e-7])
+@pytest.mark.quick(6)
 def test_room_of_a_slip_that_is_remembered_shrinks_with_the_torque(
     friction: float, slip: tuple[float, ...], off: float
 ) -> None:
@@ -137,6 +138,7 @@ def test_room_of_a_slip_that_is_remembered_shrinks_with_the_torque(
 
 @pytest.mark.parametrize("more", [-1e-5, -1e-8, -1e-10, -1e-12, 0.0, 1e-12, 1e-10, 1e-8])
 @pytest.mark.parametrize("off", [-1e-7, -1e-9, 1e-9, 1e-7])
+@pytest.mark.quick(8)
 def test_room_that_the_torque_all_but_closes(more: float, off: float) -> None:
     """Friction needs all of the clearance, next to all, or a little more than all."""
     held = solved(two_shafts(0.3))

@@ -37,6 +37,7 @@ SIZES = (1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3)
 
 
 @pytest.mark.parametrize("name", mostly_slow(WAYS, QUICK))
+@pytest.mark.quick(3)
 def test_one_wrong_claim(name):
     train = build_train(WAYS[name]())
     situations, found = claims(train, positions(train)[:1])
@@ -115,6 +116,7 @@ def test_no_claim_with_any_figure_that_is_none_passes(name, bad):
         ("spline", (0, 2)),
     ],
 )
+@pytest.mark.quick(4)
 def test_no_answer_passes_where_a_situation_is_not_a_number(field, place):
     train = build_train(shipped("fgfbstts/all_elements"))
     situations, found = claims(train, [1])

@@ -196,6 +196,7 @@ def positions(train: Train) -> list[int]:
 
 
 @pytest.mark.parametrize("name", mostly_slow(WAYS, WAYS.keys() - {"fgfbstts/from_geometry"}))
+@pytest.mark.quick(9)
 def test_right_answers(name):
     train = build_train(WAYS[name]())
     indices = positions(train)
@@ -210,6 +211,7 @@ def test_right_answers(name):
 
 
 @pytest.mark.parametrize("name", mostly_slow(WAYS, QUICK))
+@pytest.mark.quick(3)
 def test_wrong_answers(name):
     """Thirty answers, each damaged in one to three places; most are refused, all alike."""
     train = build_train(WAYS[name]())

@@ -62,6 +62,7 @@ def covered(claimed: ls.Case, *others: ls.Case) -> None:
 
 @pytest.mark.parametrize("torque", [1e-3, 10.0, 15.0])
 @pytest.mark.parametrize("stiffness", ["2e6 N/m", "2e7 N/m", "1e9 N/m"])
+@pytest.mark.quick(3)
 def test_both_ends_of_a_slip_lie_within_the_bound(torque, stiffness):
     given = {"torque": torque, "bending_stiffness": stiffness, "clearance": "1 mm", "gap": 200.0}
     found = ls.solve(used_up(**given)).positions[0]
@@ -86,6 +87,7 @@ def test_friction_that_is_given():
 
 
 @pytest.mark.parametrize("gap", [10.0, 26.0])
+@pytest.mark.quick(1)
 def test_a_slip_that_lets_another_path_carry_is_not_bounded(gap):
     """From 27 mrad on B stays behind, however far the pinion of A slips; below, it may carry."""
     assert ls.solve(used_up(1.0 + 1e-6, gap=26.0)).positions[0].torque["in-wheelB"] > 1.0

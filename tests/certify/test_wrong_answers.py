@@ -253,6 +253,7 @@ def test_every_way_to_be_wrong_is_tried(slip):
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
 @pytest.mark.parametrize("slip", SLIPS)
+@pytest.mark.quick(8)
 def test_a_wrong_answer_is_refused_and_the_right_residual_says_so(slip, scenario):
     train, found = solved(scenario)
     for wrong in SLIPS[slip](train, found):
@@ -277,6 +278,7 @@ def test_what_is_not_a_number_is_refused_wherever_it_stands(scenario, wrong):
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
+@pytest.mark.quick(3)
 def test_the_certificate_answers_in_proportion(scenario):
     """A misfit below the tolerance shows as such, the same misfit just above it fails, for every
     contact that carries. Whether the torques are then bounded closely enough is another question.

@@ -179,6 +179,7 @@ def test_a_file_that_is_not_the_answer_is_replaced(command, star, tmp_path, dama
         (lambda d: d.update(format=1), "was written by loadshare"),
     ],
 )
+@pytest.mark.quick(2)
 def test_a_doctored_file_is_not_kept_and_the_summary_says_why(
     command, star, tmp_path, doctor, message
 ):
@@ -313,6 +314,7 @@ def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_pa
         pytest.param((signal.SIGTERM,), 143, "2", marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.quick(1)
 def test_a_batch_ends_where_it_stands(cases, tmp_path, environment, sent, code, jobs):
     """At the second Ctrl-C and at SIGTERM what is under way is left, what is kept is reported."""
     out, script = tmp_path / "out", tmp_path / "script.py"

@@ -80,6 +80,7 @@ RESULTS = {
 
 
 @pytest.mark.parametrize("name", mostly_slow(RESULTS, RESULTS.keys() - {"tolerance"}))
+@pytest.mark.quick(3)
 def test_every_result_is_written_in_every_form(command, tmp_path, name):
     words, forms = RESULTS[name]
     files = [tmp_path / f"found.{form}" for form in forms]
@@ -276,6 +277,7 @@ def proposed(line: str) -> list[str]:
         ("loadshare run none.toml --set ri", []),
     ],
 )
+@pytest.mark.quick(3)
 def test_the_shell_completes_names(line, found):
     assert proposed(line) == found
 

@@ -106,6 +106,7 @@ WRONG_FILES = {
 
 
 @pytest.mark.parametrize(("words", "message"), WRONG_FILES.items(), ids=str)
+@pytest.mark.quick(4)
 def test_a_file_of_another_kind_says_what_it_is_and_who_takes_it(
     command, box, tmp_path, monkeypatch, words, message
 ):

@@ -40,6 +40,7 @@ finally:
         *(["draw", "-h"], ["report", "-h"], ["sweep", "-h"], ["tolerance", "-h"], ["schema"]),
     ],
 )
+@pytest.mark.quick(3)
 def test_the_help_imports_nothing_heavy(environment, words):
     assert imported(words, environment) == set()
 
@@ -79,6 +80,7 @@ def test_a_stream_that_knows_no_omega_goes_on(process, cases):
     ("words", "code"),
     [(("run", "none.toml"), 2), (("run",), 2), ((), 2), (("--version",), 0)],
 )
+@pytest.mark.quick(2)
 def test_exit_codes_reach_the_shell(process, words, code):
     done = process(*words)
     assert done.returncode == code
@@ -101,6 +103,7 @@ CLOSED = {
 @pytest.mark.skipif(sys.platform == "win32", reason="streams that are closed by a shell")
 @pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)], ids=str)
 @pytest.mark.parametrize(("words", "code"), CLOSED.items(), ids=str)
+@pytest.mark.quick(6)
 def test_streams_may_be_closed(environment, tmp_path, words, code, closed):
     """As by `2>&-`, by cron and by some services."""
     given = [str(word).replace("{}", str(tmp_path)) for word in words]

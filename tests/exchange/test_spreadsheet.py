@@ -247,6 +247,7 @@ class Stopped(BaseException):
 
 
 @pytest.mark.parametrize("kind", [Stopped, OSError])
+@pytest.mark.quick(1)
 def test_no_interruption_leaves_a_folder_of_two_cases(tmp_path, monkeypatch, kind) -> None:
     cases = [shipped(f"fgfbstts/{name}") for name in ("installation_error", "base")]
     first, second = (export_frames(ls.solve(case, positions=[1])) for case in cases)

@@ -41,6 +41,7 @@ def shown(found):
 
 
 @pytest.mark.parametrize("text", ["0 um", "1.5 um", "2.97657 um", "4 um", "0.002 mm"])
+@pytest.mark.quick(2)
 def test_an_answer_is_that_of_solve(seed, text):
     found = answer(seed, {FLOAT: text, "operating.power": "1234.5 kW"})
     assert found["status"] == "certified"
@@ -59,6 +60,7 @@ def test_an_answer_is_that_of_solve(seed, text):
         "fgfbstts/full_float",
     ],
 )
+@pytest.mark.quick(2)
 def test_any_case_can_be_explored(served, name):
     with served(shipped(name)) as address:
         status, _, case = ask(address, "/case")

@@ -29,6 +29,7 @@ def served(tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", QUICK)
+@pytest.mark.quick(2)
 def test_some_faults_leave_nothing_wrong(served, tmp_path, name):
     stage = Stage(SMALL[name], tmp_path, *served)
     planned = stage.plan()

@@ -20,6 +20,7 @@ def compiled():
 
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("part", range(8))
+@pytest.mark.quick(3)
 def test_no_input_ends_in_anything_but_words(tmp_path, part, monkeypatch):
     """No traceback, no warning, no hang, no figure that is no number, no result that fails."""
     # As for anybody else, who may not read files outside of the case's folder.
@@ -81,6 +82,7 @@ LONG = {"case-101-1696", "study-40003-5927", "study-60005-19145"}
     mostly_slow(KEPT, [kept for kept in KEPT if kept.name not in LONG]),
     ids=lambda kept: kept.name,
 )
+@pytest.mark.quick(3)
 def test_what_was_found_once_is_reported_in_words(tmp_path, kept, monkeypatch):
     monkeypatch.delenv(OUTSIDE)
     assert retried(kept, tmp_path) == ""

@@ -52,6 +52,7 @@ def failing(structure, loading, sets, parts, state, one_only):
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.quick(2)
 def test_what_the_hot_path_leaves_the_next_rung_answers(name, monkeypatch):
     """And says so; the answer is the same."""
     case = CASES[name]()

@@ -129,6 +129,7 @@ def test_a_case_file_will_do(tmp_path):
 
 
 @pytest.mark.parametrize("name", VARIED)
+@pytest.mark.quick(3)
 def test_each_sample_is_the_case_solved_alone(name):
     """Torques, shares, floats, contact forces and what is determined, sample by sample."""
     case, samples = varied(name, 4, seed=11)
@@ -333,6 +334,7 @@ def test_the_number_of_workers_does_not_matter(monkeypatch):
 
 @pytest.mark.parametrize("block", [3, 23])
 @pytest.mark.parametrize("name", ["drums", "every element"])
+@pytest.mark.quick(2)
 def test_the_size_of_blocks_does_not_matter(name, block, monkeypatch):
     case, samples = varied(name, 24, seed=2)
     whole = ls.solve_many(case, samples, positions=[1], keep=KEPT)

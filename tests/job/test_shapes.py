@@ -31,6 +31,7 @@ CHANGES: list[tuple[str, dict[str, Any], bool]] = [
 
 @pytest.mark.parametrize(("name", "changes", "alike"), CHANGES)
 @pytest.mark.parametrize("engine", ["vectorised", "compiled"])
+@pytest.mark.quick(6)
 def test_an_answer_does_not_depend_on_what_was_solved_before(
     name: str, changes: dict[str, Any], alike: bool, engine: str, monkeypatch: Any
 ) -> None:

@@ -15,6 +15,7 @@ SAME = ["8e7 N/m", "8e7 N/m"]
 
 
 @pytest.mark.parametrize("changes", [{}, {"gears.ring.support": SAME}], ids=["matrix", "two"])
+@pytest.mark.quick(1)
 def test_places_without_a_bound_are_written_and_read(tmp_path, changes):
     result = ls.march(ls.load_case(CASE).replace(changes)).result
     place = result.positions[1].certificate.bound.place

@@ -20,6 +20,7 @@ LOADS = [10.0**k for k in range(6)]
 
 @pytest.mark.parametrize("factor", LOADS)
 @pytest.mark.parametrize("name", ["light_load", "light_load_2"])
+@pytest.mark.quick(3)
 def test_every_load_is_certified(name, factor):
     case = ls.load_case(HERE / f"{name}.toml")
     torque = case.operating.input_torque[0] * factor

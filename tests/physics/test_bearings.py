@@ -109,6 +109,7 @@ def test_a_bearing_without_clearance_is_an_elastic_or_a_rigid_one():
 
 @pytest.mark.parametrize("clearance", ["0 um", "0.3 um", "5 um", "40 um"])
 @pytest.mark.parametrize(("key", "stiffness"), [*(law[:2] for law in LAWS), ("stiffness", "rigid")])
+@pytest.mark.quick(4)
 def test_shares_of_planets_in_bearings_agree_with_50_digits(clearance, key, stiffness):
     case = planets_in_bearings(clearance, stiffness, key)
     found, exact = ls.solve(case).positions[0], reference(build_train(case))
@@ -171,6 +172,7 @@ def test_clearances_of_bearings_are_samples_of_one_machine():
 
 @pytest.mark.parametrize("engine", ["vectorised", "compiled"])
 @pytest.mark.parametrize(("key", "stiffness", "power"), LAWS[1:])
+@pytest.mark.quick(2)
 def test_laws_of_rolling_bearings_are_samples_of_one_machine(key, stiffness, power, engine):
     """Loads from next to nothing, where a bearing is soft, to ten times as much."""
     case = planets_in_bearings("5 um", stiffness, key)

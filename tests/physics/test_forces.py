@@ -86,6 +86,7 @@ def test_pins_pass_weights_on_to_the_carrier():
 
 
 @pytest.mark.parametrize("seed", [2, 4, 6, 8, 10, 14])
+@pytest.mark.quick(2)
 def test_forces_on_planetary_sets_agree_with_50_digits(seed):
     case = case_of(SETS, seed)
     drive = max(map(abs, ls.solve(case, positions=[1]).positions[0].loads.meshes.values()))

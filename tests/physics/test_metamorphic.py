@@ -141,6 +141,7 @@ FRAMES = {
 
 @pytest.mark.parametrize("frame", FRAMES)
 @every_case
+@pytest.mark.quick(3)
 def test_the_frame_does_not_matter(name, frame):
     """Torques stay, displacements and reactions turn with the frame."""
     case, q = CASES[name](), FRAMES[frame]
@@ -408,6 +409,7 @@ def test_positions_do_not_know_of_each_other(name):
 
 
 @every_case
+@pytest.mark.quick(3)
 def test_solving_twice_gives_the_same_bits(name):
     case = CASES[name]()
     one, other = (answer(build_train(case))[0] for _ in range(2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable
 
 import numpy as np
@@ -129,6 +130,7 @@ LOOPS: dict[str, Callable[[float | None], Built]] = {
 @pytest.mark.parametrize("backlash", [None, 8e-5])
 @pytest.mark.parametrize("torque", [700.0, -700.0])
 @pytest.mark.parametrize("name", LOOPS)
+@pytest.mark.quick(4)
 def test_a_loop_over_sets_is_that_of_rigid_bodies(
     name: str, torque: float, backlash: float | None
 ) -> None:
@@ -244,3 +246,62 @@ def test_a_ravigneaux_set_has_its_gears(
     position = ls.solve(case).positions[0]
     assert position.loads.gears[output] == pytest.approx(-300.0 * ratio, rel=1e-9)
     assert sum(position.loads.gears.values()) == pytest.approx(0.0, abs=1e-8)
+
+
+ENGINES = """
+[operating]
+input = "e1"
+output = "bull"
+torque = "900 N*m"
+external = { e2 = "-300 N*m" }
+[gears]
+bull = { base_radius = "260 mm", centre = ["0 mm", "0 mm"] }
+e1 = { base_radius = "45 mm", centre = { distance = "327 mm", angle = "30 deg" } }
+e2 = { base_radius = "45 mm", centre = { distance = "327 mm", angle = "170 deg" } }
+[meshes]
+e1-bull.stiffness = "3e5 N*m/rad"
+e2-bull.stiffness = "3e5 N*m/rad"
+"""
+ROTORS = """
+[operating]
+input = "e1"
+output = "r1"
+torque = "600 N*m"
+external = { e2 = "1000 N*m", r2 = "-2400 N*m" }
+[gears]
+e1 = { base_radius = "40 mm", centre = ["0 mm", "170 mm"] }
+r1 = { base_radius = "120 mm", centre = ["0 mm", "0 mm"] }
+i1 = { base_radius = "50 mm", centre = ["181 mm", "0 mm"] }
+i2 = { base_radius = "50 mm", centre = ["181 mm", "0 mm", "2 m"] }
+r2 = { base_radius = "120 mm", centre = ["0 mm", "0 mm", "2 m"] }
+e2 = { base_radius = "40 mm", centre = ["0 mm", "170 mm", "2 m"] }
+[meshes]
+e1-r1.stiffness = "3e5 N*m/rad"
+e2-r2.stiffness = "3e5 N*m/rad"
+r1-i1.stiffness = "3e5 N*m/rad"
+i2-r2.stiffness = "3e5 N*m/rad"
+[shafts]
+i1-i2.stiffness = "1e4 N*m/rad"
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (ENGINES, {"e1-bull": 900.0, "e2-bull": -300.0}),
+        # The second rotor takes 3000 from its engine and gives 600 back over the shaft, at its
+        # gears 600·50/120.
+        (ROTORS, {"e1-r1": 600.0, "e2-r2": 1000.0, "r1-i1": -600.0, "i2-r2": -250.0}),
+    ],
+    ids=["an engine that brakes", "power against the names"],
+)
+def test_torques_from_outside_press_the_flanks_that_statics_tells(text, expected):
+    """Flanks without a backlash, one for each mesh; with one both are there."""
+    case = ls.Case(tomllib.loads(text))
+    assert ls.solve(case).positions[0].torque == pytest.approx(expected, rel=1e-12)
+    both = case.replace({f'meshes."{name}".backlash': "20 um" for name in expected})
+    assert ls.solve(both).positions[0].torque == pytest.approx(expected, rel=1e-9)
+    key = "operating.external.e2"
+    torque = case.operating.external["e2"].si
+    found = ls.solve_many(case.replace({key: "1 N*m"}), {f"{key} [N*m]": [torque, torque]})
+    assert found.torque[1, 0].values == pytest.approx(list(expected.values()), rel=1e-12)

@@ -291,6 +291,7 @@ def drawn(seed: int) -> tuple[ls.Case, Set, str, float, set[str]]:
 
 
 @pytest.mark.parametrize("seed", mostly_slow(range(200), range(60)))
+@pytest.mark.quick(10)
 def test_random_sets_are_those_of_a_second_model(seed: int) -> None:
     case, second, load, torque, held = drawn(seed)
     found = ls.solve(case).positions[0].equilibrium

@@ -46,6 +46,7 @@ def idler(stiffness: float, side: float) -> Case:
 
 @pytest.mark.parametrize("part", [0.5, 0.857, 0.938, 0.968, 0.984, 0.997])
 @pytest.mark.parametrize("side", [0.002, -0.001, 0.02, 0.2])
+@pytest.mark.quick(4)
 def test_the_idler_is_where_the_closed_form_has_it(part: float, side: float) -> None:
     stiffness = PRESSED / DISTANCE / part
     expected = side / (stiffness - PRESSED / DISTANCE)

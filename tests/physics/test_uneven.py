@@ -60,6 +60,7 @@ def turned(angle: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("load", "output", "held"), CHOICES)
+@pytest.mark.quick(2)
 def test_every_step_is_the_set_placed_anew(load: str, output: str, held: str) -> None:
     """Explicitly: planets, what is on the carrier, and eccentricities where the step has them."""
     case = mounted(load, output, held)

@@ -31,6 +31,7 @@ def without_bounds(result):
 
 
 @pytest.mark.parametrize("ending", ["json", "nc"])
+@pytest.mark.quick(2)
 def test_a_result_survives_its_file_bit_for_bit(result, ending, tmp_path):
     path = tmp_path / "deep" / f"result.{ending}"
     (result.to_json if ending == "json" else result.to_netcdf)(path)
@@ -73,6 +74,7 @@ def test_labelled_arrays_hold_the_same_figures(result):
     assert all(v.attrs["units"] and v.attrs["long_name"] for v in data.data_vars.values())
 
 
+@pytest.mark.quick(2)
 def test_labelled_arrays_do_not_change_the_result(result, tmp_path):
     arrays = result.dataset
     with pytest.raises(ValueError, match="read-only"):

@@ -134,6 +134,7 @@ def test_no_figure_can_be_something_else_or_missing(result):
         assert loads(without(document, path)) is None, path
 
 
+@pytest.mark.quick(1)
 def test_every_claim_is_looked_at(result):
     """The quick twin of the slow tests: claims and derived figures of the first position."""
     document = json.loads(result.to_json())
@@ -281,6 +282,7 @@ def test_a_result_of_some_positions_is_whole_if_no_more_were_requested(small):
         lambda a: a.assign_attrs({DOCUMENT: 1.0}),
     ],
 )
+@pytest.mark.quick(2)
 def test_arrays_that_do_not_agree_with_their_result_are_refused(small, tmp_path, change):
     file, changed_file = tmp_path / "good.nc", tmp_path / "changed.nc"
     small.to_netcdf(file)
@@ -322,6 +324,7 @@ def test_arrays_that_another_program_wrote_again_are_refused(small, tmp_path):
         ({"stamp": {f"x{k}": 1 for k in range(100_000)}}, ""),
     ],
 )
+@pytest.mark.quick(2)
 def test_a_small_file_of_many_mistakes_takes_a_moment_and_little_memory(tmp_path, change, wanted):
     """A million empty positions, 4 MB, took more than 5 GB and ended the process."""
     document = json.loads(ls.solve(shipped("star/floating_sun_3")).to_json())

@@ -115,6 +115,7 @@ def test_opposed_arcs_are_known_where_neighbours_stand_firm():
 
 
 @pytest.mark.parametrize("name", VARIED)
+@pytest.mark.quick(3)
 def test_the_numbers_of_a_sample_are_those_of_its_scene(name):
     """Gaps, compliances, loads and radial laws of random samples, in the units of the elements."""
     case, samples = varied(name, 6, seed=7)

@@ -47,6 +47,7 @@ def agrees(case: str, index: int, tolerance: float, **options: object) -> None:
 
 
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.quick(4)
 def test_the_reference_itself_is_certified(case):
     for index in ends(case):
         assert certify(train_of(case), reference(case, index)).passed
@@ -56,6 +57,7 @@ def test_the_reference_itself_is_certified(case):
 @pytest.mark.parametrize("method", ["newton", "picard"])
 @pytest.mark.parametrize("solver", ["clarabel", "cvxpy"])
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.quick(12)
 def test_back_ends_and_methods_agree(case, solver, method, reduce):
     for index in ends(case):
         agrees(case, index, AGREE, solver=solver, method=method, reduce=reduce)
@@ -63,6 +65,7 @@ def test_back_ends_and_methods_agree(case, solver, method, reduce):
 
 @pytest.mark.parametrize("reduce", [True, False], ids=["reduced", "whole"])
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.quick(4)
 def test_the_first_order_method_agrees_or_declines(case, reduce):
     """OSQP solves quadratic programmes; where a cone is in play it must say so, not answer."""
     for index in ends(case):

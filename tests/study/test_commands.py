@@ -183,6 +183,7 @@ def test_compare_and_fit(command, measured, tmp_path):
         ("march", "nothing to remember"),
     ],
 )
+@pytest.mark.quick(2)
 def test_a_study_that_the_case_holds(command, measured, name, shows):
     result = command("study", measured, name)
     assert result.exit_code == 0

@@ -205,6 +205,7 @@ def sets_along(
     ],
     ids=["coast flanks", "round ring", "all elements"],
 )
+@pytest.mark.quick(1)
 def test_a_scan_of_certified_sets_finds_the_same_events(case, key, ends, unit):
     low, high = ends
     found = ls.critical(case(), key, f"{low} {unit}", f"{high} {unit}", positions=[1])
@@ -412,6 +413,7 @@ def two_paths(support: str) -> ls.Case:
 
 @pytest.mark.parametrize("support", ["rigid", "2e8 N/m"])
 @pytest.mark.parametrize("ends", [(-300, 300), (-300, 0), (-10, -0.0001), (-3, 3), (-0.02, 300)])
+@pytest.mark.quick(3)
 def test_what_carries_nothing_does_not_change(support, ends) -> None:
     """While an idler may turn freely, that it touches at the end of its window is no event."""
     case = two_paths(support)

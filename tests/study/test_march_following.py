@@ -49,6 +49,7 @@ ROOMS = [
 
 @pytest.mark.parametrize("rooms", ROOMS)
 @pytest.mark.parametrize("friction", [0.002, 0.05, 0.3])
+@pytest.mark.quick(4)
 def test_from_no_slip_the_law_is_the_one_without_memory(friction, rooms):
     train = with_splines(1000.0, friction, rooms)
     alone = certified(train, 1).equilibrium
@@ -65,6 +66,7 @@ def test_from_no_slip_the_law_is_the_one_without_memory(friction, rooms):
         [*product((0.002, 0.05, 0.3), ROOMS[:-1]), (0.3, ROOMS[-1])],
     ),
 )
+@pytest.mark.quick(5)
 def test_every_step_is_within_what_its_own_torque_allows(friction, rooms):
     before = {g: np.zeros(3) for g in rooms}
     for load in LOADS:

@@ -101,6 +101,7 @@ def disagreeing(verdicts_by_key: dict[str, Verdict]) -> dict[str, Verdict]:
         pytest.param("two_path/clocking_error", None, marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.quick(2)
 def test_differences_of_full_solves(name, keys):
     case = shipped(name)
     found = sensitivity(case, keys, positions=[1])
@@ -201,6 +202,7 @@ def test_displacements_and_shares_follow():
 
 
 @pytest.mark.parametrize("key", ["rings.4.float", "errors.6.installation[1]"])
+@pytest.mark.quick(1)
 def test_a_kink_has_a_derivative_to_each_side_and_says_so(key):
     """At the critical float the stop is about to let go: nothing changes on one side."""
     case = about_to_leave()
@@ -481,6 +483,7 @@ def on_a_matrix(xx: float, xy: float, yy: float) -> ls.Case:
     ],
     ids=str,
 )
+@pytest.mark.quick(2)
 def test_entries_of_a_support_s_matrix(matrix) -> None:
     """K x = p, so that dx = −K⁻¹ dK x: also where its directions jump or are any."""
     case, k = on_a_matrix(*matrix), np.array([matrix[:2], matrix[1:]])

@@ -83,6 +83,7 @@ def run(disk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
 
 
 @pytest.mark.parametrize("words", mostly_slow([(w,) for w in WRITING], WRITING[:5]), ids=name_of)
+@pytest.mark.quick(2)
 def test_a_full_disk_is_reported_and_nothing_is_left(run, disk, words):
     fill(disk, 0)
     code, output = run(*words)
@@ -97,6 +98,7 @@ def test_a_full_disk_is_reported_and_nothing_is_left(run, disk, words):
 @pytest.mark.parametrize(
     "words", [w for w in WRITING if Path(str(w[-1])).suffix in {".nc", ".html"}], ids=name_of
 )
+@pytest.mark.quick(2)
 def test_a_disk_that_fills_up_while_it_is_written_leaves_what_was_there(run, disk, words, pages):
     file = Path(str(words[-1]).replace("DISK", str(disk)))
     file.write_text("old", encoding="utf-8")
@@ -175,6 +177,7 @@ def test_compiled_code_that_finds_no_room_is_used_all_the_same(disk, tmp_path):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
 @pytest.mark.parametrize("words", [("run", SUN), ("schema",), ("--help",), ("--version",)])
+@pytest.mark.quick(2)
 def test_a_full_disk_behind_standard_output_is_reported(words):
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(

@@ -124,6 +124,7 @@ def means_what_the_case_means(case: ls.Case, samples: Mapping[str, Sequence]) ->
 
 
 @pytest.mark.parametrize("key", FAST)
+@pytest.mark.quick(9)
 def test_a_key_that_becomes_an_array(key):
     """Its values enter the arrays as they enter a train built from the case."""
     case = FAST[key][0]().replace(PREPARED.get(key, {}))

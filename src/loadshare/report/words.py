@@ -11,6 +11,7 @@ from loadshare.certify.validity import LABELS
 from loadshare.report.numbers import runs, significant
 from loadshare.report.units import engineering
 from loadshare.results import Position, Result
+from loadshare.results.differences import ROUND_OFF
 from loadshare.train.period import Period
 
 ALONG = 1e-9
@@ -123,12 +124,26 @@ DIGITS = 5
 def undetermined_lines(positions: Sequence[Position]) -> list[str]:
     """Return a line for every range, with the coordinates that have it; none if all is determined.
 
-    Over several positions a coordinate is given from the least to the largest of all its values.
+    Over several positions a coordinate is given from the least to the largest of all its values. An
+    end that is round-off beside those of the others is 0; what has no other is left out.
     """
     groups: dict[str, list[str]] = {}
-    for name in dict.fromkeys(name for p in positions for name in p.undetermined):
-        ranges = [p.undetermined[name] for p in positions if name in p.undetermined]
-        text = range_text(name, min(r[0] for r in ranges), max(r[1] for r in ranges))
+    every = {
+        name: [p.undetermined[name] for p in positions if name in p.undetermined]
+        for name in dict.fromkeys(name for p in positions for name in p.undetermined)
+    }
+    largest: dict[str, float] = {}
+    for name, ranges in every.items():
+        kind = name.rpartition(" ")[2]
+        sizes = [abs(end) for both in ranges for end in both if math.isfinite(end)]
+        largest[kind] = max(largest.get(kind, 0.0), *sizes, 0.0)
+    for name, ranges in every.items():
+        least = ROUND_OFF * largest[name.rpartition(" ")[2]]
+        ends = min(r[0] for r in ranges), max(r[1] for r in ranges)
+        low, high = (0.0 if abs(end) <= least else end for end in ends)
+        if low == high == 0.0:
+            continue
+        text = range_text(name, low, high)
         if len(ranges) < len(positions):
             text += f", at {len(ranges)} of {len(positions)} positions"
         groups.setdefault(text, []).append(name)

@@ -44,7 +44,9 @@ def turned_meshes(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Flags
     torque = np.stack(np.broadcast_arrays(*map(np.atleast_1d, case.operating.input_torque)))
     names = {n for n, m in case.meshes.items() if not m.given("backlash", "normal_backlash")}
     against = _against_the_names(case, torque)
-    pressed = _pressed(case, gears, torque) if names and has_sets(case.gears) else {}
+    # Elsewhere the torque of the input runs through all meshes alike.
+    by_load = has_sets(case.gears) or case.operating.external
+    pressed = _pressed(case, gears, torque) if names and by_load else {}
     problems = []
     found = {}
     for name in case.meshes:

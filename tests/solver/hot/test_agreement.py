@@ -33,6 +33,7 @@ def floats(position: Position) -> dict[tuple[str, int], float]:
 
 
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.quick(5)
 def test_every_position_of_a_shipped_case(case):
     """Also what the equilibrium leaves open: both give the displacement of least norm."""
     hot, other = ls.solve(shipped(case)), ls.solve(shipped(case), solver="clarabel")
@@ -73,6 +74,7 @@ def agrees(case: ls.Case) -> bool:
 
 
 @pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
+@pytest.mark.quick(1)
 def test_a_random_train(family):
     """What it answers is right, and it answers nearly all: or the ladder would hide its loss."""
     answered = []

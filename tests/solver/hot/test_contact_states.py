@@ -223,6 +223,7 @@ def test_a_limit_does_not_hold_from_outside(name, place, radius, back):
 
 
 @pytest.mark.parametrize("name", ["splines", "every element", "round ring", "elastic round ring"])
+@pytest.mark.quick(2)
 def test_a_solved_element_stands_on_its_law(name):
     """In random samples: the force of every radial element is on the train's graph at its radius,
     and it stands on the piece that its code names.

@@ -117,6 +117,7 @@ def test_every_position_of_a_shipped_case(name):
 
 
 @pytest.mark.parametrize("name", VARIED)
+@pytest.mark.quick(3)
 def test_random_samples(name):
     """Of every position; nearly all of them are solved on the hot path."""
     case, samples = varied(name, 40)

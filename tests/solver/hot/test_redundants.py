@@ -48,6 +48,7 @@ def test_the_factor_is_zero_where_it_is_said_to_be(branches):
 
 
 @pytest.mark.parametrize("branches", [16, 32, 64, 128])
+@pytest.mark.quick(2)
 def test_entries_of_the_factor_grow_with_the_branches_alone(branches):
     _, n = local(_statics(branches))
     assert len(eliminated(n, n[:0], 0)[1].entries(0)[0]) < 4 * branches

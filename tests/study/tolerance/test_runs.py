@@ -201,6 +201,7 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
         (None, lambda v: np.nextafter(v, 9.0)),
     ],
 )
+@pytest.mark.quick(2)
 def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change, caplog):
     """Whoever recomputes its digest has its samples solved again; without, all of it is."""
     out = tmp_path / "study"
@@ -431,7 +432,7 @@ def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone():
         "bearings.planet1.clearance": {"distribution": "uniform", "low": "10 um", "high": "60 um"},
         "gears.carrier.temperature": {"distribution": "uniform", "low": "0 K", "high": "80 K"},
     }
-    found = ls.tolerance(case, inputs, samples=16, indices=0)
+    found = ls.tolerance(case, inputs, samples=8, indices=0)
     frame = found.to_frame()
     # The pin grows by 11.5e-6 of its 50 mm in diameter for every kelvin.
     left = frame["bearings.planet1.clearance [um]"]

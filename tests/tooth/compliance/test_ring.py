@@ -76,6 +76,7 @@ def test_a_ring_of_forty_depths_is_flat():
 
 
 @pytest.mark.parametrize("ring", [EXTERNAL, INTERNAL])
+@pytest.mark.quick(1)
 def test_against_plane_finite_elements(ring):
     """The same tractions on a meshed ring, root and next tooth. Quadratic elements, eight over
     a root, miss 0.2 % of the lean, next to the ends of the traction. The mesh swells in plane

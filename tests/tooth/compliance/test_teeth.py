@@ -167,6 +167,7 @@ RIMS = {"thin": (0.045, thin), "middling": (0.035, finite), "deep": (0.02, deep)
 
 @pytest.mark.parametrize("rim", RIMS)
 @pytest.mark.parametrize("u", [0.6, 0.75, 0.9, 1.0])
+@pytest.mark.quick(3)
 def test_slices_against_finite_elements(rim, u):
     """Even load, on rims of 1 to 3.5 tooth heights: measured 2 to 8 % too stiff. On half-planes the
     same teeth are 3 % too soft to 43 % too stiff, and loaded neighbours do not move them.

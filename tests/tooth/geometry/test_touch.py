@@ -54,6 +54,7 @@ def least_turn(mesh, phase, found):
 
 @pytest.mark.parametrize("name", CYLINDRICAL)
 @pytest.mark.parametrize("phase", PHASES)
+@pytest.mark.quick(2)
 def test_a_pair_touches_where_a_search_over_its_flank_finds_it(name, phase):
     """Lines of contact alone are 1 to 137 µrad late here, most where a pair stands far off."""
     mesh = CYLINDRICAL[name]

@@ -59,6 +59,7 @@ def test_contact_changes_where_pairs_come_and_go():
 
 
 @pytest.mark.parametrize("name", mostly_slow(PAIRS, ("relieved", "internal")))
+@pytest.mark.quick(1)
 def test_the_mean_does_not_hang_on_the_positions(name):
     """Mean deflection under T against 401 positions, which are within 4e-4 themselves.
 
@@ -85,6 +86,7 @@ def test_five_points_alias_a_spur_pair():
 
 
 @pytest.mark.parametrize("name", mostly_slow(PAIRS, ("relieved", "internal")))
+@pytest.mark.quick(1)
 def test_the_shape_converges(name):
     """Order 1 or better on average over the cycle: only the part about a jump keeps its error."""
     course = {

@@ -45,6 +45,7 @@ def test_a_law_file_holds_the_law_bit_for_bit(spur, tmp_path):
         (('type = "external"', 'type = "round"'), "computed.gears.driver.type", "is "),
     ],
 )
+@pytest.mark.quick(2)
 def test_a_wrong_law_file_is_reported(spur, tmp_path, change, key, message):
     pair = load_pair(spur)
     text = law_text(law_of(pair, pair.analyse()))
@@ -123,6 +124,7 @@ def test_the_cache_gives_back_what_it_was_given(own_cache, spur):
         lambda b: b"\xff" + b,
     ],
 )
+@pytest.mark.quick(2)
 def test_a_damaged_entry_is_not_believed(own_cache, spur, spoil):
     pair = load_pair(spur)
     law = computed_law(pair)

@@ -193,6 +193,7 @@ def test_a_misaligned_pair_as_a_whole_is_turned_and_its_law_is_not(tmp_path):
 
 
 @pytest.mark.parametrize("key", ["deviation", "inclination"])
+@pytest.mark.quick(1)
 def test_a_tilt_about_the_middle_of_the_face_leaves_the_loaded_angle(tmp_path, key):
     """A case cannot state it, so the law keeps it: with the whole face in contact, both halves
     of the tilt cancel, and what is left of the lead at one end is not taken off the law."""

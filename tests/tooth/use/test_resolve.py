@@ -171,6 +171,7 @@ def toothed(spur, tmp_path):
         ({"gears.a.tip_radius": 0.2}, "gears.a.tip_radius", "the tip radius 0.38"),
     ],
 )
+@pytest.mark.quick(2)
 def test_teeth_that_contradict_the_pair_are_reported(toothed, changes, key, message):
     resolve(toothed)
     (problem,) = problems_of(toothed.replace(changes)).values()

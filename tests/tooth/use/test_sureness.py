@@ -16,6 +16,7 @@ RING = SPUR.replace("[driven]", '[driven]\ninternal = true\naddendum = 0.8\nrim 
 
 
 @pytest.mark.parametrize("text", [SPUR, BORED, RING, FACE])
+@pytest.mark.quick(2)
 def test_a_thinner_rim_is_stiffer_and_a_thicker_one_softer(text, tmp_path):
     effects = rim_effects(load_pair(written(tmp_path, text)))
     assert set(effects) == {"driver", "driven"}
@@ -95,6 +96,7 @@ def narrow(modules: float, compliance: str) -> str:
 
 
 @pytest.mark.parametrize(("modules", "noted"), [(2.0, True), (6.0, True), (12.0, False)])
+@pytest.mark.quick(2)
 def test_what_slices_leave_out_of_narrow_helical_teeth_is_noted(tmp_path, modules, noted):
     pair = load_pair(written(tmp_path, narrow(modules, "slices")))
     law = law_of(pair, pair.analyse())

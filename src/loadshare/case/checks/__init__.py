@@ -44,6 +44,7 @@ CHECKS = (
     carriers.check_names_of_planet_meshes,
     carriers.check_planet_shafts,
     carriers.check_held,
+    carriers.check_twisted_shafts,
     carriers.check_planet_errors,
     floats.check_support,
     floats.check_spline_law,

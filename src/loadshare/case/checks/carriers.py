@@ -123,6 +123,26 @@ def check_held(draft: Draft) -> Iterator[Problem]:
             yield draft.problem(("gears", name, "held"), what, hint="One of them is enough.")
 
 
+def check_twisted_shafts(draft: Draft) -> Iterator[Problem]:
+    """Yield elastic shafts of which no end can turn without the other."""
+    if draft.operating is None:
+        return
+    fixed = {name for name, gear in draft.gears.items() if gear.held} | {draft.operating.output}
+    for name, shaft in draft.shafts.items():
+        if shaft.stiffness == "rigid":
+            continue
+        first, second = (_on_rigid_shafts(draft, end) for end in shaft.ends)
+        joined, still = first == second, (sorted(first & fixed), sorted(second & fixed))
+        if joined or all(still):
+            what = "cannot twist: " + (
+                f"rigid shafts join {shaft.ends[0]} and {shaft.ends[1]} as well"
+                if joined
+                else f"neither {still[0][0]} nor {still[1][0]} turns"
+            )
+            hint = "Leave it out, or let one end turn without the other."
+            yield draft.problem(("shafts", name), what, hint=hint)
+
+
 def check_planet_errors(draft: Draft) -> Iterator[Problem]:
     """Yield pin errors of gears that sit on no pin, and drums about what goes round."""
     for name, errors in draft.errors.items():

@@ -24,7 +24,10 @@ def check_gear_names(draft: Draft) -> Iterator[Problem]:
             known, allowed = (
                 (carriers, allowed_carriers(carriers)) if of_planet else (gears, choices(gears))
             )
+            copies = [g for g in gears if g.startswith(name) and g[len(name) :].isdecimal()]
             hint = did_you_mean(name, known)
+            if name and copies:
+                hint = f"Give one: {', '.join(copies)}."
             yield draft.problem(path, f'"{name}" is not a gear', allowed, hint)
 
 
