@@ -69,6 +69,14 @@ def test_truth_knows_limits_that_contradict_each_other():
         assert truth.elements
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("family", FAMILIES)
+def test_every_problem_is_a_train(family):
+    """What case files allow may have become less."""
+    for number in range(COUNT):
+        build_train(FAMILIES[family].problem(number).case)
+
+
 def _claims(shift: float):
     """A method that claims the right answer with every displacement off by a factor."""
 

@@ -51,6 +51,8 @@ class Follow(NamedTuple):
     """Distance from an event at which a stretch is cut, over its width."""
     least: float = 1e-10
     """Width of a stretch that is not cut any more, over the largest value."""
+    hopeful: int = 5
+    """How often stretches are cut of which nothing was proved, before all of it is given up."""
     most: int = 2000
     """Stretches of a position; what is left then is named as not proved."""
     rounded: float = 64.0

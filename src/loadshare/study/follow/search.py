@@ -70,16 +70,18 @@ class Search:
                 shown = f"{parameter.name} = {point.value:.12g} {parameter.unit}".rstrip()
                 raise Refused(f"at {shown}: {point.why}")
         stretches = list(pairwise(points))
-        count = 0
+        count = generation = 0
         while stretches:
-            count += len(stretches)
+            count, generation = count + len(stretches), generation + 1
             left = [s for s in stretches if not self._settled(s)]
             left = self.proved_alike(left)
             left = [s for s in left if not self._crossed(s)] if count <= FOLLOW.most else left
             if count > FOLLOW.most:
                 self.gaps += [Gap(*stretch, "too many stretches") for stretch in left]
                 break
-            stretches = self._cut(left)
+            stretches = self._cut(
+                self._hopeful(left, values) if generation > FOLLOW.hopeful else left
+            )
         self.gaps = merged(self.gaps)
         self.changes += [c for c in map(self._unconfirmed, self.gaps) if c is not None]
         self.changes = distinct(self.changes, self.least)
@@ -173,6 +175,20 @@ class Search:
             self.gaps.append(Gap(first, last, "no proof was found, however close"))
             return True
         return False
+
+    def _hopeful(self, stretches: list[Stretch], values: Array) -> list[Stretch]:
+        """Give up all of a stretch between first values of which no part was proved so far."""
+        width = np.array([last.value - first.value for first, last in stretches])
+        middle = np.array([0.5 * (first.value + last.value) for first, last in stretches])
+        of = np.searchsorted(values, middle) - 1
+        left = np.bincount(of, width, len(values) - 1) < (1.0 - FOLLOW.least) * np.diff(values)
+        hopeful = left[of]
+        self.gaps += [
+            Gap(*stretch, "no part of it was proved")
+            for stretch, some in zip(stretches, hopeful.tolist(), strict=True)
+            if not some
+        ]
+        return [s for s, some in zip(stretches, hopeful.tolist(), strict=True) if some]
 
     def _unconfirmed(self, gap: Gap) -> Change | None:
         """Return the change between the ends of what is not proved, if there is one."""
