@@ -31,15 +31,16 @@ def rows_of(matrix: Array) -> Rows:
 def products(table: Array, rows: Rows) -> Array:
     """Return every row of a table (S, n) times every row of a matrix (k, n), shape (S, k)."""
     found = np.empty((len(table), len(rows.start) - 1))
-    _multiply(table, rows, found)
+    # Entry by entry: most rows have one or none.
+    row = np.repeat(np.arange(found.shape[1]), np.diff(rows.start))
+    _multiply(table, row, rows.at, rows.value, found)
     return found
 
 
 @compiled
-def _multiply(table, rows, found):  # type: ignore[no-untyped-def]
+def _multiply(table, row, at, value, found):  # type: ignore[no-untyped-def]
     for s in range(found.shape[0]):
         for k in range(found.shape[1]):
-            total = 0.0
-            for i in range(rows.start[k], rows.start[k + 1]):
-                total += rows.value[i] * table[s, rows.at[i]]
-            found[s, k] = total
+            found[s, k] = 0.0
+        for i in range(row.shape[0]):
+            found[s, row[i]] += value[i] * table[s, at[i]]
