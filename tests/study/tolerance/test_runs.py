@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from pyarrow import parquet
-from tests.support import CASES, shipped
+from tests.support import CASES, mostly_slow, shipped
 
 import loadshare as ls
 from loadshare.lock import alone_in
@@ -422,7 +422,8 @@ def test_a_sample_that_makes_no_case_does_not_take_others_with_it(monkeypatch):
     assert any("makes no case" in text for text in found.messages)
 
 
-def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone():
+@pytest.mark.parametrize("worst", mostly_slow((False, True), {False}))
+def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone(worst):
     """Only the train that is built of a sample shows it; the worst case is sought all the same."""
     bearing = {"clearance": "30 um", "stiffness": "1e9 N/m", "diameter": "50 mm"}
     case = shipped("planetary/four_planets").replace(
@@ -432,7 +433,7 @@ def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone():
         "bearings.planet1.clearance": {"distribution": "uniform", "low": "10 um", "high": "60 um"},
         "gears.carrier.temperature": {"distribution": "uniform", "low": "0 K", "high": "80 K"},
     }
-    found = ls.tolerance(case, inputs, samples=8, indices=0)
+    found = ls.tolerance(case, inputs, samples=8, indices=0, worst=worst)
     frame = found.to_frame()
     # The pin grows by 11.5e-6 of its 50 mm in diameter for every kelvin.
     left = frame["bearings.planet1.clearance [um]"]
