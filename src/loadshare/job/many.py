@@ -148,8 +148,8 @@ def solve_many(
     positions : iterable of int, optional
         1-based positions to solve; all by default. What only some samples have is NaN for others.
     keep : iterable of str
-        Variables to keep: "torque", "share", "pair_share"; also "displacement" and "contact_force".
-        Shares are computed from torques when they are first read.
+        Variables to keep, of "torque", "share", "pair_share" (computed when they are first read),
+        "displacement" and "contact_force".
     tolerance : float
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
@@ -173,9 +173,8 @@ def solve_many(
         distance of a torque from the exact one, over the largest), ``certified``, ``determined``,
         ``displaced`` (displacements over what their geometry allows without a warning; ``warned``
         counts those above 1), ``convex`` (nothing that is not convex carries), ``arc_curvature``
-        [N/m] that arcs take from the stiffness across them, ``rung`` (a number, which its attribute
-        ``flag_meanings`` names in order; 0 where nothing answered). What is refused is NaN; the
-        attribute ``refused`` says why, a line for each ("sample 3, position 1: …").
+        [N/m] that arcs take from the stiffness across them, ``rung`` (see ``flag_meanings``; 0
+        where nothing answered). What is refused is NaN; the attribute ``refused`` says why.
 
     Raises
     ------
@@ -187,7 +186,7 @@ def solve_many(
     Examples
     --------
     >>> import loadshare as ls
-    >>> floats = {"rings.4.float [um]": [0.0, 4.0, 12.0], "rings.5.float [um]": [0.0, 4.0, 12.0]}
+    >>> floats = {"rings.4.float [um]": [0.0, 4.0, 12.0]}
     >>> found = ls.solve_many("cases/fgfbstts/limit_ring.toml", floats, positions=[1])
     >>> bool(found.certified.all())
     True

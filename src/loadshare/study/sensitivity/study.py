@@ -87,7 +87,7 @@ def sensitivity(
     corners = [Corner(train, answer) for answer in each_certified(train, chosen)]
     rates: dict[tuple[int, str, str], Rates] = {}
     usable, skipped = [], []
-    wanted = inputs_of(case, inputs)
+    wanted, named = inputs_of(case, inputs), [inputs] if isinstance(inputs, str) else inputs or ()
     following = resolve(given, leave=given.meshes)
     for done, item in enumerate(wanted, start=1):
         if progress is not None:
@@ -97,9 +97,7 @@ def sensitivity(
             trains = Trains((case, geometry, train), own, item, chosen)
             rates |= _rates(corners, trains, item)
         except CaseError as refusal:
-            if len(wanted) == 1 or item.key in (
-                [inputs] if isinstance(inputs, str) else inputs or ()
-            ):
+            if len(wanted) == 1 or item.key in named:
                 raise
             skipped.append((item.key, refusal.problems[0].message))
         else:
