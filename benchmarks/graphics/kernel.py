@@ -289,7 +289,9 @@ def floats_of(numbers: NDArray[np.intp], n: int) -> int:
     n : int
         Number of coordinates.
     """
-    at = dict(zip(SetArrays._fields, numbers[: set_arrays._FRONT].reshape(-1, 3).tolist(), strict=False))
+    at = dict(
+        zip(SetArrays._fields, numbers[: set_arrays._FRONT].reshape(-1, 3).tolist(), strict=False)
+    )
     (_, contacts, r), (_, springs, _) = at["redundant"], at["springs"]
     turned, turning, arcs = (at[name][1] for name in ("turning_radials", "turning", "arcs"))
     size = r + turned
