@@ -96,7 +96,6 @@ def narrow(modules: float, compliance: str) -> str:
 
 
 @pytest.mark.parametrize(("modules", "noted"), [(2.0, True), (6.0, True), (12.0, False)])
-@pytest.mark.quick(2)
 def test_what_slices_leave_out_of_narrow_helical_teeth_is_noted(tmp_path, modules, noted):
     pair = load_pair(written(tmp_path, narrow(modules, "slices")))
     law = law_of(pair, pair.analyse())
