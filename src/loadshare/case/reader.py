@@ -149,10 +149,9 @@ def _read(
     # What the base assumes stays assumed: a case may only add to it.
     inherited, added = data.get("assumed", []), own.get("assumed", [])
     merge(data, own)
-    if isinstance(inherited, list):
+    if isinstance(inherited, list) and isinstance(added, list) and "assumed" in data:
         kept = still_assumed(inherited, before, walk(data))
         inherited = [inherited[number] for number in kept]
-    if isinstance(inherited, list) and isinstance(added, list) and "assumed" in data:
         data["assumed"] = [*inherited, *(item for item in added if item not in inherited)]
         files |= {("assumed", number): files[("assumed",)] for number in range(len(inherited))}
     files.update(dict.fromkeys(walk(own), str(path)))

@@ -34,6 +34,7 @@ KEPT: dict[str, Variable] = {
 }
 """Of each sample at each position, if it is requested."""
 SHARES = ("share", "pair_share")
+"""What follows from torques."""
 USUAL = ("torque", "share", "pair_share")
 """What is kept where nothing else is requested."""
 

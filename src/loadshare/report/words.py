@@ -133,12 +133,12 @@ def undetermined_lines(positions: Sequence[Position]) -> list[str]:
         for name in dict.fromkeys(name for p in positions for name in p.undetermined)
     }
     largest: dict[str, float] = {}
+    kind = {name: name.rpartition(" ")[2] for name in every}
     for name, ranges in every.items():
-        kind = name.rpartition(" ")[2]
         sizes = [abs(end) for both in ranges for end in both if math.isfinite(end)]
-        largest[kind] = max(largest.get(kind, 0.0), *sizes, 0.0)
+        largest[kind[name]] = max(largest.get(kind[name], 0.0), *sizes, 0.0)
     for name, ranges in every.items():
-        least = ROUND_OFF * largest[name.rpartition(" ")[2]]
+        least = ROUND_OFF * largest[kind[name]]
         ends = min(r[0] for r in ranges), max(r[1] for r in ranges)
         low, high = (0.0 if abs(end) <= least else end for end in ends)
         if low == high == 0.0:

@@ -181,8 +181,8 @@ class Search:
         width = np.array([last.value - first.value for first, last in stretches])
         middle = np.array([0.5 * (first.value + last.value) for first, last in stretches])
         of = np.searchsorted(values, middle) - 1
-        left = np.bincount(of, width, len(values) - 1) < (1.0 - FOLLOW.least) * np.diff(values)
-        hopeful = left[of]
+        left = np.bincount(of, width, len(values) - 1)
+        hopeful = ~np.isclose(left, np.diff(values))[of]
         self.gaps += [
             Gap(*stretch, "no part of it was proved")
             for stretch, some in zip(stretches, hopeful.tolist(), strict=True)
