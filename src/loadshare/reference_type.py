@@ -1,4 +1,7 @@
-"""How Numba compiles `by_reference`: a pointer, through which a field is read where it is."""
+"""How Numba compiles `by_reference`, and the functions of `extremes`.
+
+The former is a pointer, through which a field is read where it is; the latter are one instruction.
+"""
 
 # Numba has no types.
 # mypy: disable-error-code="misc,no-untyped-def,no-untyped-call,untyped-decorator,call-arg,override"
@@ -14,6 +17,7 @@ from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import intrinsic, models, overload, register_model
 
 from loadshare.by_reference import by_reference, set_apart
+from loadshare.extremes import larger, smaller
 
 
 class Reference(types.Type):
@@ -94,3 +98,29 @@ def _by_reference_here(fields):
 @overload(set_apart, inline="always")
 def _set_apart_here():
     return lambda: _set_apart()
+
+
+def _extreme(name: str) -> Any:
+    @intrinsic
+    def extreme(_context, number, other):
+        def code(_target, builder, _signature, values):
+            kind = values[0].type
+            called = ir.FunctionType(kind, [kind, kind])
+            return builder.call(builder.module.declare_intrinsic(name, [kind], called), values)
+
+        return types.float64(types.float64, types.float64), code
+
+    return extreme
+
+
+_largest, _smallest = _extreme("llvm.maxnum"), _extreme("llvm.minnum")
+
+
+@overload(larger, inline="always")
+def _larger_here(number, other):
+    return lambda number, other: _largest(number, other)
+
+
+@overload(smaller, inline="always")
+def _smaller_here(number, other):
+    return lambda number, other: _smallest(number, other)

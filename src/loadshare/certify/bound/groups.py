@@ -110,10 +110,13 @@ class Plan:
         """Return an empty workspace."""
         of, m, n = self.layout, len(self.layout.start) - 1, self.contacts.shape[1]
         arcs, pulls, flanks, gears = len(of.apart), len(self.pulls), len(of.arm), len(of.radius)
-        abreast = n, self.varying, 3 * gears, m, flanks, flanks, m, 2 * pulls, n, n
-        single = len(self.contacts), (arcs, 2), arcs, pulls, (pulls, 6), (pulls, 2), (pulls, 3)
-        sizes = *((size, BOUND.abreast) for size in abreast), *single
-        return Workspace(*(np.zeros(size) for size in sizes))
+        contacts, shafts = len(self.contacts), len(of.shaft)
+        rows = [gears, 3 * gears, gears, shafts, 2 * gears, n, self.varying, 3 * gears]
+        rows += [m, flanks, flanks, m, 2 * pulls, n, n, n, contacts, contacts, contacts, self._rows]
+        sizes: list[tuple[int, ...]] = [*((k,) for k in rows), (arcs, 2), (arcs,), (4,), (pulls,)]
+        sizes += [(pulls, 6), (pulls, 2), (pulls, 3)]
+        sizes += [()] * (len(Workspace._fields) - len(sizes))
+        return Workspace(*(np.zeros((*size, BOUND.abreast)) for size in sizes))
 
     def found(self, count: int) -> Found:
         """Return room for the figures of so many claims."""

@@ -1,4 +1,4 @@
-"""The certificate of one claim after another, compiled with Numba: what `batch` asks for.
+"""The certificate of claims side by side, compiled with Numba: what `batch` asks for.
 
 `of` is the train as columns, `here` the situations, `claim` the claims. First every claim is put
 into figures, `found`, and numbered by what acts in it (`claims`); then, with what `batch` makes of

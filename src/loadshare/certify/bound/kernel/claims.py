@@ -6,6 +6,7 @@ import numpy as np
 
 from loadshare.by_reference import by_reference, set_apart
 from loadshare.certify.bound.claim import EPS
+from loadshare.certify.bound.kernel.abreast import fill, put_largest, put_rows, take_row, take_rows
 from loadshare.certify.bound.kernel.forces import (
     put_balance,
     put_contacts,
@@ -14,12 +15,15 @@ from loadshare.certify.bound.kernel.forces import (
     put_springs,
     spread,
 )
-from loadshare.certify.bound.kernel.laws import contact_force, row_of
 from loadshare.certify.bound.kernel.lengths import put_gaps, put_lengths, put_limits, put_places
 from loadshare.certify.bound.kernel.options import compiled, inlined, within
-from loadshare.certify.bound.kernel.residuals import displaced, worst_residual
+from loadshare.certify.bound.kernel.residuals import put_displaced, put_worst
 from loadshare.certify.bound.laws import CLOSED, ENDLESS, LIGHT, OPEN
+from loadshare.extremes import larger, smaller
 from loadshare.settings import BOUND, CERTIFY
+
+# As numbers among others, which a processor compares side by side.
+_OPEN, _CLOSED, _LIGHT, _ENDLESS = map(float, (OPEN, CLOSED, LIGHT, ENDLESS))
 
 
 @compiled
@@ -37,101 +41,159 @@ def find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def
 
 @within
 def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def]
-    """Products with A and its transpose are those of some claims side by side.
-
-    The rest goes claim by claim.
-    """
+    """Some claims side by side, but what is rare in them: radial elements, opposed contacts."""
     set_apart()
     count, last, claims = 0, 0, len(claim.rotation)
     for first in range(0, claims, BOUND.abreast):
         width = min(BOUND.abreast, claims - first)
+        put_places(of, here, claim, first, width, work)
+        put_lengths(of, work)
+        _put_loads(of, here, claim, first, width, work)
+        put_limits(of, here, first, width, work)
+        put_gaps(of, here, first, width, work)
+        _put_acts(of, work)
+        take_rows(found.acts, first, width, work.acts)
+        before = count
         for v in range(width):
-            put_places(of, here, claim, first + v, work, v, found)
-        put_lengths(of, work, width)
-        for v in range(width):
-            s = first + v
-            top = _loads(of, here, claim, s, found)
-            limits, approach = put_limits(of, here, s, work, v)
-            widest, behind = put_gaps(of, here, s, work, v)
-            resolution = CERTIFY.resolution * (found.width[s] + limits)
-            _acts(of, here, claim, s, work, found, top, approach, widest)
-            longest, lawful, covered = put_pulls(of, here, claim, s, work, v, found, top, widest)
-            count, last = _numbered(s, found.acts, sets, count, last)
-            found.number[s] = last
-            yielded, bent, seen = put_contacts(of, here, claim, s, work, v, found, sets, resolution)
-            further = put_springs(of, here, claim, s, work, v, found, sets)
+            put_pulls(of, here, claim, first + v, work, v, found)
+            count, last = _numbered(first + v, found.acts, sets, count, last)
+            found.number[first + v] = last
             for q in range(len(of.pull_gear)):
-                at, soft = len(of.twin) + len(of.spring) + q, work.stiffest[q]
-                spread(sets, found.number[s], at, soft, soft)
-            found.residual[s] = 0.0 if lawful and covered else np.inf
-            found.width[s] = EPS * (found.width[s] + limits + longest + max(yielded, further))
-            deflection = max(bent, found.deflection[s])
-            deflection = deflection if deflection > 0.0 else CERTIFY.least_deflection
-            scale = found.scale[s], deflection, resolution
-            worst = worst_residual(of, here, claim, s, work, v, found, scale, seen)
-            found.worst[s] = worst if lawful and not behind else np.inf
-            found.deflection[s] = deflection
-            found.displaced[s] = displaced(of, claim, s, work, v, deflection)
-        put_pushes(of, work, width)
-        for v in range(width):
-            put_balance(of, here, first + v, work, v, found)
+                at, soft = len(of.twin) + len(of.spring) + q, work.stiffest[q, v]
+                spread(sets, last, at, soft, soft)
+        new = before, count
+        put_contacts(of, here, first, width, work, found, sets, new)
+        put_springs(of, here, claim, first, width, work, found, sets, new)
+        _put_scales(work)
+        put_worst(of, here, claim, first, width, work)
+        put_displaced(of, work)
+        put_pushes(work.left, work.sizes, work.force, of.start, of.at, of.value)
+        put_balance(of, work)
+        _take(first, width, work, found)
     return count
 
 
 @inlined
-def _loads(of, here, claim, s, found):  # type: ignore[no-untyped-def]
-    """Load and largest torque of a claim; returns the largest force of a flank [N]."""
-    r, load, torque, top = row_of(here.torque, s), 0.0, 0.0, 0.0
-    for g in range(len(of.radius)):
-        due = abs(here.torque[r, g])
-        load, torque = max(load, due / of.radius[g]), max(torque, due)
-    for e in range(len(of.arm)):
-        force = abs(claim.flank_force[s, e])
-        top, torque = max(top, force), max(torque, force * of.arm[e])
-    load = max(load, top)
-    found.scale[s] = load if load > 0.0 else 1.0
-    found.largest[s] = torque if torque > 0.0 else 1.0
-    return top
+def _put_scales(work):  # type: ignore[no-untyped-def]
+    """Rounding of lengths, and the deflection of cases [m]."""
+    width, deflection = work.width, work.deflection
+    for v in range(BOUND.abreast):
+        width[v] = EPS * (width[v] + work.limits[v] + work.longest[v] + work.yielded[v])
+    for v in range(BOUND.abreast):
+        bent = larger(work.bent[v], deflection[v])
+        deflection[v] = bent if bent > 0.0 else CERTIFY.least_deflection
 
 
 @inlined
-def _acts(of, here, claim, s, work, found, top, deflection, widest):  # type: ignore[no-untyped-def]
+def _take(first, width, work, found):  # type: ignore[no-untyped-def]
+    """Write what is found of the claims at hand."""
+    take_rows(found.misfit, first, width, work.apart)
+    take_rows(found.left, first, width, work.left_over)
+    take_row(found.scale, first, width, work.scale)
+    take_row(found.largest, first, width, work.largest)
+    take_row(found.push, first, width, work.largest_push)
+    take_row(found.residual, first, width, work.residual)
+    take_row(found.rounding, first, width, work.rounding)
+    take_row(found.width, first, width, work.width)
+    take_row(found.reach, first, width, work.reach)
+    take_row(found.room, first, width, work.room)
+    take_row(found.aside, first, width, work.aside)
+    take_row(found.turned, first, width, work.turned_lines)
+    take_row(found.bow, first, width, work.bow)
+    take_row(found.worst, first, width, work.worst)
+    take_row(found.deflection, first, width, work.deflection)
+    take_row(found.displaced, first, width, work.displaced)
+
+
+@inlined
+def _put_loads(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
+    """Load and largest torque of claims, and the largest force of their flanks [N]."""
+    flanks, top = len(of.arm), work.top
+    load, torque = work.scale, work.largest
+    fill(load, 0.0)
+    fill(torque, 0.0)
+    fill(top, 0.0)
+    put_rows(here.torque, first, width, work.torque)
+    put_rows(claim.flank_force, first, width, work.claimed[:flanks])
+    put_rows(claim.ring_force, first, width, work.claimed[flanks:])
+    for g in range(len(of.radius)):
+        due = work.torque[g]
+        put_largest(torque, due, 1.0)
+        put_largest(load, due, 1.0 / of.radius[g])
+    for e in range(flanks):
+        claimed = work.claimed[e]
+        put_largest(top, claimed, 1.0)
+        put_largest(torque, claimed, of.arm[e])
+    for v in range(BOUND.abreast):
+        load[v] = larger(load[v], top[v])
+        load[v] = load[v] if load[v] > 0.0 else 1.0
+        torque[v] = torque[v] if torque[v] > 0.0 else 1.0
+    for v in range(BOUND.abreast):
+        work.band[v], work.light[v] = CERTIFY.band * load[v], BOUND.light * load[v]
+    for v in range(BOUND.abreast):
+        work.root_of_light[v] = np.cbrt(work.light[v])
+
+
+@inlined
+def _put_acts(of, work):  # type: ignore[no-untyped-def]
     """Tell which contacts act, as `quick` does, and by how much the others are apart."""
-    flanks, acts, gap = len(of.arm), found.acts, work.gap
-    for c in range(len(of.twin)):
-        force = abs(contact_force(of, claim, s, c))
-        faint = force <= BOUND.noise * top and gap[c] > BOUND.apart * deflection
-        acts[s, c] = OPEN
-        if not (force == 0.0 or faint) or gap[c] <= BOUND.touching * widest:
-            acts[s, c] = CLOSED
-            if force < BOUND.light * found.scale[s]:
-                acts[s, c] = LIGHT if force >= EPS * found.scale[s] else ENDLESS
-    for c in range(flanks, len(of.twin)):
-        other = of.twin[c]
-        if other > c and acts[s, c] != OPEN and acts[s, other] != OPEN:
-            # Two opposed contacts of a ring are one that holds both ways.
-            second = contact_force(of, claim, s, c) >= contact_force(of, claim, s, other)
-            idle, held = (other, c) if second else (c, other)
-            acts[s, idle], gap[idle], acts[s, held] = OPEN, np.inf, CLOSED
-    room, aside, known = np.inf, 0.0, True
-    for c in range(len(of.twin)):
-        known &= gap[c] == gap[c]
-        if acts[s, c] == OPEN:
-            room = min(room, gap[c])
-            if c < flanks:
-                # A mesh has two flanks.
-                aside = max(aside, 2.0 * abs(claim.flank_force[s, c]) * of.arm[c])
-    found.room[s], found.aside[s] = room if known else -np.inf, aside
+    flanks, contacts, top, approach = len(of.arm), len(of.twin), work.top, work.approach
+    room, aside = work.room, work.aside
+    for v in range(BOUND.abreast):
+        work.resolution[v] = CERTIFY.resolution * (work.width[v] + work.limits[v])
+    for c in range(contacts):
+        acts, claimed, gap = work.acts[c], work.claimed[c], work.gap[c]
+        # As its force alone would have it.
+        for v in range(BOUND.abreast):
+            force = abs(claimed[v])
+            loaded = _ENDLESS if force < EPS * work.scale[v] else _LIGHT
+            acts[v] = loaded if force < work.light[v] else _CLOSED
+        for v in range(BOUND.abreast):
+            force, next_to = abs(claimed[v]), BOUND.touching * work.widest[v]
+            faint = (force <= BOUND.noise * top[v]) & (gap[v] > BOUND.apart * approach[v])
+            idle = ((force == 0.0) | faint) & (not gap[v] <= next_to)
+            acts[v] *= _OPEN if idle else 1.0
+    for c in range(flanks, contacts):
+        if of.twin[c] > c:
+            _put_opposed(work, c, of.twin[c])
+    fill(room, np.inf)
+    fill(aside, 0.0)
+    for c in range(contacts):
+        acts, claimed, gap = work.acts[c], work.claimed[c], work.gap[c]
+        for v in range(BOUND.abreast):
+            apart = gap[v] if acts[v] == OPEN else np.inf
+            room[v] = smaller(room[v], apart if gap[v] == gap[v] else -np.inf)
+        if c < flanks:
+            # A mesh has two flanks.
+            for v in range(BOUND.abreast):
+                beside = 2.0 * abs(claimed[v]) * of.arm[c]
+                aside[v] = larger(aside[v], beside if acts[v] == OPEN else 0.0)
+
+
+@inlined
+def _put_opposed(work, c, other):  # type: ignore[no-untyped-def]
+    """Let two opposed contacts of a ring that act be one that holds both ways."""
+    for v in range(BOUND.abreast):
+        if work.acts[c, v] != OPEN and work.acts[other, v] != OPEN:
+            _hold_both_ways(work, c, other, v)
+
+
+@within
+def _hold_both_ways(work, c, other, v):  # type: ignore[no-untyped-def]
+    set_apart()
+    second = work.claimed[c, v] >= work.claimed[other, v]
+    idle, held = (other, c) if second else (c, other)
+    work.acts[idle, v], work.gap[idle, v], work.acts[held, v] = OPEN, np.inf, CLOSED
 
 
 @inlined
 def _numbered(s, acts, sets, count, last):  # type: ignore[no-untyped-def]
     """Number what acts; returns how many sets there are, and the number, −1 if there are more."""
+    if last >= 0 and count > 0 and _same(acts, s, sets.first[last]):
+        return count, last
     key = np.uint64(0)
     for c in range(acts.shape[1]):
         key = key * np.uint64(6364136223846793005) + np.uint64(1 + acts[s, c])
-    if last >= 0 and count > 0 and sets.key[last] == key and _same(acts, s, sets.first[last]):
-        return count, last
     for k in range(count):
         if sets.key[k] == key and _same(acts, s, sets.first[k]):
             return count, k

@@ -4,108 +4,217 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.by_reference import set_apart
 from loadshare.certify.bound.claim import EPS
+from loadshare.certify.bound.kernel.abreast import (
+    fill,
+    put_column,
+    put_largest,
+    put_most,
+    put_multiple,
+    put_rows,
+    put_sizes,
+    put_sum,
+    put_vectors,
+)
 from loadshare.certify.bound.kernel.laws import (
-    contact_force,
-    flank_law,
     law_of,
     nearest,
+    put_laws,
     rate_of,
-    row_of,
     sticks,
     stiffest,
 )
-from loadshare.certify.bound.kernel.options import inlined
+from loadshare.certify.bound.kernel.options import inlined, within
 from loadshare.certify.bound.laws import CLOSED, ENDLESS, OPEN
-from loadshare.settings import BOUND, CERTIFY
+from loadshare.extremes import larger, smaller
+from loadshare.settings import BOUND
 
 
 @inlined
-def put_contacts(of, here, claim, s, work, v, found, sets, resolution):  # type: ignore[no-untyped-def]
+def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignore[no-untyped-def]
     """Forces and misfits of contacts.
 
-    Returns their largest compression [m], that of loaded flanks or what remains of their approach
-    at rest [m], and what is seen of residuals: length [m], work [J], pull [N] and sum of forces.
+    Writes their largest compression [m], endless where one pulls; that of loaded flanks, or what
+    remains of their approach at rest [m]; and what is seen of residuals: length [m], work [J],
+    pull [N], and a sum in which nothing that is no number is lost.
     """
-    flanks, contacts, number = len(of.arm), len(of.twin), found.number[s]
-    arcs, rw, band = contacts - len(of.apart), row_of(here.wall, s), CERTIFY.band * found.scale[s]
-    yielded, bent, weakest, reach, turned, bow = 0.0, 0.0, np.inf, np.inf, 0.0, 0.0
-    length, energy, pull, total = 0.0, 0.0, 0.0, 0.0
-    for c in range(contacts):
-        acts = found.acts[s, c] != OPEN
-        claimed = contact_force(of, claim, s, c)
-        force = claimed if acts else 0.0
-        pull, total, misfit = max(pull, -claimed), total + claimed, 0.0
-        if c < flanks:
-            work.force[c, v] = force
-            if claimed > band:
-                bent = max(bent, abs(work.at_rest[c, v]))
-        elif c < arcs:
-            work.force[of.first_stop + c - flanks, v] = force
+    for row in (work.yielded, work.bent, work.misfit, work.energy, work.pulled, work.total):
+        fill(row, 0.0)
+    fill(work.weakest, np.inf)
+    fill(work.turned_lines, 0.0)
+    fill(work.bow, 0.0)
+    fill(work.reach, np.inf)
+    for c in range(len(of.twin)):
+        claimed, acts, push, carried = work.claimed[c], work.acts[c], work.push, 0.0
+        for v in range(BOUND.abreast):
+            push[v] = claimed[v] if acts[v] != OPEN else 0.0
+        for v in range(BOUND.abreast):
+            carried += acts[v] + abs(claimed[v])
+        _put_columns(of, work, c)
+        if carried == 0.0:
+            # Nothing acts, and all are apart.
+            fill(work.apart[c], 0.0)
+            continue
+        if c < len(of.arm):
+            alike = put_laws(of, here, c, first, width, work)
+            _put_bent(work, c)
         else:
-            k = c - arcs
-            for a in range(2):
-                work.force[of.first_arc + 2 * k + a, v] = -force * work.line[k, a]
-        if acts:
-            if c < flanks:
-                law = flank_law(of, here, s, c, force, found.scale[s])
-                compression, least, most, holds = law
-                reach, bent = min(reach, holds), max(bent, compression)
-            else:
-                least = most = here.wall[rw, of.drum[c - flanks]]
-                compression = least * force
-                if c >= arcs:
-                    turned = max(turned, work.turn[c - arcs])
-                    bow = max(bow, abs(force) / of.apart[c - arcs])
-            # What opens may move by any length; of two that touch, one takes what the other cannot.
-            if of.twin[c] < 0 or work.gap[of.twin[c]] < np.inf:
-                reach = min(reach, force if found.acts[s, c] == CLOSED else np.inf)
-            # What yields without end carries no load.
-            spread(sets, number, c, least, least if found.acts[s, c] == ENDLESS else most)
-            weakest, yielded = min(weakest, force), max(yielded, abs(compression))
-            misfit = -work.gap[c] - compression
-            # With less force than the band it counts as open, as in `residuals`.
-            length = max(length, abs(misfit) if force > band else misfit)
-            energy, total = max(energy, -force * misfit - abs(force) * resolution), total + misfit
-            if force == 0.0:
-                misfit = max(misfit, 0.0)
-        elif work.gap[c] < np.inf:
-            length = max(length, -work.gap[c])
-            energy = max(energy, claimed * work.gap[c] - abs(claimed) * resolution)
-        elif claimed != 0.0:
-            # Two opposed contacts carry.
-            total = np.nan
-        found.misfit[s, c] = misfit
-    found.turned[s], found.bow[s], found.reach[s] = turned, bow, reach
-    # A contact that pulls is none.
-    return yielded if weakest >= 0.0 else np.inf, bent, (length, energy, pull, total)
+            alike = _put_wall(of, here, c, first, width, work)
+        _put_reach(of, work, c, work.reach)
+        _put_seen(work, c)
+        _spread_contact(work, c, first, width, found, sets, new, alike)
+    for v in range(BOUND.abreast):
+        # A contact that pulls is none.
+        work.yielded[v] = work.yielded[v] if work.weakest[v] >= 0.0 else np.inf
 
 
 @inlined
-def put_springs(of, here, claim, s, work, v, found, sets):  # type: ignore[no-untyped-def]
-    """Forces and misfits of elastic shafts and bearings; returns their largest deflection [m]."""
-    yielded, first = 0.0, len(of.twin)
+def _put_columns(of, work, c):  # type: ignore[no-untyped-def]
+    """Force of a contact in its column, of an arc in its two."""
+    flanks, push = len(of.arm), work.push
+    k = c - len(of.twin) + len(of.apart)
+    if k < 0:
+        force = work.force[c if c < flanks else of.first_stop + c - flanks]
+        put_multiple(force, push, 1.0)
+        return
+    for a in range(2):
+        force, line = work.force[of.first_arc + 2 * k + a], work.line[k, a]
+        for v in range(BOUND.abreast):
+            force[v] = -push[v] * line[v]
+
+
+@inlined
+def _put_bent(work, c):  # type: ignore[no-untyped-def]
+    """Deflection of a flank, loaded or at rest."""
+    bent, acts, compression = work.bent, work.acts[c], work.law[0]
+    claimed, at_rest = work.claimed[c], work.at_rest[c]
+    for v in range(BOUND.abreast):
+        bent[v] = larger(bent[v], compression[v] if acts[v] != OPEN else 0.0)
+    for v in range(BOUND.abreast):
+        bent[v] = larger(bent[v], abs(at_rest[v]) if claimed[v] > work.band[v] else 0.0)
+
+
+@inlined
+def _put_wall(of, here, c, first, width, work):  # type: ignore[no-untyped-def]
+    """Law of a stop or an arc; returns whether compliances are the same for all claims."""
+    k, push = c - len(of.twin) + len(of.apart), work.push
+    compression, least, most, holds = work.law
+    put_column(here.wall[:, of.drum[c - len(of.arm)]], first, width, least)
+    for v in range(BOUND.abreast):
+        compression[v] = least[v] * push[v]
+    for v in range(BOUND.abreast):
+        most[v], holds[v] = least[v], np.inf
+    if k >= 0:
+        for v in range(BOUND.abreast):
+            turned = work.turn[k, v] if work.acts[c, v] != OPEN else 0.0
+            work.turned_lines[v] = larger(work.turned_lines[v], turned)
+        put_largest(work.bow, push, 1.0 / of.apart[k])
+    return len(here.wall) == 1
+
+
+@inlined
+def _put_reach(of, work, c, reach):  # type: ignore[no-untyped-def]
+    """Error of a force up to which a contact stays what it is; its compression, and any pull."""
+    acts, push, compression, holds = work.acts[c], work.push, work.law[0], work.law[3]
+    yielded, weakest = work.yielded, work.weakest
+    for v in range(BOUND.abreast):
+        reach[v] = smaller(reach[v], holds[v] if acts[v] != OPEN else np.inf)
+    # What opens may move by any length; of two that touch, one takes what the other cannot.
+    if of.twin[c] < 0:
+        for v in range(BOUND.abreast):
+            reach[v] = smaller(reach[v], push[v] if acts[v] == CLOSED else np.inf)
+    else:
+        other = work.gap[of.twin[c]]
+        for v in range(BOUND.abreast):
+            alone = (acts[v] == CLOSED) & (other[v] < np.inf)
+            reach[v] = smaller(reach[v], push[v] if alone else np.inf)
+    for v in range(BOUND.abreast):
+        yielded[v] = larger(yielded[v], abs(compression[v]) if acts[v] != OPEN else 0.0)
+    for v in range(BOUND.abreast):
+        weakest[v] = smaller(weakest[v], push[v])
+
+
+@inlined
+def _put_seen(work, c):  # type: ignore[no-untyped-def]
+    """Misfit of a contact [m], and what is seen of residuals in it."""
+    claimed, acts, gap, compression = work.claimed[c], work.acts[c], work.gap[c], work.law[0]
+    apart, longest, energy, total = work.apart[c], work.misfit, work.energy, work.total
+    for v in range(BOUND.abreast):
+        apart[v] = -gap[v] - (compression[v] if acts[v] != OPEN else 0.0)
+    # With less force than the band it counts as open, as in `residuals`.
+    for v in range(BOUND.abreast):
+        carries = (acts[v] != OPEN) & (claimed[v] > work.band[v])
+        longest[v] = larger(longest[v], abs(apart[v]) if carries else apart[v])
+    for v in range(BOUND.abreast):
+        spent = -claimed[v] * apart[v] - abs(claimed[v]) * work.resolution[v]
+        energy[v] = larger(energy[v], spent)
+    put_most(work.pulled, claimed, -1.0)
+    for v in range(BOUND.abreast):
+        # Idle beside an opposed one: two that carry are left to NumPy.
+        seen = apart[v] if apart[v] > -np.inf or claimed[v] != 0.0 else 0.0
+        total[v] += claimed[v] + (0.0 * seen)
+    for v in range(BOUND.abreast):
+        misfit = apart[v] if acts[v] != OPEN else 0.0
+        work.given[v] = larger(misfit, 0.0) if claimed[v] == 0.0 else misfit
+    put_multiple(apart, work.given, 1.0)
+
+
+@inlined
+def _spread_contact(work, c, first, width, found, sets, new, alike):  # type: ignore[no-untyped-def]
+    """Let the compliances of sets hold those of a contact that acts in them."""
+    _, least, most, _ = work.law
+    if alike:
+        for number in range(*new):
+            spread(sets, number, c, least[0], least[0])
+        return
+    for v in range(width):
+        acts = work.acts[c, v]
+        if acts != OPEN:
+            # What yields without end carries no load.
+            upper = least[v] if acts == ENDLESS else most[v]
+            spread(sets, found.number[first + v], c, least[v], upper)
+
+
+@inlined
+def put_springs(of, here, claim, first, width, work, found, sets, new):  # type: ignore[no-untyped-def]
+    """Forces and misfits of elastic shafts and bearings; the largest deflection so far [m]."""
+    soft, contacts = work.given, len(of.twin)
+    put_rows(claim.shaft_torque, first, width, work.wound)
+    put_vectors(claim.support_force, first, width, work.borne)
     for k in range(len(of.spring)):
         j, number, axis = of.spring[k, 0], of.spring[k, 1], of.spring[k, 2]
+        force, length, arm = work.force[j], work.length[j], of.spring_arm[k]
+        apart, claimed = work.apart[contacts + k], work.wound[number]
         if axis == 2:
-            soft = of.spring_arm[k] ** 2 / here.torsion[row_of(here.torsion, s), number]
-            force = claim.shaft_torque[s, number] / of.spring_arm[k]
+            put_column(here.torsion[:, number], first, width, soft)
+            alike = len(here.torsion) == 1
         else:
-            soft = 1.0 / here.support[row_of(here.support, s), number, axis]
-            force = claim.support_force[s, number, axis]
-        spread(sets, found.number[s], first + k, soft, soft)
-        work.force[j, v] = force
-        found.misfit[s, first + k] = work.length[j, v] - soft * force
-        yielded = max(yielded, abs(soft * force))
-    return yielded
+            put_column(here.support[:, number, axis], first, width, soft)
+            alike, claimed = len(here.support) == 1, work.borne[2 * number + axis]
+        put_multiple(force, claimed, 1.0 / arm)
+        for v in range(BOUND.abreast):
+            soft[v] = arm * arm / soft[v]
+        for v in range(BOUND.abreast):
+            work.yielded[v] = larger(work.yielded[v], abs(soft[v] * force[v]))
+        for v in range(BOUND.abreast):
+            apart[v] = length[v] - soft[v] * force[v]
+        put_largest(work.misfit, apart, 1.0)
+        put_sum(work.total, apart, 1.0)
+        if alike:
+            for new_set in range(*new):
+                spread(sets, new_set, contacts + k, soft[0], soft[0])
+        else:
+            for v in range(width):
+                spread(sets, found.number[first + v], contacts + k, soft[v], soft[v])
 
 
 @inlined
-def put_pulls(of, here, claim, s, work, v, found, top, widest):  # type: ignore[no-untyped-def]
+def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-def]
     """Forces and misfits of radial elements: the point of their graph next to what is claimed.
 
-    Returns the largest of their lengths [m], whether their laws have a meaning, and whether they
-    are covered by the bound.
+    Writes the largest of their lengths [m], whether their laws have a meaning (1 or 0), and whether
+    the bound covers them as well.
     """
     contacts, at = len(of.twin), len(of.twin) + len(of.spring)
     longest, lawful, covered = 0.0, True, True
@@ -123,8 +232,8 @@ def put_pulls(of, here, claim, s, work, v, found, top, widest):  # type: ignore[
         stick, level, reach = law[1], law[2], law[3]
         lawful &= force < np.inf and distance < np.inf
         lawful &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
-        noise = BOUND.noise * top
-        acts = level > 0.0 or force > noise or reach - distance <= BOUND.near * widest
+        noise, next_to = BOUND.noise * work.top[v], BOUND.near * work.widest[v]
+        acts = level > 0.0 or force > noise or reach - distance <= next_to
         found.acts[s, contacts + q] = CLOSED if acts else OPEN
         soft, spare, misfit_x, misfit_y, slips, near = 0.0, np.inf, 0.0, 0.0, 0.0, 0.0
         if acts:
@@ -141,26 +250,27 @@ def put_pulls(of, here, claim, s, work, v, found, top, widest):  # type: ignore[
             covered &= q >= of.rounds or here.round_power[0, q] == 1.0
             if q >= of.rounds:
                 rate = rate_of(of, here, s, q)
-                covered &= rate == 0.0 or found.aside[s] == 0.0
+                covered &= rate == 0.0 or work.aside[v] == 0.0
         else:
             fx, fy = 0.0, 0.0
-            found.room[s] = min(found.room[s], reach - distance)
+            work.room[v] = min(work.room[v], reach - distance)
         longest = max(longest, abs(of.centre[q, 0]) + abs(of.centre[q, 1]) + distance)
         work.force[j, v], work.force[j + 1, v] = fx, fy
         work.excess[2 * q, v], work.excess[2 * q + 1, v] = claimed_x - fx, claimed_y - fy
         for k in range(len(law)):
-            work.law[q, k] = law[k]
-        work.offset[q, 0], work.offset[q, 1] = away_x, away_y
-        work.pull[q, 0], work.pull[q, 1], work.pull[q, 2] = claimed_x, claimed_y, lifting
-        work.stiffest[q] = stiffest(law)
-        found.misfit[s, at + 2 * q], found.misfit[s, at + 2 * q + 1] = misfit_x, misfit_y
+            work.graph[q, k, v] = law[k]
+        work.offset[q, 0, v], work.offset[q, 1, v] = away_x, away_y
+        work.pull[q, 0, v], work.pull[q, 1, v], work.pull[q, 2, v] = claimed_x, claimed_y, lifting
+        work.stiffest[q, v] = stiffest(law)
+        work.apart[at + 2 * q, v], work.apart[at + 2 * q + 1, v] = misfit_x, misfit_y
         found.held[s, q] = np.inf
         if rate > 0.0 and near <= 0.0 and sticks(law, force):
             # So it does until the torque is half of what it is.
             found.held[s, q], rate = 0.5 * level / rate, 0.0
         found.soft[s, q], found.spare[s, q], found.rate[s, q] = soft, spare, rate
         found.slip[s, q, 0], found.slip[s, q, 1] = slips * x, slips * y
-    return longest, lawful, covered
+    work.longest[v], work.lawful[v] = longest, 1.0 if lawful else 0.0
+    work.covered[v] = 1.0 if lawful and covered else 0.0
 
 
 @inlined
@@ -171,49 +281,59 @@ def spread(sets, number, at, least, most):  # type: ignore[no-untyped-def]
         sets.most[number, at] = max(sets.most[number, at], most)
 
 
-@inlined
-def put_pushes(of, work, width):  # type: ignore[no-untyped-def]
+@within
+def put_pushes(left, sizes, force, start, at, value):  # type: ignore[no-untyped-def]
     """What forces carry of the load at every coordinate [N], and the sizes of its terms."""
-    left, sizes, force = work.left, work.sizes, work.force
-    for c in range(len(left)):
-        for v in range(width):
-            left[c, v] = sizes[c, v] = 0.0
+    set_apart()
+    left[:], sizes[:] = 0.0, 0.0
     for j in range(len(force)):
-        for i in range(of.start[j], of.start[j + 1]):
-            value, c = of.value[i], of.at[i]
-            for v in range(width):
-                term = value * force[j, v]
-                left[c, v] -= term
-                sizes[c, v] += abs(term)
+        row = force[j]
+        for i in range(start[j], start[j + 1]):
+            factor, over, size = value[i], left[at[i]], sizes[at[i]]
+            for v in range(BOUND.abreast):
+                over[v] -= factor * row[v]
+            for v in range(BOUND.abreast):
+                size[v] += abs(factor * row[v])
 
 
 @inlined
-def put_balance(of, here, s, work, v, found):  # type: ignore[no-untyped-def]
+def put_balance(of, work):  # type: ignore[no-untyped-def]
     """Load that is left over [N]: the largest, with its rounding; and over the load of the case."""
-    left, sizes, largest, r = work.left, work.sizes, 0.0, row_of(here.torque, s)
+    left, sizes = work.left, work.sizes
+    largest, residual, rounding, total = work.largest_push, work.residual, work.rounding, work.total
     for k in range(len(of.load)):
-        due, c = here.torque[r, of.load[k, 1]] / of.load_radius[k], of.load[k, 0]
-        left[c, v] += due
-        sizes[c, v] += abs(due)
+        c = of.load[k, 0]
+        due = work.torque[of.load[k, 1]]
+        put_sum(left[c], due, 1.0 / of.load_radius[k])
+        put_sizes(sizes[c], due, 1.0 / of.load_radius[k])
+    fill(largest, 0.0)
+    fill(rounding, 0.0)
+    fill(residual, 0.0)
+    fill(total, 0.0)
     for j in range(len(work.force)):
-        largest = max(largest, abs(work.force[j, v]))
-    residual, rounding, total = 0.0, 0.0, 0.0
+        put_largest(largest, work.force[j], 1.0)
     for c in range(len(left)):
-        found.left[s, c] = left[c, v]
-        most = abs(left[c, v]) + EPS * sizes[c, v]
-        residual, total = max(residual, most), total + most
-        rounding = max(rounding, EPS * sizes[c, v])
-    found.push[s], found.rounding[s] = largest, rounding + EPS * residual
+        for v in range(BOUND.abreast):
+            most = abs(left[c, v]) + EPS * sizes[c, v]
+            residual[v] = larger(residual[v], most)
+            total[v] += most
+        put_most(rounding, sizes[c], EPS)
+    put_sum(rounding, residual, EPS)
+    for c in range(len(left)):
+        put_multiple(work.left_over[c], left[c], 1.0)
     for j in range(2 * len(of.pull_gear)):
         # What is claimed leaves it over, not the point of the graph next to it.
-        left[of.at[of.start[of.first_pull + j]], v] -= work.excess[j, v]
-    unbalanced = 0.0
+        c = of.at[of.start[of.first_pull + j]]
+        put_sum(left[c], work.excess[j], -1.0)
+    unbalanced = work.given
+    fill(unbalanced, 0.0)
     for c in range(len(left)):
-        unbalanced, total = max(unbalanced, abs(left[c, v])), total + abs(left[c, v])
-    # The largest may have passed over what is not a number.
-    known = total < np.inf
-    found.residual[s] = max(found.residual[s], residual if known else np.inf)
-    if not known:
-        found.worst[s] = np.nan if found.worst[s] < np.inf else found.worst[s]
-    elif found.worst[s] < unbalanced / found.scale[s]:
-        found.worst[s] = unbalanced / found.scale[s]
+        put_largest(unbalanced, left[c], 1.0)
+        put_sizes(total, left[c], 1.0)
+    for v in range(BOUND.abreast):
+        # The largest may have passed over what is not a number.
+        known = total[v] < np.inf
+        residual[v] = residual[v] if known and work.covered[v] > 0.0 else np.inf
+        worst, over = work.worst[v], unbalanced[v] / work.scale[v]
+        worst = over if worst < over else worst
+        work.worst[v] = worst if known or worst == np.inf else np.nan

@@ -4,21 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.certify.bound.kernel.abreast import put_column, row_of
 from loadshare.certify.bound.kernel.options import compiled, inlined
 from loadshare.settings import BOUND, LAWS
-
-
-@inlined
-def row_of(array, s):  # type: ignore[no-untyped-def]
-    """Row of a claim, or the only one."""
-    return s if len(array) > 1 else 0
-
-
-@inlined
-def contact_force(of, claim, s, c):  # type: ignore[no-untyped-def]
-    """Claimed force of a flank, stop or arc [N]."""
-    flanks = len(of.arm)
-    return claim.flank_force[s, c] if c < flanks else claim.ring_force[s, c - flanks]
 
 
 @inlined
@@ -81,24 +69,72 @@ def flank_law(of, here, s, e, force, scale):  # type: ignore[no-untyped-def]
     """Law of a flank at a force.
 
     Compression [m], smallest and largest compliance [m/N] next to it, and the error of the force
-    up to which they hold [N]. A Hertz contact that is light may lose its force: its largest is the
-    secant to none, which has no end where there is none.
+    up to which they hold [N].
     """
     light = BOUND.light * scale
     if of.is_tabled[e]:
         r = row_of(here.table, s)
         return _by_table(here.table[r, e, 0], here.table[r, e, 1], force, light)
     bending, hertz = here.bending[row_of(here.bending, s), e], here.hertz[row_of(here.hertz, s), e]
-    if hertz == 0.0:
-        return bending * force, bending, bending, np.inf
     root = np.cbrt(max(force, 0.0))
+    compression, least, most = _by_power(bending, hertz, force, root, light, np.cbrt(light))
+    return compression, least, most, _holds(hertz, force, light)
+
+
+@inlined
+def _by_power(bending, hertz, force, root, light, root_of_light):  # type: ignore[no-untyped-def]
+    """Compression [m] by a law of powers, smallest and largest compliance [m/N] next to it.
+
+    A Hertz contact that is light may lose its force: its largest is the secant to none, which has
+    no end where there is none.
+    """
     compression = bending * force + hertz * root * root
-    if force >= light:
-        soft = bending + 2.0 / 3.0 * hertz / root
-        return compression, soft, soft, 0.1 * force
-    least = bending + 2.0 / 3.0 * hertz / np.cbrt(light)
-    most = bending + hertz / root if root > 0.0 else np.inf
-    return compression, least, most, 0.1 * light
+    soft = bending + 2.0 / 3.0 * hertz / root
+    secant = bending + hertz / root
+    least = soft if force >= light else bending + 2.0 / 3.0 * hertz / root_of_light
+    most = soft if force >= light else secant
+    curved = hertz != 0.0
+    return compression, least if curved else bending, most if curved else bending
+
+
+@inlined
+def _holds(hertz, force, light):  # type: ignore[no-untyped-def]
+    """Error of a force up to which compliances next to it hold [N]."""
+    return np.inf if hertz == 0.0 else 0.1 * max(force, light)
+
+
+@inlined
+def put_laws(of, here, e, first, width, work):  # type: ignore[no-untyped-def]
+    """Laws of a flank at the forces of claims, in four rows, as `flank_law` has them.
+
+    Returns whether compliances are the same for all claims.
+    """
+    force, (compression, least, most, holds) = work.push, work.law
+    if of.is_tabled[e]:
+        for v in range(width):
+            law = flank_law(of, here, first + v, e, force[v], work.scale[v])
+            compression[v], least[v], most[v], holds[v] = law
+        return False
+    hertz, curved = work.given, 0.0
+    put_column(here.bending[:, e], first, width, least)
+    put_column(here.hertz[:, e], first, width, hertz)
+    for v in range(BOUND.abreast):
+        curved += hertz[v]
+    if curved == 0.0:
+        for v in range(BOUND.abreast):
+            most[v], holds[v] = least[v], np.inf
+        for v in range(BOUND.abreast):
+            compression[v] = least[v] * force[v]
+        return len(here.bending) == 1 and len(here.hertz) == 1
+    root, light, root_of_light = work.root, work.light, work.root_of_light
+    for v in range(BOUND.abreast):
+        root[v] = np.cbrt(max(force[v], 0.0))
+    for v in range(BOUND.abreast):
+        holds[v] = _holds(hertz[v], force[v], light[v])
+    for v in range(BOUND.abreast):
+        law = _by_power(least[v], hertz[v], force[v], root[v], light[v], root_of_light[v])
+        compression[v], least[v], most[v] = law
+    return False
 
 
 @compiled

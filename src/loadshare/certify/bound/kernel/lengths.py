@@ -4,133 +4,142 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.certify.bound.kernel.laws import row_of
+from loadshare.certify.bound.kernel.abreast import (
+    fill,
+    put_column,
+    put_largest,
+    put_most,
+    put_multiple,
+    put_product,
+    put_rows,
+    put_sum,
+    put_vectors,
+)
 from loadshare.certify.bound.kernel.options import inlined
+from loadshare.extremes import larger
+from loadshare.settings import BOUND
 
 
 @inlined
-def put_places(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-def]
-    """Coordinates, clockings and offsets of a claim [m], and where its gears are.
+def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
+    """Coordinates, clockings and offsets of claims [m], and where their gears are.
 
-    Writes the sum of the largest sizes of both as its width, and the largest offset of a centre as
-    its deflection.
+    Writes the sum of the largest sizes of both as their width, and the largest offset of a centre
+    as their deflection.
     """
-    x, varying, shift = work.x, work.varying, work.shift
-    widest, offsets, furthest, moving = 0.0, 0.0, 0.0, claim.displacement
+    x, varying, shift, moved, square = work.x, work.varying, work.shift, work.moved, work.given
+    widest, furthest = work.width, work.deflection
+    shafts = here.clocking.shape[1]
+    put_rows(claim.rotation, first, width, work.turned)
+    put_vectors(claim.displacement, first, width, moved)
+    put_rows(here.clocking, first, width, varying[:shafts])
+    put_vectors(here.offset, first, width, varying[shafts:])
+    fill(widest, 0.0)
+    fill(furthest, 0.0)
+    fill(work.limits, 0.0)
     for k in range(len(of.turn)):
-        x[of.turn[k, 0], v] = of.turn_radius[k] * claim.rotation[s, of.turn[k, 1]]
+        put_multiple(x[of.turn[k, 0]], work.turned[of.turn[k, 1]], of.turn_radius[k])
     for k in range(len(of.place)):
         at, g = of.place[k, 0], of.place[k, 1]
         for a in range(2):
-            moved = 0.0
-            for i in range(3):
-                moved += of.frame[g, a, i] * moving[s, g, i]
-            x[at + a, v] = moved
+            row, frame = x[at + a], of.frame[g, a]
+            put_multiple(row, moved[3 * g], frame[0])
+            put_sum(row, moved[3 * g + 1], frame[1])
+            put_sum(row, moved[3 * g + 2], frame[2])
     for c in range(len(x)):
-        widest = max(widest, abs(x[c, v]))
-    r, shafts = row_of(here.offset, s), here.clocking.shape[1]
-    for k in range(shafts):
-        varying[k, v] = here.clocking[row_of(here.clocking, s), k]
+        put_largest(widest, x[c], 1.0)
     for g in range(here.offset.shape[1]):
-        square = 0.0
-        for i in range(3):
-            offset = here.offset[r, g, i]
-            varying[shafts + 3 * g + i, v] = offset
-            shift[3 * g + i, v] = moving[s, g, i] + offset
-            offsets, square = max(offsets, abs(offset)), square + offset * offset
-        furthest = max(furthest, square)
+        fill(square, 0.0)
+        for i in range(3 * g, 3 * g + 3):
+            offset, row, way = varying[shafts + i], shift[i], moved[i]
+            for v in range(BOUND.abreast):
+                row[v] = way[v] + offset[v]
+            put_largest(work.limits, offset, 1.0)
+            for v in range(BOUND.abreast):
+                square[v] += offset[v] * offset[v]
+        put_most(furthest, square, 1.0)
     for g in range(len(of.carrier)):
         if of.carrier[g] >= 0:
             for i in range(3):
-                shift[3 * g + i, v] += shift[3 * of.carrier[g] + i, v]
-    found.width[s], found.deflection[s] = widest + offsets, np.sqrt(furthest)
+                put_sum(shift[3 * g + i], shift[3 * of.carrier[g] + i], 1.0)
+    put_sum(widest, work.limits, 1.0)
+    for v in range(BOUND.abreast):
+        furthest[v] = np.sqrt(furthest[v])
 
 
 @inlined
-def put_lengths(of, work, width):  # type: ignore[no-untyped-def]
+def put_lengths(of, work):  # type: ignore[no-untyped-def]
     """Lengths A X [m] with clockings and offsets, what of them remains at rest, turns of lines."""
-    x, varying, length, at_rest, across = (
-        work.x,
-        work.varying,
-        work.length,
-        work.at_rest,
-        work.across,
-    )
-    for j in range(len(length)):
-        for v in range(width):
-            length[j, v] = 0.0
-        for i in range(of.start[j], of.start[j + 1]):
-            value, c = of.value[i], of.at[i]
-            for v in range(width):
-                length[j, v] += value * x[c, v]
-        for i in range(of.rest_start[j], of.rest_start[j + 1]):
-            value, c = of.rest_value[i], of.rest_at[i]
-            for v in range(width):
-                length[j, v] += value * varying[c, v]
-    for e in range(len(at_rest)):
-        for v in range(width):
-            at_rest[e, v] = across[e, v] = 0.0
-        for i in range(of.rest_shift[e], of.rest_start[e + 1]):
-            value, c = of.rest_value[i], of.rest_at[i]
-            for v in range(width):
-                at_rest[e, v] += value * varying[c, v]
+    length, at_rest, across, shift = work.length, work.at_rest, work.across, work.shift
+    length[:], at_rest[:] = 0.0, 0.0
+    put_product(length, of.start, of.start[1:], of.at, of.value, work.x)
+    rest = of.rest_at, of.rest_value, work.varying
+    put_product(length, of.rest_start, of.rest_start[1:], *rest)
+    put_product(at_rest, of.rest_shift, of.rest_start[1:], *rest)
+    for e in range(len(across)):
+        fill(across[e], 0.0)
         for k in range(3):
-            value, i, j = of.across[e, k], 3 * of.ends[e, 0] + k, 3 * of.ends[e, 1] + k
-            for v in range(width):
-                across[e, v] += value * (work.shift[i, v] - work.shift[j, v])
+            put_sum(across[e], shift[3 * of.ends[e, 0] + k], of.across[e, k])
+            put_sum(across[e], shift[3 * of.ends[e, 1] + k], -of.across[e, k])
 
 
 @inlined
-def put_limits(of, here, s, work, v):  # type: ignore[no-untyped-def]
-    """Take gaps and floats from the lengths [m]; returns the largest, and the largest approach."""
-    limits, approach, length = 0.0, 0.0, work.length
-    rg, rs = row_of(here.gap, s), row_of(here.stop, s)
+def put_limits(of, here, first, width, work):  # type: ignore[no-untyped-def]
+    """Take gaps and floats from the lengths [m]; the largest of them, and the largest approach."""
+    limits, approach, given = work.limits, work.approach, work.given
+    flanks = work.gap[: len(of.arm)]
+    put_rows(here.gap, first, width, flanks)
+    fill(limits, 0.0)
+    fill(approach, 0.0)
     for e in range(len(of.arm)):
-        gap = here.gap[rg, e]
-        length[e, v] -= gap
-        work.at_rest[e, v] -= gap
-        limits, approach = max(limits, abs(gap)), max(approach, length[e, v])
+        length, at_rest, gap = work.length[e], work.at_rest[e], flanks[e]
+        put_sum(length, gap, -1.0)
+        put_sum(at_rest, gap, -1.0)
+        put_largest(limits, gap, 1.0)
+        put_most(approach, length, 1.0)
     for d in range(len(of.drum_gear)):
         for side in range(2):
-            limit = here.stop[rs, d, side]
-            length[of.first_stop + 2 * d + side, v] -= limit
-            limits = max(limits, abs(limit))
-    return limits, approach
+            length = work.length[of.first_stop + 2 * d + side]
+            put_column(here.stop[:, d, side], first, width, given)
+            put_sum(length, given, -1.0)
+            put_largest(limits, given, 1.0)
 
 
 @inlined
-def put_gaps(of, here, s, work, v):  # type: ignore[no-untyped-def]
-    """Gaps of flanks, stops and arcs, and unit vectors of the latter.
+def put_gaps(of, here, first, width, work):  # type: ignore[no-untyped-def]
+    """Gaps of flanks, stops and arcs, the widest of them, and unit vectors of the latter.
 
-    Returns the widest gap, and whether a gear stands beyond a neighbour on whose ring its own
-    rolls.
+    Where a gear stands beyond a neighbour on whose ring its own rolls, `behind` is 1.
     """
-    flanks, drums, behind = len(of.arm), len(of.drum_gear), False
-    for e in range(flanks):
-        work.gap[e] = -work.length[e, v]
+    flanks, drums = len(of.arm), len(of.drum_gear)
+    for c in range(flanks + 2 * drums):
+        length = work.length[c if c < flanks else of.first_stop + c - flanks]
+        put_multiple(work.gap[c], length, -1.0)
+    fill(work.behind, 0.0)
     for k in range(2 * drums):
-        work.gap[flanks + k] = -work.length[of.first_stop + k, v]
-    ra, rc = row_of(here.arc_shift, s), row_of(here.arc_clearance, s)
-    for k in range(2 * drums):
-        d, side = k // 2, k % 2
-        apart, along, square = of.apart[k], 0.0, 0.0
+        d, side, gap = k // 2, k % 2, work.gap[flanks + 2 * drums + k]
+        line, turn, apart = work.line[k], work.turn[k], of.apart[k]
         for a in range(2):
-            moved = work.length[of.first_arc + 2 * k + a, v]
+            moved, frame = line[a], of.frame[of.drum_gear[d], a]
+            length = work.length[of.first_arc + 2 * k + a]
+            put_multiple(moved, length, 1.0)
             for i in range(3):
-                moved += of.frame[of.drum_gear[d], a, i] * here.arc_shift[ra, d, side, i]
-            work.line[k, a] = moved
-            along += of.nominal[k, a] * moved
-            square += moved * moved
-        behind |= not apart * apart + along > 0.0
-        length = np.sqrt(apart * apart + 2.0 * along + square)
-        longer = (2.0 * along + square) / (length + apart)
-        work.turn[k] = 0.0
-        for a in range(2):
-            turned = (work.line[k, a] - longer * of.nominal[k, a] / apart) / length
-            work.turn[k] = max(work.turn[k], abs(turned))
-            work.line[k, a] = of.nominal[k, a] / apart + turned
-        work.gap[flanks + 2 * drums + k] = longer + here.arc_clearance[rc, d, side]
-    widest = 0.0
+                put_column(here.arc_shift[:, d, side, i], first, width, work.given)
+                put_sum(moved, work.given, frame[i])
+        put_column(here.arc_clearance[:, d, side], first, width, gap)
+        for v in range(BOUND.abreast):
+            x, y = line[0, v], line[1, v]
+            along = of.nominal[k, 0] * x + of.nominal[k, 1] * y
+            longer = 2.0 * along + (x * x + y * y)
+            length_now = np.sqrt(apart * apart + longer)
+            longer /= length_now + apart
+            across = of.nominal[k, 0] / apart, of.nominal[k, 1] / apart
+            x, y = (x - longer * across[0]) / length_now, (y - longer * across[1]) / length_now
+            before = apart * apart + along > 0.0
+            work.behind[v] = larger(work.behind[v], 0.0 if before else 1.0)
+            gap[v] += longer
+            turn[v] = larger(abs(x), abs(y))
+            line[0, v], line[1, v] = across[0] + x, across[1] + y
+    fill(work.widest, 0.0)
     for c in range(len(work.gap)):
-        widest = max(widest, abs(work.gap[c]))
-    return widest, behind
+        put_largest(work.widest, work.gap[c], 1.0)

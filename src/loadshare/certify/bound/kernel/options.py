@@ -15,6 +15,7 @@ _how: dict[str, Any] = {
     "_nrt": False,
 }
 compiled = compilation.jit(**_how)
-within = compilation.within(**_how)
+# Else what is called in an inlined function would be inlined as well.
+within = compilation.within(forceinline=False, **_how)
 # Claim by claim they read the same arrays, whose places would be read again by each of them.
 inlined = compilation.within(forceinline=True, **_how)

@@ -4,47 +4,63 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.certify.bound.kernel.laws import row_of
+from loadshare.certify.bound.kernel.abreast import (
+    fill,
+    put_column,
+    put_largest,
+    put_most,
+    put_multiple,
+    put_sum,
+    row_of,
+)
 from loadshare.certify.bound.kernel.options import inlined
-from loadshare.settings import CERTIFY
+from loadshare.extremes import larger
+from loadshare.settings import BOUND, CERTIFY
 
 
 @inlined
-def worst_residual(of, here, claim, s, work, v, found, scale, seen):  # type: ignore[no-untyped-def]
-    """Largest scaled residual of a claim but of balance: of laws, signs, and what is no column.
+def put_worst(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
+    """Largest scaled residuals of claims but of balance: of laws, signs, and what is no column.
 
     Not a number where something claimed is none, and where two opposed contacts carry: these are
     for `residuals`.
     """
-    (load, deflection, resolution), (length, energy, pull, total) = scale, seen
-    for k in range(found.misfit.shape[1]):
-        total += found.misfit[s, k]
-    for k in range(len(of.twin), len(of.twin) + len(of.spring)):
-        length = max(length, abs(found.misfit[s, k]))
-    strayed, free = _strayed(of, here, claim, s), _free(of, here, claim, s)
-    length, force = max(length, strayed), max(pull, free)
-    band = CERTIFY.band * deflection + resolution
-    for q in range(len(of.pull_gear)):
-        force = max(force, _excess(work.law[q], work.offset[q], work.pull[q], band))
-        total += work.pull[q, 2]
-        if np.isinf(work.law[q, 4]):
-            x, y = work.offset[q, 0], work.offset[q, 1]
-            length = max(length, np.sqrt(x * x + y * y) - work.law[q, 3])
-    for d in of.squeezed:
-        force = max(force, _squeeze(of, here, claim, s, work, d, band))
-    length = max(length - resolution, 0.0)
-    worst = max(max(force / load, length / deflection), energy / (load * deflection))
+    force, length, total = work.pulled, work.misfit, work.total
+    at = len(of.twin) + len(of.spring)
+    _put_strayed(of, work)
+    _put_free(of, here, first, width, work)
     for c in range(len(work.x)):
-        total += work.x[c, v]
-    return worst + 0.0 * (total + strayed + free)
+        put_sum(total, work.x[c], 1.0)
+    for v in range(width):
+        resolution = work.resolution[v]
+        band = CERTIFY.band * work.deflection[v] + resolution
+        for q in range(len(of.pull_gear)):
+            pull = work.pull[q, 0, v], work.pull[q, 1, v], work.pull[q, 2, v]
+            x, y = work.offset[q, 0, v], work.offset[q, 1, v]
+            force[v] = max(force[v], _excess(work.graph[q], v, (x, y), pull, band))
+            total[v] += pull[2] + work.apart[at + 2 * q, v] + work.apart[at + 2 * q + 1, v]
+            if np.isinf(work.graph[q, 4, v]):
+                length[v] = max(length[v], np.sqrt(x * x + y * y) - work.graph[q, 3, v])
+        for d in of.squeezed:
+            force[v] = max(force[v], _squeeze(of, here, claim, first + v, work, v, d, band))
+    for v in range(BOUND.abreast):
+        load, deflection = work.scale[v], work.deflection[v]
+        beyond = larger(length[v] - work.resolution[v], 0.0)
+        worst = larger(force[v] / load, beyond / deflection)
+        work.worst[v] = larger(worst, work.energy[v] / (load * deflection)) + 0.0 * total[v]
+    for v in range(BOUND.abreast):
+        lawful = (work.lawful[v] > 0.0) & (not work.behind[v] > 0.0)
+        work.given[v] = work.worst[v] if lawful else np.inf
+    for v in range(BOUND.abreast):
+        work.worst[v] = work.given[v]
 
 
 @inlined
-def _excess(law, offset, pull, band):  # type: ignore[no-untyped-def]
+def _excess(graph, v, offset, pull, band):  # type: ignore[no-untyped-def]
     """Excess [N] of a radial element's pull over what its graph admits (see `residuals`)."""
     x, y, lifting = offset[0], offset[1], abs(pull[2])
     radius, force = np.sqrt(x * x + y * y), np.sqrt(pull[0] * pull[0] + pull[1] * pull[1])
-    low, high = _interval(law, radius, band)
+    low, high = _interval(graph, v, radius, band)
     along, sideways = force, 0.0
     if radius > band:
         along = (pull[0] * x + pull[1] * y) / radius
@@ -53,9 +69,15 @@ def _excess(law, offset, pull, band):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _interval(law, radius, band):  # type: ignore[no-untyped-def]
+def _interval(graph, v, radius, band):  # type: ignore[no-untyped-def]
     """Forces that a graph admits within the band about a radius."""
-    first, stick, level, reach, last = law[0], law[1], law[2], law[3], law[4]
+    first, stick, level, reach, last = (
+        graph[0, v],
+        graph[1, v],
+        graph[2, v],
+        graph[3, v],
+        graph[4, v],
+    )
     low, high = np.inf, 0.0
     inner, outer = radius - band, radius + band
     throughout = np.isinf(stick)
@@ -75,46 +97,60 @@ def _interval(law, radius, band):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _strayed(of, here, claim, s):  # type: ignore[no-untyped-def]
-    """Largest length [m] by which gears are where no coordinate leads them."""
-    moved, square, total = claim.displacement, 0.0, 0.0
+def _put_strayed(of, work):  # type: ignore[no-untyped-def]
+    """Largest lengths [m] by which gears are where no coordinate leads them."""
+    length, total, moved, square = work.misfit, work.total, work.moved, work.push
+    fill(square, 0.0)
     for g in of.still:
-        x, y, z = moved[s, g, 0], moved[s, g, 1], moved[s, g, 2]
-        square, total = max(square, x * x + y * y + z * z), total + x + y + z
-        total += claim.support_force[s, g, 0] + claim.support_force[s, g, 1]
-    length, r = np.sqrt(square), row_of(here.clocking, s)
+        x, y, z = moved[3 * g], moved[3 * g + 1], moved[3 * g + 2]
+        for v in range(BOUND.abreast):
+            square[v] = larger(square[v], x[v] * x[v] + y[v] * y[v] + z[v] * z[v])
+        for i in range(3 * g, 3 * g + 3):
+            put_sum(total, moved[i], 1.0)
+        for i in range(2 * g, 2 * g + 2):
+            put_sum(total, work.borne[i], 1.0)
+    for v in range(BOUND.abreast):
+        length[v] = larger(length[v], np.sqrt(square[v]))
     for k in range(len(of.place)):
-        g, lifted = of.place[k, 1], 0.0
+        g, axis = of.place[k, 1], of.axis[of.place[k, 1]]
+        lifted = work.given
+        fill(lifted, 0.0)
         for i in range(3):
-            lifted += of.axis[g, i] * moved[s, g, i]
-        length, total = max(length, abs(lifted)), total + lifted
+            put_sum(lifted, moved[3 * g + i], axis[i])
+        put_largest(length, lifted, 1.0)
+        put_sum(total, lifted, 1.0)
     for w in of.rigid_shaft:
-        g = of.shaft[w, 0]
-        wound = claim.rotation[s, g] - claim.rotation[s, of.shaft[w, 1]] - here.clocking[r, w]
-        length = max(length, abs(wound) * of.radius[g])
-        total += wound + claim.shaft_torque[s, w]
+        g, other, wound = of.shaft[w, 0], of.shaft[w, 1], work.given
+        put_multiple(wound, work.turned[g], 1.0)
+        put_sum(wound, work.turned[other], -1.0)
+        put_sum(wound, work.varying[w], -1.0)
+        put_largest(length, wound, of.radius[g])
+        put_sum(total, wound, 1.0)
+        put_sum(total, work.wound[w], 1.0)
     for g in of.held:
-        turned = claim.rotation[s, g]
-        length, total = max(length, abs(turned) * of.radius[g]), total + turned
-    # The largest may have passed over what is not a number.
-    return length + 0.0 * total
+        put_largest(length, work.turned[g], of.radius[g])
+        put_sum(total, work.turned[g], 1.0)
 
 
 @inlined
-def _free(of, here, claim, s):  # type: ignore[no-untyped-def]
-    """Largest force [N] claimed of bearings that bear nothing."""
-    r, square, total = row_of(here.support, s), 0.0, 0.0
+def _put_free(of, here, first, width, work):  # type: ignore[no-untyped-def]
+    """Largest forces [N] claimed of bearings that bear nothing."""
+    force, total, given, square = work.pulled, work.total, work.given, work.push
     for k in range(len(of.place)):
-        g, free = of.place[k, 1], 0.0
+        g = of.place[k, 1]
+        fill(square, 0.0)
         for a in range(2):
-            if not here.support[r, g, a] > 0.0:
-                free += claim.support_force[s, g, a] ** 2
-        square, total = max(square, free), total + free
-    return np.sqrt(square) + 0.0 * total
+            put_column(here.support[:, g, a], first, width, given)
+            for v in range(BOUND.abreast):
+                push = 0.0 if given[v] > 0.0 else work.borne[2 * g + a, v]
+                square[v] += push * push
+        for v in range(BOUND.abreast):
+            force[v] = larger(force[v], np.sqrt(square[v]))
+        put_sum(total, square, 1.0)
 
 
 @inlined
-def _squeeze(of, here, claim, s, work, d, band):  # type: ignore[no-untyped-def]
+def _squeeze(of, here, claim, s, work, v, d, band):  # type: ignore[no-untyped-def]
     """What the squeeze of a drum's opposed arcs leaves open [N] (see `residuals`)."""
     first = 2 * len(of.drum_gear) + 2 * d
     squeeze = min(claim.ring_force[s, first], claim.ring_force[s, first + 1])
@@ -135,30 +171,41 @@ def _squeeze(of, here, claim, s, work, d, band):  # type: ignore[no-untyped-def]
     known = band
     if wedge * distance > 8.0 * band:
         gap = len(of.arm) + first
-        known = max(abs(work.gap[gap]), abs(work.gap[gap + 1]))
+        known = max(abs(work.gap[gap, v]), abs(work.gap[gap + 1, v]))
         known += np.finfo(np.float64).eps * np.sqrt(moved)
     across = 2.0 * known / distance
     return squeeze * across / (np.sqrt(wedge) + np.sqrt(wedge + across))
 
 
 @inlined
-def displaced(of, claim, s, work, v, deflection):  # type: ignore[no-untyped-def]
+def put_displaced(of, work):  # type: ignore[no-untyped-def]
     """How far displacements go to a warning (see `Measuring.worst`).
 
     Not a number where an approach is neglected that only gears without force may take up.
     """
-    worst, most, furthest = 0.0, 0.0, 0.0
+    most, furthest, worst = work.given, work.push, work.displaced
+    moved = work.moved
+    fill(most, 0.0)
+    fill(furthest, 0.0)
+    fill(worst, 0.0)
     for e in range(len(of.arm)):
-        approach, across = work.length[e, v], work.across[e, v]
-        most = max(most, 0.5 * of.line[e] * across * across - max(-approach, 0.0))
-        worst, furthest = max(worst, approach * of.yields[e]), max(furthest, abs(across))
-    worst = max(max(worst, furthest / of.turnable), most / (deflection * CERTIFY.neglected))
-    if most > deflection * CERTIFY.neglected:
-        worst = np.nan
+        approach, across = work.length[e], work.across[e]
+        for v in range(BOUND.abreast):
+            neglected = 0.5 * of.line[e] * across[v] * across[v] - max(-approach[v], 0.0)
+            most[v] = larger(most[v], neglected)
+        put_most(worst, approach, of.yields[e])
+        put_largest(furthest, across, 1.0)
+    for v in range(BOUND.abreast):
+        most[v] /= work.deflection[v] * CERTIFY.neglected
+    for v in range(BOUND.abreast):
+        worst[v] = larger(larger(worst[v], furthest[v] / of.turnable), most[v])
     for k in range(len(of.apart)):
-        square, g = 0.0, of.drum_gear[k // 2]
-        for i in range(3):
-            way = claim.displacement[s, g, i] - claim.displacement[s, of.neighbour[k], i]
-            square += way * way
-        worst = max(worst, np.sqrt(square) / (of.apart[k] * CERTIFY.turned))
-    return worst
+        g, other, allowed = of.drum_gear[k // 2], of.neighbour[k], of.apart[k] * CERTIFY.turned
+        for v in range(BOUND.abreast):
+            square = 0.0
+            for i in range(3):
+                way = moved[3 * g + i, v] - moved[3 * other + i, v]
+                square += way * way
+            worst[v] = larger(worst[v], np.sqrt(square) / allowed)
+    for v in range(BOUND.abreast):
+        worst[v] = np.nan if most[v] > 1.0 else worst[v]

@@ -1,0 +1,126 @@
+"""Claims side by side: their numbers in rows, one of each claim.
+
+A loop over claims reads and writes few rows: of more, the compiler does not find out that they are
+apart, and takes one claim after another. Rows are full at all times, so that no loop has an end of
+its own; beyond the last claim they hold anything.
+"""
+
+from __future__ import annotations
+
+from loadshare.by_reference import set_apart
+from loadshare.certify.bound.kernel.options import inlined, within
+from loadshare.extremes import larger
+from loadshare.settings import BOUND
+
+
+@inlined
+def row_of(array, s):  # type: ignore[no-untyped-def]
+    """Row of a claim, or the only one."""
+    return s if len(array) > 1 else 0
+
+
+@within
+def put_rows(array, first, width, rows):  # type: ignore[no-untyped-def]
+    """Write what claims have, or what all have in common, (S or 1, k), into rows."""
+    set_apart()
+    step = 1 if len(array) > 1 else 0
+    for v in range(width):
+        for k in range(len(rows)):
+            rows[k, v] = array[step * (first + v), k]
+
+
+@within
+def put_vectors(array, first, width, rows):  # type: ignore[no-untyped-def]
+    """Write vectors that claims have, or that all have in common, (S or 1, k, i), into rows."""
+    set_apart()
+    step, size = 1 if len(array) > 1 else 0, array.shape[2]
+    for v in range(width):
+        for k in range(array.shape[1]):
+            for i in range(size):
+                rows[size * k + i, v] = array[step * (first + v), k, i]
+
+
+@within
+def take_rows(array, first, width, rows):  # type: ignore[no-untyped-def]
+    """Write rows into what claims have, (S, k)."""
+    set_apart()
+    for v in range(width):
+        for k in range(len(rows)):
+            array[first + v, k] = rows[k, v]
+
+
+@within
+def take_row(figures, first, width, row):  # type: ignore[no-untyped-def]
+    """Write a row into what claims have, (S,)."""
+    set_apart()
+    for v in range(width):
+        figures[first + v] = row[v]
+
+
+@within
+def put_column(column, first, width, row):  # type: ignore[no-untyped-def]
+    """Write a number of each claim, or the only one there is, into a row."""
+    set_apart()
+    step = 1 if len(column) > 1 else 0
+    for v in range(width):
+        row[v] = column[step * (first + v)]
+
+
+@within
+def fill(row, value):  # type: ignore[no-untyped-def]
+    """Write one value into a row."""
+    set_apart()
+    for v in range(BOUND.abreast):
+        row[v] = value
+
+
+@within
+def put_sum(total, row, factor):  # type: ignore[no-untyped-def]
+    """Add the multiple of a row."""
+    set_apart()
+    for v in range(BOUND.abreast):
+        total[v] += factor * row[v]
+
+
+@within
+def put_sizes(total, row, factor):  # type: ignore[no-untyped-def]
+    """Add the sizes of the multiple of a row."""
+    set_apart()
+    for v in range(BOUND.abreast):
+        total[v] += abs(factor * row[v])
+
+
+@within
+def put_multiple(product, row, factor):  # type: ignore[no-untyped-def]
+    """Write the multiple of a row."""
+    set_apart()
+    for v in range(BOUND.abreast):
+        product[v] = factor * row[v]
+
+
+@within
+def put_most(most, row, factor):  # type: ignore[no-untyped-def]
+    """Take the larger of a row and the multiple of another."""
+    set_apart()
+    for v in range(BOUND.abreast):
+        most[v] = larger(most[v], factor * row[v])
+
+
+@within
+def put_largest(most, row, factor):  # type: ignore[no-untyped-def]
+    """Take the larger of a row and the multiple of the sizes of another."""
+    set_apart()
+    for v in range(BOUND.abreast):
+        most[v] = larger(most[v], factor * abs(row[v]))
+
+
+@within
+def put_product(rows, start, end, at, value, numbers):  # type: ignore[no-untyped-def]
+    """Add the product of a matrix, given by the entries of each of its rows, with numbers."""
+    set_apart()
+    for j in range(len(rows)):
+        row = rows[j]
+        for i in range(start[j], end[j]):
+            factor, other = value[i], numbers[at[i]]
+            for v in range(BOUND.abreast):
+                row[v] += factor * other[v]
