@@ -454,9 +454,10 @@ def _measures(structure: Structure, here: Situations) -> tuple[float, float]:
     radius = [g.base_radius for g in train.gears.values()]
     force = float((np.abs(here.torque[0]) / radius).max(initial=0.0))
     force = max(force, float(np.abs(here.push[0]).max(initial=0.0))) or 1.0
-    positions = train.mesh_positions(here.position)
-    gaps = structure.gaps_of_flanks(here)[0]
     meshes = tuple(train.meshes.values())
+    changes = any(mesh.changes for mesh in meshes)
+    positions = train.mesh_positions(here.position) if changes else dict.fromkeys(train.meshes, 0)
+    gaps = structure.gaps_of_flanks(here)[0]
     drive = [(e, meshes[m]) for e, (m, drives) in enumerate(flanks) if drives]
     if not drive:
         return force, CONTACT.least_length

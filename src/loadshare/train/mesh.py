@@ -193,6 +193,11 @@ class Mesh:
         free = isinstance(self.backlash, float) and math.isinf(self.backlash)
         return (True,) if free else (True, False)
 
+    @property
+    def changes(self) -> bool:
+        """Whether its laws or gaps change over its cycle."""
+        return len(self.laws) + len(self.gaps) + len(self.coast_gaps) > 3
+
     def flank_name(self, drive: bool) -> str:
         """Name of a flank's row: the mesh's own for the drive flank."""
         return self.name if drive else f"{self.name} coast"

@@ -58,6 +58,8 @@ def turned_about(gear: Gear, vector: Vector, angle: Angle) -> Vector:
 
 def turned(components: Vector, angle: Angle) -> Vector:
     """Components (…, 2) turned counter-clockwise by angles (…) [rad]."""
+    if isinstance(angle, float) and not angle:
+        return components
     x, y = components[..., 0], components[..., 1]
     c, s = np.cos(angle), np.sin(angle)
     return np.stack([c * x - s * y, s * x + c * y], axis=-1)

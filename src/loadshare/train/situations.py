@@ -159,18 +159,13 @@ def situations_of(train: Train, index: int | Sequence[int]) -> Situations:
     several = not isinstance(index, int)
     where: Any = np.array(index, dtype=np.intp) if several else index
     rotation = train.rotations(where)
-    position = train.flank_positions(where, rotation)
-    flanks = [(m, d, position[m.flank_name(d)]) for m in train.meshes.values() for d in m.flanks]
-    laws = [_laws(mesh, at) for mesh, _, at in flanks]
     arrays = {
         "torque": _table([_torque(train, g, where) for g in train.gears]),
-        "gap": _table([_gap(mesh, drive, at) for mesh, drive, at in flanks]),
-        "bending": _table([b for b, _, _ in laws]),
-        "hertz": _table([c for _, c, _ in laws]),
-        "table": _tables([tables for _, _, tables in laws]),
         **_turned(train, rotation),
         **_lasting(train),
     }
+    if "gap" not in arrays:
+        arrays |= _of_flanks(train, train.flank_positions(where, rotation))
     count = max(map(len, arrays.values()))
     if not several:
         return Situations(train=train, count=count, index=np.array([index]), **arrays)
@@ -186,11 +181,17 @@ _last_turned: WeakKeyDictionary[Train, tuple[tuple[Any, ...], dict[str, Array]]]
 def _turned(train: Train, rotation: Mapping[str, Any]) -> dict[str, Array]:
     """What turns with the gears, worked out once for positions at which they stand alike."""
     angles = tuple(rotation.values())
-    alone = not any(isinstance(angle, np.ndarray) for angle in angles)
+    count = max((np.size(angle) for angle in angles if isinstance(angle, np.ndarray)), default=0)
+    alone = not count
     last = _last_turned.get(train)
     if alone and last is not None and last[0] == angles:
         return last[1]
+    if train.stands_still:
+        # All positions in one; what has errors has a row for each all the same.
+        rotation = dict.fromkeys(rotation, 0.0)
     offset = _table([train.offset(n, rotation) for n in train.gears], 3)
+    if train.stands_still and count and train.offsets:
+        offset = np.repeat(offset, count, axis=0)
     found = {
         "offset": offset,
         "push": _table([train.push(n, rotation) for n in train.gears], 3),
@@ -218,7 +219,25 @@ def _lasting(train: Train) -> dict[str, Array]:
         "round_power": _table([r.power for r in rounds]),
         "spline": _splines(train),
     }
+    if not any(mesh.changes for mesh in train.meshes.values()):
+        found |= _of_flanks(train)
     return found
+
+
+def _of_flanks(train: Train, position: Mapping[str, Any] | None = None) -> dict[str, Array]:
+    """Gaps and laws of flanks at the positions of their laws; their only ones without."""
+    flanks = [
+        (mesh, drive, 0 if position is None else position[mesh.flank_name(drive)])
+        for mesh in train.meshes.values()
+        for drive in mesh.flanks
+    ]
+    laws = [_laws(mesh, at) for mesh, _, at in flanks]
+    return {
+        "gap": _table([_gap(mesh, drive, at) for mesh, drive, at in flanks]),
+        "bending": _table([b for b, _, _ in laws]),
+        "hertz": _table([c for _, c, _ in laws]),
+        "table": _tables([tables for _, _, tables in laws]),
+    }
 
 
 def _gap(mesh: Mesh, drive: bool, position: Any) -> Any:
@@ -228,13 +247,17 @@ def _gap(mesh: Mesh, drive: bool, position: Any) -> Any:
 
 def _laws(mesh: Mesh, position: Any) -> tuple[Any, Any, Sequence[TableLaw | None]]:
     """b, c and the table of a flank at a position of its laws, or at several of them."""
-    laws = mesh.laws
-    powers = [law if isinstance(law, PowerLaw) else PowerLaw(0.0) for law in laws]
+    laws = mesh.laws if isinstance(position, np.ndarray) else (_at(mesh.laws, position),)
     tables = [law if isinstance(law, TableLaw) else None for law in laws]
-    b, c = ([getattr(law, name) for law in powers] for name in "bc")
-    chosen = _at(tables, position)
-    several = isinstance(chosen, np.ndarray)
-    return _at(b, position), _at(c, position), chosen.tolist() if several else [chosen]
+    powers = [law if isinstance(law, PowerLaw) else _NONE for law in laws]
+    b, c = _at([law.b for law in powers], position), _at([law.c for law in powers], position)
+    if len(laws) == 1 or not any(tables):
+        return b, c, tables[:1]
+    return b, c, [tables[k] for k in np.atleast_1d(position % len(laws)).tolist()]
+
+
+_NONE = PowerLaw(0.0)
+"""The power law of a mesh that has a table."""
 
 
 def _at(values: Sequence[Any], position: Any) -> Any:
@@ -295,7 +318,7 @@ def _table(values: Sequence[ArrayLike], *inner: int) -> Array:
     varying = {
         k: v for k, v in enumerate(values) if isinstance(v, np.ndarray) and v.ndim > len(inner)
     }
-    firsts = [varying[k][0] if k in varying else v for k, v in enumerate(values)]
+    firsts = [varying.get(k, [v])[0] for k, v in enumerate(values)] if varying else values
     table = np.array(firsts, dtype=float).reshape(1, len(values), *inner)
     if varying:
         table = np.repeat(table, max(map(len, varying.values())), axis=0)

@@ -157,6 +157,11 @@ class Train:
         known = (n for n, g in self.gears.items() if g.teeth is not None and g.relative)
         return next(known, None) if self.rotating else None
 
+    @property
+    def stands_still(self) -> bool:
+        """Whether gears do not rotate over the positions."""
+        return self.march is None and self.cycle is None
+
     @overload
     def rotations(self, index: int) -> dict[str, float]: ...
 
@@ -176,7 +181,8 @@ class Train:
         IndexError
             If there is no such position.
         """
-        if not 1 <= np.min(index) <= np.max(index) <= self.count:
+        least, most = (index, index) if isinstance(index, int) else (index.min(), index.max())
+        if not 1 <= least <= most <= self.count:
             raise IndexError(f"position {index}: this case has positions 1 to {self.count}")
         step = index - 1
         if self.march is None:
@@ -298,12 +304,17 @@ class Train:
         rotation = rotation or self.rotations(index)
         count, held = self.positions, self.held_at or {}
         found: dict[str, Any] = {}
+        # Many flanks are where others are.
+        known: dict[tuple[Any, ...], Any] = {}
+        together = self.march is None and self.period is None
         for mesh in self.meshes.values():
-            passed = self._passed(mesh, index - 1, rotation)
             for drive in mesh.flanks:
                 name, phase = mesh.flank_name(drive), mesh.phase if drive else mesh.coast_phase
-                at = mesh.position(drive, (passed + phase) * count, count)
-                found[name] = held.get(name, at)
+                key = together or mesh.name, phase, mesh.means, drive == mesh.turned
+                if key not in known:
+                    passed = self._passed(mesh, index - 1, rotation)
+                    known[key] = mesh.position(drive, (passed + phase) * count, count)
+                found[name] = held.get(name, known[key])
         if isinstance(index, int):
             return {flank: int(at) for flank, at in found.items()}
         return {flank: np.asarray(at, dtype=np.intp) for flank, at in found.items()}
