@@ -1,15 +1,19 @@
 import tomllib
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from loadshare.case import Case
+from loadshare.case import Case, load_case
 from loadshare.case.checks import CHECKS
+from loadshare.case.content import ABOUT
 from loadshare.case.draft import read_draft
+from loadshare.case.keys import dotted, look_up, walk
 from loadshare.case.origin import Origin
 from loadshare.case.revise import revise
 from loadshare.errors import CaseError
+from tests.support import CASES
 
 RULES = tomllib.loads(Path(__file__).with_name("rules.toml").read_text(encoding="utf-8"))["rule"]
 
@@ -30,6 +34,37 @@ def test_every_check_is_broken_by_a_rule(drive: Case, check):
         return list(check(read_draft(data, origin)))
 
     assert any(problems(rule) for rule in RULES)
+
+
+SEVERAL = [
+    "fgfbstts/all_elements.toml",
+    "fgfbstts/spline_clearance.toml",
+    "planetary/four_planets.toml",
+    "two_path/from_teeth.toml",
+]
+
+
+@pytest.mark.parametrize("file", SEVERAL)
+def test_a_changed_value_is_judged_as_in_a_case_that_is_new(file):
+    """Rules that a value does not concern are left out where one case is made from another."""
+    case = load_case(CASES / file)
+    for path in [path for path in walk(case.to_dict()) if path[0] not in ABOUT]:
+        number, _, unit = str(look_up(case.to_dict(), path)).partition(" ")
+        with suppress(ValueError):
+            for changed in (0.0, -float(number), 30.0 * float(number)):
+                change = {dotted(path): f"{changed!r} {unit}" if unit else changed}
+                data, origin = revise(case.to_dict(), Origin(), change)
+                assert _said(lambda: case.replace(change)) == _said(  # noqa: B023
+                    lambda: Case(data, origin=origin)  # noqa: B023
+                )
+
+
+def _said(make) -> list[tuple[str, str]]:
+    try:
+        make()
+    except CaseError as error:
+        return [(problem.key, problem.message) for problem in error.problems]
+    return []
 
 
 def test_no_message_speaks_the_language_of_a_library():

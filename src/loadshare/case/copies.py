@@ -96,10 +96,10 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
 def _turns(gears: Mapping[str, Any]) -> Iterator[tuple[str, tuple[float, ...]]]:
     """Gears with copies that can be written out, and the angles of these [rad]."""
     for name, gear in gears.items():
-        centre = gear.get("centre") if isinstance(gear, Mapping) else None
+        given = gear.get("copies") if isinstance(gear, Mapping) else None
+        centre = gear.get("centre") if given is not None else None
         if not isinstance(centre, Mapping) or _angle(centre.get("angle")) is None:
             continue
-        given = gear.get("copies")
         if isinstance(given, int) and not isinstance(given, bool) and given in COPIES:
             yield name, tuple(2.0 * math.pi * k / given for k in range(given))
         elif isinstance(given, list) and len(given) in COPIES:

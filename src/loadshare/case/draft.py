@@ -169,10 +169,14 @@ def defaults() -> dict[str, Any]:
 
     It looks at the signature of what makes each default.
     """
-    return {
-        name: about.default if about.default_factory is None else {}
-        for name, about in Draft.model_fields.items()
-    }
+    return {name: default if alone else {} for name, default, alone in _defaults()}
+
+
+@cache
+def _defaults() -> tuple[tuple[str, Any, bool], ...]:
+    """Names of the sections, their defaults, and whether these are no tables."""
+    fields = Draft.model_fields.items()
+    return tuple((name, about.default, about.default_factory is None) for name, about in fields)
 
 
 def _read_section(
@@ -181,12 +185,12 @@ def _read_section(
     about: FieldInfo,
     before: tuple[Sections, Mapping[str, Any]] | None,
 ) -> None:
-    model = next(elements_in(about.annotation), None)
     value = draft.data[name]
     known = before[1].get(name) if before is not None else None
     if before is not None and value is known:
         setattr(draft, name, getattr(before[0], name))
         return
+    model = next(elements_in(about.annotation), None)
     most = ALLOWED.elements if isinstance(value, Mapping) else ALLOWED.entries
     if isinstance(value, Mapping | list) and len(value) > most:
         draft.tell((name,), f"has {len(value)} entries", f"at most {most}")

@@ -128,6 +128,31 @@ def written(element: Element) -> dict[str, Any]:
     return data
 
 
+def same_but_for_values(one: Any, other: Any) -> bool:
+    """Tell whether two parts of a case differ in physical values at most, wherever both have one.
+
+    Parameters
+    ----------
+    one, other : Element, table, tuple, value or word
+    """
+    if one is other:
+        return True
+    if isinstance(one, dict) and isinstance(other, dict):
+        parts = zip(one.values(), other.values(), strict=False)
+        return [*one] == [*other] and all(same_but_for_values(*both) for both in parts)
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, tuple):
+        parts = zip(one, other, strict=False)
+        return len(one) == len(other) and all(same_but_for_values(*both) for both in parts)
+    if isinstance(one, Element):
+        fields = type(one).model_fields
+        parts = ((getattr(one, name), getattr(other, name)) for name in fields)
+        given = one.model_fields_set == other.model_fields_set
+        return given and all(same_but_for_values(*both) for both in parts)
+    return isinstance(one, Quantity) or bool(one == other)
+
+
 def without_other_ways(model: type[Element], low: Any, high: Any) -> Any:
     """Return of plain data what stays where other data of the element count before it.
 

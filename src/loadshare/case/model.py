@@ -66,7 +66,7 @@ class Case(Content):
         """Read plain data, except what it shares with an earlier case, and check all of it."""
         data, origin = with_copies(data, origin)
         draft = read_draft(data, origin, None if before is None else (before, before._data))
-        problems = [*draft.problems, *check(draft)]
+        problems = [*draft.problems, *check(draft, None if draft.problems else before)]
         if problems:
             raise CaseError(problems)
         given = {n: getattr(draft, n) for n in Content.model_fields if n in data}

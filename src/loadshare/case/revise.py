@@ -61,11 +61,9 @@ def revise(
             problems.append(Problem(CHANGES, key, as_given(value), "does not exist", "", lost))
     if problems:
         raise CaseError(problems)
-    files = {
-        known: file
-        for known, file in origin.files.items()
-        if not any(known[:length] in moved for length in range(1, len(known) + 1))
-    }
+    lengths = {len(path) for path in moved}
+    gone = {known for known in origin.files for length in lengths if known[:length] in moved}
+    files = {known: file for known, file in origin.files.items() if known not in gone}
     files |= dict.fromkeys(moved, CHANGES)
     patterns = changed.get("assumed")
     if isinstance(patterns, list) and any(value is None for value in changes.values()):

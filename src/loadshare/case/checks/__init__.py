@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from itertools import chain, islice
+from typing import TypeAlias
 
 from loadshare.case.checks import (
     carriers,
@@ -16,11 +17,14 @@ from loadshare.case.checks import (
     meshing,
     names,
 )
+from loadshare.case.content import Content
 from loadshare.case.draft import MORE, Draft
+from loadshare.case.element import same_but_for_values
 from loadshare.errors import Problem
 from loadshare.settings import ALLOWED
 
-CHECKS = (
+Rule: TypeAlias = Callable[[Draft], Iterator[Problem]]
+CHECKS: tuple[Rule, ...] = (
     names.check_gear_names,
     names.check_mesh_names,
     names.check_about_circles,
@@ -64,21 +68,49 @@ CHECKS = (
     names.check_assumed_patterns,
 )
 
+LOOK_AT_VALUES: Mapping[Rule, frozenset[str]] = {
+    carriers.check_names_of_planet_meshes: frozenset({"meshes"}),
+    fit.check_fit: frozenset({"meshes"}),
+    floats.check_spline_law: frozenset({"splines"}),
+    floats.check_idle_inputs: frozenset({"meshes"}),
+    flow.check_pressed_flanks: frozenset({"operating"}),
+    meshing.check_turning: frozenset({"errors"}),
+    meshing.check_march_teeth: frozenset({"meshes"}),
+}
+"""Rules for which physical values matter, and in which sections, beside those of gears. All others
+look at names, words and counts, and at what is given."""
 
-def check(draft: Draft) -> Iterator[Problem]:
+
+def check(draft: Draft, before: Content | None = None) -> Iterator[Problem]:
     """Yield the problems across the valid elements of a case.
 
     Parameters
     ----------
     draft : Draft
         The elements that were read.
+    before : Content, optional
+        A case without problems: rules for which nothing has changed since are left out.
 
     Yields
     ------
     Problem
         What is wrong between them.
     """
-    found = chain.from_iterable(rule(draft) for rule in CHECKS)
+    rules = CHECKS if before is None else _concerned(draft, before)
+    found = chain.from_iterable(rule(draft) for rule in rules)
     yield from islice(found, ALLOWED.problems)
     if next(found, None) is not None:
         yield draft.problem((), MORE, "", "")
+
+
+def _concerned(draft: Draft, before: Content) -> Collection[Rule]:
+    """Rules that may find something in a draft other than in a case before."""
+    changed = set()
+    for name in Content.model_fields:
+        now, then = getattr(draft, name), getattr(before, name)
+        if now is then or not (now or then):
+            continue
+        if name == "gears" or not same_but_for_values(now, then):
+            return CHECKS
+        changed.add(name)
+    return [rule for rule in CHECKS if changed & LOOK_AT_VALUES.get(rule, frozenset())]
