@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.support import CASES
 
 from loadshare.case import Case, load_case
 from loadshare.case.checks import CHECKS
@@ -13,7 +14,6 @@ from loadshare.case.keys import dotted, look_up, walk
 from loadshare.case.origin import Origin
 from loadshare.case.revise import revise
 from loadshare.errors import CaseError
-from tests.support import CASES
 
 RULES = tomllib.loads(Path(__file__).with_name("rules.toml").read_text(encoding="utf-8"))["rule"]
 

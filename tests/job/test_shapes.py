@@ -10,7 +10,7 @@ from tests.support import shipped
 
 import loadshare as ls
 from loadshare.job import positions
-from loadshare.job.recent import Recent
+from loadshare.case.recent import Recent
 from loadshare.train import build_train
 from loadshare.train.shape import shape_of
 

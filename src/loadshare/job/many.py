@@ -26,7 +26,7 @@ from loadshare.job.block import Block, solve_block
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
 from loadshare.job.positions import Progress, wanted_of
-from loadshare.job.recent import Recent
+from loadshare.case.recent import Recent
 from loadshare.job.table import USUAL, Table, checked
 from loadshare.one_thread import one_thread
 from loadshare.settings import CERTIFY, JOB

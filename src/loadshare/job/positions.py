@@ -23,7 +23,7 @@ from loadshare.job.engines import ENGINES
 from loadshare.job.hot import HOT, SEARCHED, left_out
 from loadshare.job.ladder import AUTO, climb_all
 from loadshare.job.machine import Machine
-from loadshare.job.recent import Recent
+from loadshare.case.recent import Recent
 from loadshare.later import known
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Result, Stamp

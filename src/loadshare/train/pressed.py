@@ -48,15 +48,15 @@ def turned_meshes(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Flags
     by_load = has_sets(case.gears) or case.operating.external
     pressed = _pressed(case, gears, torque) if names and by_load else {}
     problems = []
-    found = {}
-    for name in case.meshes:
-        signs = pressed.get(name, np.zeros((1, 1)))
+    # Where statics does not tell, the names do.
+    found = {name: against & (name in names) for name in case.meshes if name not in pressed}
+    for name, signs in pressed.items():
         coast, drive = (signs < 0).any(axis=0), (signs > 0).any(axis=0)
         if name in names and (coast & drive).any():
             message = "is missing: the load presses now one flank, now the other"
             hint = "How much play the mesh has decides when its other flank carries."
             problems.append(case.problem(("meshes", name, "backlash"), message, "a length", hint))
-        # Where the load presses neither, the names tell.
+        # As where the load presses neither.
         found[name] = np.where(coast | drive, coast, against) & (name in names)
     if problems:
         raise CaseError(problems)

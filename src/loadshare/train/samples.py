@@ -18,8 +18,10 @@ from numpy.typing import ArrayLike, NDArray
 from loadshare import case as spec
 from loadshare.case.element import Element
 from loadshare.case.keys import Path, dotted
+from loadshare.case.recent import Recent
 from loadshare.errors import CaseError
 from loadshare.settings import JOB
+from loadshare.train.alike import train_alike
 from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of, with_laws
 from loadshare.train.columns import Column, columns_of
@@ -126,16 +128,28 @@ def samples_of(
         mine = tuple(replace(c, values=c.values[some]) for c in columns)
         own = first if rows[0] == 0 else first.replace({dotted(c.path): c.text(0) for c in mine})
         base = with_laws(own)
-        geometry = geometry_of(base)
+        geometry, train = _built(case, base)
         values = {path: si[some] for path, si in arrays.items()}
         alike = _pressed_alike(base, geometry, values, len(rows))
         if not alike.all():
             # The others press other flanks than the first of them.
             parts[:0] = [rows[alike], rows[~alike]]
             continue
-        group = Samples(base, geometry, train_of(base, geometry), mine, values)
-        groups.append((rows, group))
+        groups.append((rows, Samples(base, geometry, train, mine, values)))
     return groups
+
+
+_recent: Recent[tuple[spec.Case, Geometry, Train]] = Recent()
+
+
+def _built(case: spec.Case, base: spec.Case) -> tuple[Geometry, Train]:
+    """Return geometry and train of a sample; what it shares with one before is not built again."""
+    known = _recent.of(case)
+    train = None if known is None else train_alike(base, known)
+    if known is not None and train is not None:
+        return known[1], train
+    geometry = geometry_of(base)
+    return _recent.keep(case, (base, geometry, train_of(base, geometry)))[1:]
 
 
 def _pressed_alike(
@@ -144,7 +158,7 @@ def _pressed_alike(
     """Whether samples press the flanks that the geometry has, (count,)."""
     loads = {path: si for path, si in values.items() if path[0] == "operating"}
     alike = np.ones(count, dtype=bool)
-    if loads:
+    if loads and count > 1:
         turned = turned_meshes(_with(case, loads), geometry.gears)
         for name, pair in geometry.pairs.items():
             alike &= turned[name] == pair.turned

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Generic, TypeVar
 
-from loadshare.case import Case
+from loadshare.case.model import Case
 from loadshare.settings import JOB
 
 Made = TypeVar("Made")
