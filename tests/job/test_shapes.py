@@ -9,8 +9,8 @@ import pytest
 from tests.support import shipped
 
 import loadshare as ls
-from loadshare.job import positions
 from loadshare.case.recent import Recent
+from loadshare.job import positions
 from loadshare.train import build_train
 from loadshare.train.shape import shape_of
 

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from loadshare.arguments import whole
 from loadshare.case import Case
 from loadshare.case.reader import opened
+from loadshare.case.recent import Recent
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError
 from loadshare.job.allocation import keep_freed_memory
@@ -26,7 +27,6 @@ from loadshare.job.block import Block, solve_block
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
 from loadshare.job.positions import Progress, wanted_of
-from loadshare.case.recent import Recent
 from loadshare.job.table import USUAL, Table, checked
 from loadshare.one_thread import one_thread
 from loadshare.settings import CERTIFY, JOB

@@ -15,6 +15,7 @@ from loadshare._version import __version__
 from loadshare.arguments import one_of
 from loadshare.case import Case
 from loadshare.case.reader import opened
+from loadshare.case.recent import Recent
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.contact.backends.backend import SOLVERS
 from loadshare.errors import Refused
@@ -23,7 +24,6 @@ from loadshare.job.engines import ENGINES
 from loadshare.job.hot import HOT, SEARCHED, left_out
 from loadshare.job.ladder import AUTO, climb_all
 from loadshare.job.machine import Machine
-from loadshare.case.recent import Recent
 from loadshare.later import known
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Result, Stamp

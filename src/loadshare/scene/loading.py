@@ -121,8 +121,7 @@ class Loading:
 def loading_of(structure: Structure, situations: Situations) -> Loading:
     """Write the numbers of many situations in the order and the units of the elements."""
     at, columns, train = structure.coordinates, structure.columns, structure.train
-    force, length, arcs = structure.force, structure.length, structure.arcs
-    to_load = np.array([at.turned((gear, 1.0)) for gear in train.gears])
+    force, length = structure.force, structure.length
     gaps: list[Block] = [(columns.flanks, structure.gaps_of_flanks(situations))]
     bends: list[Block] = []
     shafts = list(train.shafts.values())
@@ -138,15 +137,14 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
     gaps.append((columns.stops, situations.stop.reshape(len(situations.stop), -1)))
     walls = np.repeat(situations.wall, 2, axis=1)
     bends += [(columns.stops, walls), (columns.arcs, walls)]
-    gaps.append((columns.radials, np.array([c for r in structure.radials for c in r.centre])[None]))
+    gaps.append((columns.radials, structure.centres))
     tabulated = np.full(len(structure.names), -1)
     if situations.table.shape[-1]:
         has = situations.table[0, :, 0, 1] > 0.0
         tabulated[columns.flanks] = np.where(has, np.arange(len(has)), -1)
-    load = situations.torque @ to_load
+    load = situations.torque @ structure.twisted
     if situations.push.any():
         load = load + situations.push.reshape(len(situations.push), -1) @ structure.pushed
-    nominal = [situations.arc(a.ring, a.side).nominal for a in arcs]
     return Loading(
         count=situations.count,
         load=load / force,
@@ -159,10 +157,10 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
         ),
         tabulated=tabulated,
         tables=situations.table / np.array([force, length])[:, None],
-        nominal=np.array(nominal).reshape(-1, 3) / length,
+        nominal=structure.nominal / length,
         shift=situations.arc_shift.reshape(len(situations.arc_shift), -1, 3) / length,
         clearance=situations.arc_clearance.reshape(len(situations.arc_clearance), -1) / length,
-        relative=np.array([a.relative for a in arcs]).reshape(-1, 3, at.size),
+        relative=structure.relative,
         radial=_radials(structure, situations),
         carried=structure.levers,
     )
@@ -194,6 +192,8 @@ def _radials(structure: Structure, situations: Situations) -> Array:
     here, radials = situations, structure.radials
     count = max(map(len, (here.spline, here.round_radius, here.round_stiffness)))
     table = np.zeros((count, len(radials), 7))
+    if not radials:
+        return table
     table[:, :, 6] = 1.0
     stiffness, stick, reach, bound, per_torque = np.moveaxis(here.spline, 2, 0)
     for j, radial in enumerate(radials):

@@ -32,7 +32,7 @@ from loadshare.scene.coordinates import Array, Coordinates, coordinates_of
 from loadshare.scene.statics import Basis, basis_of
 from loadshare.settings import CONTACT, STATICS
 from loadshare.train.mesh import Mesh
-from loadshare.train.ring import DrumRing
+from loadshare.train.ring import DrumRing, transverse
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
@@ -253,6 +253,29 @@ class Structure:
             for gear, along in to.shifting.items():
                 found[e, order[gear]] = along
         return found.reshape(len(self.flanks), -1)
+
+    @cached_property
+    def twisted(self) -> Array:
+        """Load on the coordinates per torque on the gears, shape (gears, n)."""
+        return np.array([self.coordinates.turned((gear, 1.0)) for gear in self.train.gears])
+
+    @cached_property
+    def centres(self) -> Array:
+        """Centres of the radial elements, side by side, shape (1, 2 radials) [m]."""
+        return np.array([c for r in self.radials for c in r.centre])[None]
+
+    @cached_property
+    def nominal(self) -> Array:
+        """Way of every arc from the neighbour's centre to its own at rest, shape (arcs, 3) [m]."""
+        gears, rings = self.train.gears, [(a.ring, a.ring.neighbours[a.side]) for a in self.arcs]
+        ways = [(gears[ring.gear], gears[neighbour]) for ring, neighbour in rings]
+        found = [transverse(one.centre - other.centre, one.axis) for one, other in ways]
+        return np.array(found).reshape(-1, 3)
+
+    @cached_property
+    def relative(self) -> Array:
+        """Relative displacement of the arcs' centres from the coordinates, shape (arcs, 3, n)."""
+        return np.array([a.relative for a in self.arcs]).reshape(-1, 3, self.size)
 
     @cached_property
     def pushed(self) -> Array:

@@ -80,14 +80,14 @@ class Found:
 def first_sets(structure: Structure, loading: Loading) -> States:
     """Drive flanks closed under load, other rows open, radial elements on their first piece."""
     count = loading.count
-    if count > 1 and _begin_alike(loading):
+    if structure.radials and count > 1 and _begin_alike(loading):
         return np.repeat(first_sets(structure, loading.one(0)), count, axis=0)
     states = np.zeros((count, structure.switches), dtype=np.int8)
     everyone = np.arange(count)
     push = pick(loading.push, everyone)
-    for k, kind in enumerate(structure.kinds[structure.columns.flanks]):
-        if kind == "drive flank":
-            states[:, k] = np.where(push > 0.0, at.CLOSED, at.OPEN)
+    kinds = structure.kinds[structure.columns.flanks]
+    drives = [k for k, kind in enumerate(kinds) if kind == "drive flank"]
+    states[:, drives] = np.where(push > 0.0, at.CLOSED, at.OPEN)[:, None]
     for j, radial in enumerate(structure.radials):
         gear = structure.train.gears[radial.gear]
         driving = structure.train.gears[structure.train.input]
@@ -190,7 +190,9 @@ def exchange(
         done = verdict == at.DONE
         solved[rows[done]] = True
         tight = [not structure.basis(one).loose.shape[1] for one in sets]
-        held[rows] = done & np.repeat(tight, np.diff(starts))
+        held[rows] = done & np.repeat(tight, [len(part) for part in parts])
+        if not onward.any():
+            break
         rows, here, other = rows[onward], states[rows[onward], :switches], proposal[onward]
         if turn >= EXCHANGE.together:
             one_only[rows] = True
@@ -251,10 +253,11 @@ class _Rounds:
 
 def _without_wedges(structure: Structure, loading: Loading, here: States, proposal: States) -> None:
     """Let only one of two opposed rigid arcs act, the one that is new, unless both act here."""
-    for one, other in structure.opposed:
-        if loading.bending[:, structure.springs + np.array([one, other])].any():
-            continue
-        acts = here[:, [one, other]] != at.OPEN
-        both = (proposal[:, [one, other]] != at.OPEN).all(axis=1) & ~acts.all(axis=1)
-        proposal[both & acts[:, 0], one] = at.OPEN
-        proposal[both & ~acts[:, 0], other] = at.OPEN
+    if not structure.opposed:
+        return
+    pairs = np.array(structure.opposed)
+    pairs = pairs[~loading.bending[:, structure.springs + pairs].any(axis=(0, 2))]
+    acts = here[:, pairs] != at.OPEN
+    both = (proposal[:, pairs] != at.OPEN).all(axis=2) & ~acts.all(axis=2)
+    rows, which = both.nonzero()
+    proposal[rows, np.where(acts[rows, which, 0], *pairs[which].T)] = at.OPEN
