@@ -51,6 +51,9 @@ class Solved:
     def small(self) -> NDArray[np.bool_]:
         """Whether displacements are known to be clear of where they are refused, (S,)."""
         found = self.found
+        if (found.verdicts.displaced < JOB.small).all():
+            # A warning comes before a refusal.
+            return np.ones(self.situations.count, dtype=bool)
         deflection = found.verdicts.deflection
         moved = self.machine.measuring.worst(
             self.situations, found.equilibria, deflection, refusal=True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import starmap
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from loadshare.job.block import RUNGS, Block
 from loadshare.results.dataset import VARIABLES, Variable
 from loadshare.results.figures import COMPONENTS
 from loadshare.results.share import MeshTorques, mesh_torques, shares
+from loadshare.settings import JOB
 from loadshare.train.equilibria import Equilibria, Names
 from loadshare.train.train import Train
 
@@ -106,6 +108,14 @@ def _displacements(answers: Equilibria, gears: list[str]) -> Array:
         frames[rows, 2 * column : 2 * column + 2] = answers.names.train.gears[gear].plane.T
     flat = answers.displacement.reshape(len(answers.displacement), -1)
     return np.asarray((flat @ frames).reshape(len(flat), len(gears), 2))
+
+
+@lru_cache(maxsize=16)
+def _coordinates(count: int, *labels: tuple[str, tuple[Any, ...]]) -> xr.Coordinates:
+    """Labels of samples and of other dimensions; the same ones for batches that are alike."""
+    import xarray as xr
+
+    return xr.Coordinates({"sample": np.arange(count), **{d: list(names) for d, names in labels}})
 
 
 class Table:
@@ -215,10 +225,13 @@ class Table:
             name: xr.Variable(dims, values, attributes, fastpath=True)
             for name, dims, values, attributes in found
         }
-        used = {dim for variable in data.values() for dim in variable.dims}
+        used = {dim for variable in data.values() for dim in variable.dims} - {"sample"}
+        labels = {dim: tuple(names) for dim, names in self.coords.items() if dim in used}
+        count = len(self.coords["sample"])
+        coordinates = _coordinates if count <= JOB.block else _coordinates.__wrapped__
         return xr.Dataset(
             data,
-            coords={dim: labels for dim, labels in self.coords.items() if dim in used},
+            coords=coordinates(count, *labels.items()),
             attrs={
                 "case": case.name,
                 "case_hash": case.hash,

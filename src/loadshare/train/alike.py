@@ -52,7 +52,8 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
         turned = turned_meshes(case, base[1].gears)
         if any(turned[name] != pair.turned for name, pair in base[1].pairs.items()):
             return None
-    return train_of(case, base[1], (base[0], base[2]))
+    changed = {path[:2] for path, _, _ in differences}
+    return train_of(case, base[1], (base[0], base[2]), changed)
 
 
 def _number(value: object) -> float | None:

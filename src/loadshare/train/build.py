@@ -7,13 +7,14 @@ that it does for both.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from loadshare import case as spec
+from loadshare.case.keys import Path
 from loadshare.case.uneven import is_uneven
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.errors import CaseError, Problem
@@ -65,7 +66,10 @@ def with_laws(case: spec.Case) -> spec.Case:
 
 
 def train_of(
-    case: spec.Case, geometry: Geometry, base: tuple[spec.Case, Train] | None = None
+    case: spec.Case,
+    geometry: Geometry,
+    base: tuple[spec.Case, Train] | None = None,
+    changed: Collection[Path] | None = None,
 ) -> Train:
     """Turn a case into a train of a geometry that is settled.
 
@@ -75,6 +79,9 @@ def train_of(
     geometry : Geometry
     base : (spec.Case, Train), optional
         Another case and its train, which has all elements of which the two cases say the same.
+    changed : collection of Path, optional
+        Section and name of the elements of which they do not; by default all that are not the same
+        object in both.
 
     Raises
     ------
@@ -91,7 +98,9 @@ def train_of(
             return {name: convert(name, item) for name, item in now.items()}
         before, there = getattr(base[0], section), getattr(base[1], known or section)
         return {
-            name: there[name] if item is before[name] else convert(name, item)
+            name: convert(name, item)
+            if (item is not before[name] if changed is None else (section, name) in changed)
+            else there[name]
             for name, item in now.items()
         }
 

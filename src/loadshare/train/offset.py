@@ -67,4 +67,6 @@ def turned(components: Vector, angle: Angle) -> Vector:
 
 def polar(amount: float, direction: float) -> Vector:
     """Vector (2,) of a size and a direction [rad]."""
-    return np.stack([amount * np.cos(direction), amount * np.sin(direction)], axis=-1)
+    both = amount * np.cos(direction), amount * np.sin(direction)
+    alone = not any(isinstance(component, np.ndarray) for component in both)
+    return np.array(both) if alone else np.stack(both, axis=-1)
