@@ -140,8 +140,7 @@ class Mechanics:
         self.drum = np.array([order[r.gear] for r in drums], dtype=np.intp)
         self.neighbours = _pairs([[order[n] for n in r.neighbours] for r in drums])
         self.across = np.array([r.across for r in drums]).reshape(-1, 3)
-        apart = [[_apart(train, r.gear, n) for n in r.neighbours] for r in drums]
-        self.nominal = np.array(apart).reshape(-1, 2, 3)
+        self.nominal = arms_of_drums(train)
         self.distance = np.sqrt((self.nominal**2).sum(axis=2))
         self.squeezed = np.flatnonzero(
             [
@@ -275,6 +274,13 @@ class Mechanics:
 def mechanics_of(train: Train) -> Mechanics:
     """Return the mechanics of a train, written down once."""
     return Mechanics(train)
+
+
+@lru_cache(maxsize=CERTIFY.trains)
+def arms_of_drums(train: Train) -> Array:
+    """Return the ways to drums from both neighbours, as `nominal` in `Mechanics`."""
+    apart = [[_apart(train, r.gear, n) for n in r.neighbours] for r in train.drums]
+    return np.array(apart).reshape(-1, 2, 3)
 
 
 def _pairs(values: list[object]) -> Numbers:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.array_types import Array
-from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.mechanics import arms_of_drums, mechanics_of
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
@@ -25,7 +25,9 @@ def _arc_forces(train: Train, answers: Equilibria) -> Array:
 
 def arc_curvature(train: Train, answers: Equilibria) -> Array:
     """Stiffness [N/m] that arcs take across them, Σ F/a of the drum where it is largest, (S,)."""
-    taken = np.maximum(_arc_forces(train, answers), 0.0) / mechanics_of(train).distance
+    # All of the mechanics is more than this takes: most batches come with a train of their own.
+    distance = np.sqrt((arms_of_drums(train) ** 2).sum(axis=2))
+    taken = np.maximum(_arc_forces(train, answers), 0.0) / distance
     return np.asarray(taken.sum(axis=2).max(axis=1, initial=0.0))
 
 
@@ -43,10 +45,12 @@ def is_convex(train: Train, situations: Situations, answers: Equilibria, load: A
     """
     band = CERTIFY.carries * load
     convex = _arc_forces(train, answers).max(axis=(1, 2), initial=0.0) <= band
-    torque = answers.flank_force @ mechanics_of(train).spline_moment.T
     fixed, per_torque = situations.spline[:, :, 3], situations.spline[:, :, 4]
+    follows = np.isnan(fixed) & (per_torque > 0.0)
+    if not follows.any():
+        return np.asarray(convex)
+    torque = answers.flank_force @ mechanics_of(train).spline_moment.T
     first = len(train.rounds)
     reaction = answers.radial_reaction[:, first : first + len(train.splines)]
     slips = np.sqrt((reaction**2).sum(axis=2)) >= per_torque * np.abs(torque) - band[:, None]
-    follows = np.isnan(fixed) & (per_torque > 0.0)
     return np.asarray(convex & ~(follows & slips).any(axis=1))
