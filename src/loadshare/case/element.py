@@ -147,9 +147,9 @@ def same_but_for_values(one: Any, other: Any) -> bool:
         return len(one) == len(other) and all(same_but_for_values(*both) for both in parts)
     if isinstance(one, Element):
         fields = type(one).model_fields
-        parts = ((getattr(one, name), getattr(other, name)) for name in fields)
-        given = one.model_fields_set == other.model_fields_set
-        return given and all(same_but_for_values(*both) for both in parts)
+        return one.model_fields_set == other.model_fields_set and all(
+            same_but_for_values(getattr(one, name), getattr(other, name)) for name in fields
+        )
     return isinstance(one, Quantity) or bool(one == other)
 
 

@@ -167,7 +167,7 @@ class Case(Content):
 
         None where nothing does. Where one was made from the other by `replace`, this takes no time.
         """
-        return differing(before._data, self._data)
+        return iter(differing(before._data, self._data))
 
     def is_assumed(self, key: str) -> bool:
         """Tell whether an input is marked as assumed, itself or as part of what is.

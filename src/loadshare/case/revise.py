@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -161,21 +161,23 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
     return nearest(data, path)
 
 
-def differing(before: Any, after: Any, above: Path = ()) -> Iterator[tuple[Path, Any, Any]]:
-    """Yield where plain data differ: the key, and both values; None for nothing."""
+def differing(before: Any, after: Any, above: Path = ()) -> list[tuple[Path, Any, Any]]:
+    """Return where plain data differ: the key, and both values; None for nothing."""
     if before is after:
-        return
+        return []
+    found = []
     if isinstance(before, dict) and isinstance(after, dict):
         for key in {**before, **after}:
             one, other = before.get(key), after.get(key)
             # Most are texts that are the same.
             if not (isinstance(one, str) and one == other):
-                yield from differing(one, other, (*above, key))
+                found += differing(one, other, (*above, key))
     elif isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
         for k, (one, other) in enumerate(zip(before, after, strict=True)):
-            yield from differing(one, other, (*above, k))
+            found += differing(one, other, (*above, k))
     elif type(before) is not type(after) or before != after:
-        yield above, before, after
+        found.append((above, before, after))
+    return found
 
 
 def nearest(data: Mapping[str, Any], path: Path) -> str:

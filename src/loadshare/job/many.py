@@ -31,7 +31,7 @@ from loadshare.job.table import USUAL, Table, checked
 from loadshare.one_thread import one_thread
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.columns import Columns, columns_of
-from loadshare.train.samples import Samples, samples_of, unusable
+from loadshare.train.samples import Samples, groups_of, samples_of, unusable
 from loadshare.train.shape import shape_of
 
 if TYPE_CHECKING:
@@ -192,15 +192,16 @@ def solve_many(
     True
     """
     case, kept, tolerance = opened(case), checked(keep), checked_tolerance(tolerance)
-    columns = {c.key: c.values for c in columns_of(samples)}  # Once: it may hold a generator.
-    groups = samples_of(case, columns)
+    columns = columns_of(samples)  # Once: it may hold a generator.
+    groups = groups_of(case, columns)
     trains = [group.train for _, group in groups]
     wanted = wanted_of(trains, positions)
-    found = Table(trains, wanted, len(next(iter(columns.values()))), kept)
+    found = Table(trains, wanted, len(columns[0].values), kept)
     blocks = _solved(case, groups, wanted, tolerance, engine, workers, least_norm)
     try:
         found.fill(blocks, progress)
     except CaseError as error:
         # It names what may be another sample's value.
-        raise next(iter(unusable(case, columns).values()), error) from None
+        table = {column.key: column.values for column in columns}
+        raise next(iter(unusable(case, table).values()), error) from None
     return found.dataset(case, tolerance)

@@ -113,7 +113,11 @@ def samples_of(
         If a key or a value cannot be used; the smallest and the largest value of every key are
         checked like any other input.
     """
-    columns = columns_of(samples)
+    return groups_of(case, columns_of(samples))
+
+
+def groups_of(case: spec.Case, columns: Sequence[Column]) -> list[tuple[NDArray[np.intp], Samples]]:
+    """Turn samples, read as columns, into groups; see `samples_of`."""
     first = case.replace({dotted(c.path): c.text(0) for c in columns})
     units = {c.path: u for c in columns if (u := array_unit(first, c)) is not None}
     arrays = {c.path: c.in_si(units[c.path]) for c in columns if c.path in units}
