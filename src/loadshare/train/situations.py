@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loadshare.contact.arc import Arc
-from loadshare.contact.law import PowerLaw, TableLaw
-from loadshare.train.mesh import Mesh
+from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.train.ring import DrumRing, transverse
 from loadshare.train.train import Train
 
@@ -160,7 +159,7 @@ def situations_of(train: Train, index: int | Sequence[int]) -> Situations:
     where: Any = np.array(index, dtype=np.intp) if several else index
     rotation = train.rotations(where)
     arrays = {
-        "torque": _table([_torque(train, g, where) for g in train.gears]),
+        "torque": _torques(train, where),
         **_turned(train, rotation),
         **_lasting(train),
     }
@@ -226,38 +225,39 @@ def _lasting(train: Train) -> dict[str, Array]:
 
 def _of_flanks(train: Train, position: Mapping[str, Any] | None = None) -> dict[str, Array]:
     """Gaps and laws of flanks at the positions of their laws; their only ones without."""
-    flanks = [
-        (mesh, drive, 0 if position is None else position[mesh.flank_name(drive)])
-        for mesh in train.meshes.values()
-        for drive in mesh.flanks
-    ]
-    laws = [_laws(mesh, at) for mesh, _, at in flanks]
+    flanks = [(mesh, drive) for mesh in train.meshes.values() for drive in mesh.flanks]
+    where = [0 if position is None else position[mesh.flank_name(d)] for mesh, d in flanks]
+    gaps = [m.gaps if d else [m.backlash + gap for gap in m.coast_gaps] for m, d in flanks]
+    laws = [mesh.laws for mesh, _ in flanks]
+    powers = [[law if isinstance(law, PowerLaw) else _NONE for law in every] for every in laws]
+    tables = [_tables_at(*both) for both in zip(laws, where, strict=True)]
     return {
-        "gap": _table([_gap(mesh, drive, at) for mesh, drive, at in flanks]),
-        "bending": _table([b for b, _, _ in laws]),
-        "hertz": _table([c for _, c, _ in laws]),
-        "table": _tables([tables for _, _, tables in laws]),
+        "gap": _chosen(gaps, where),
+        "bending": _chosen([[law.b for law in every] for every in powers], where),
+        "hertz": _chosen([[law.c for law in every] for every in powers], where),
+        "table": _tables(tables),
     }
-
-
-def _gap(mesh: Mesh, drive: bool, position: Any) -> Any:
-    """Gap of a flank [m] at a position of its laws, or at several of them."""
-    return _at(mesh.gaps, position) if drive else mesh.backlash + _at(mesh.coast_gaps, position)
-
-
-def _laws(mesh: Mesh, position: Any) -> tuple[Any, Any, Sequence[TableLaw | None]]:
-    """b, c and the table of a flank at a position of its laws, or at several of them."""
-    laws = mesh.laws if isinstance(position, np.ndarray) else (_at(mesh.laws, position),)
-    tables = [law if isinstance(law, TableLaw) else None for law in laws]
-    powers = [law if isinstance(law, PowerLaw) else _NONE for law in laws]
-    b, c = _at([law.b for law in powers], position), _at([law.c for law in powers], position)
-    if len(laws) == 1 or not any(tables):
-        return b, c, tables[:1]
-    return b, c, [tables[k] for k in np.atleast_1d(position % len(laws)).tolist()]
 
 
 _NONE = PowerLaw(0.0)
 """The power law of a mesh that has a table."""
+
+
+def _tables_at(laws: Sequence[Law], position: Any) -> Sequence[TableLaw | None]:
+    """Tables of a flank at a position of its laws, or at several of them; one for all alike."""
+    tables = [law if isinstance(law, TableLaw) else None for law in laws]
+    if len(tables) == 1 or not any(tables):
+        return tables[:1]
+    return [tables[k] for k in np.atleast_1d(position % len(tables)).tolist()]
+
+
+def _chosen(values: Sequence[Sequence[Any]], where: Sequence[Any]) -> Array:
+    """Of each of several values, one or one per position of a cycle, those at its positions."""
+    longest = max(map(len, values), default=1)
+    if longest == 1 or not all(isinstance(at, np.ndarray) and at.ndim for at in where):
+        return _table([_at(each, at) for each, at in zip(values, where, strict=True)])
+    cycles = np.array([[*each] * (longest // len(each)) for each in values])
+    return np.asarray(cycles[np.arange(len(cycles)), np.array(where).T % longest])
 
 
 def _at(values: Sequence[Any], position: Any) -> Any:
@@ -280,9 +280,8 @@ def stack(situations: Sequence[Situations]) -> Situations:
     for name, value in first._arrays().items():
         parts = [arrays[name] for arrays in every]
         # Not-a-number is the same as itself.
-        alike = value.tobytes()
-        if all(
-            len(p) == 1 and (p is value or (p.shape == value.shape and p.tobytes() == alike))
+        if len(value) == 1 and all(
+            p is value or (p.shape == value.shape and p.tobytes() == value.tobytes())
             for p in parts
         ):
             together[name] = value
@@ -333,12 +332,12 @@ def _pairs(values: Sequence[tuple[float, float]]) -> Array:
     return table.reshape(len(table), len(values), 2)
 
 
-def _torque(train: Train, gear: str, index: Any) -> Any:
-    """External torque on a gear [N·m], at a position or at several."""
-    external = train.external.get(gear, 0.0)
-    if gear != train.input:
-        return external
-    return external + _at(train.input_torque, index - 1)
+def _torques(train: Train, index: Any) -> Array:
+    """External torques on gears [N·m], at a position or at several."""
+    found: list[Any] = [train.external.get(gear, 0.0) for gear in train.gears]
+    first = train.order[train.input]
+    found[first] = found[first] + _at(train.input_torque, index - 1)
+    return _table(found)
 
 
 def _splines(train: Train) -> Array:
