@@ -47,8 +47,8 @@ def flank_torques(train: Train, flank_force: Mapping[str, float]) -> dict[str, l
         [N].
     """
     return {
-        name: [mesh.lever(d) * float(flank_force[mesh.flank_name(d)]) for d in mesh.flanks]
-        for name, mesh in train.meshes.items()
+        name: [lever * float(flank_force[flank]) for flank, lever in flanks]
+        for name, flanks in train.driving.items()
     }
 
 
@@ -128,13 +128,13 @@ def load_factors(train: Train, torque: Mapping[str, float], stage: Stage) -> dic
 
 def torques_of_flanks(train: Train, force: Array) -> Array:
     """Return the torque that each force of a flank [N] exerts on the driver [N·m], (S, flanks)."""
-    lever = np.array([m.lever(d) for m in train.meshes.values() for d in m.flanks])
+    lever = np.array([lever for flanks in train.driving.values() for _, lever in flanks])
     return np.asarray(force * lever)
 
 
 def mesh_torques(train: Train, force: Array) -> MeshTorques:
     """Return the torques that forces of flanks, (S, flanks) [N], exert on the drivers."""
-    flanks = np.array([len(mesh.flanks) for mesh in train.meshes.values()])
+    flanks = np.array([*map(len, train.driving.values())])
     torque, last = torques_of_flanks(train, force), flanks.cumsum() - 1
     net = torque[:, last]
     net[:, flanks == 2] += torque[:, last[flanks == 2] - 1]

@@ -122,6 +122,14 @@ class Train:
         }
 
     @cached_property
+    def driving(self) -> dict[str, tuple[tuple[str, float], ...]]:
+        """Flanks of every mesh, the drive flank first, and their torques per force [m]."""
+        return {
+            name: tuple((mesh.flank_name(d), mesh.lever(d)) for d in mesh.flanks)
+            for name, mesh in self.meshes.items()
+        }
+
+    @cached_property
     def floating(self) -> tuple[str, ...]:
         """Gears whose rest position is reported: free ones, those on a spline, those in a ring."""
         return tuple(
