@@ -100,6 +100,15 @@ def test_shapes_labels_and_units():
     assert (found.residual <= CERTIFY.tolerance).all()
 
 
+def test_what_is_noted_on_the_labels_of_one_table_stays_there():
+    one, other = (ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1]) for _ in range(2))
+    one.mesh.attrs["seen"] = one.sample.attrs["seen"] = "yes"
+    assert not other.mesh.attrs
+    assert not other.sample.attrs
+    again = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
+    assert again.identical(other)
+
+
 @pytest.mark.parametrize("keep", [("torque",), ("share", "pair_share"), ("displacement",), ()])
 def test_only_what_is_kept(keep):
     found = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1], keep=keep)

@@ -36,6 +36,17 @@ def test_what_is_taken_over_is_what_would_be_built(name, changes):
         assert np.array_equal(getattr(one, field), getattr(other, field), equal_nan=True), field
 
 
+def test_a_case_that_is_written_anew_shares_the_elements_that_say_the_same():
+    base = shipped("fgfbstts/limit_ring")
+    train = build_train(base)
+    written = ls.Case(base.replace({"errors.6.installation": ["1 um", "0 um"]}).to_dict())
+    found = train_alike(written, (base, geometry_of(base), train))
+    assert found is not None
+    same = [name for name in train.offsets if found.offsets[name] is train.offsets[name]]
+    assert same == [name for name in train.offsets if name != "6"]
+    assert all(found.meshes[name] is mesh for name, mesh in train.meshes.items())
+
+
 @pytest.mark.parametrize(
     ("name", "changes"),
     [

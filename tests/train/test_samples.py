@@ -152,6 +152,25 @@ def test_all_keys_together(make):
     means_what_the_case_means(make().replace(changes), samples)
 
 
+@pytest.mark.parametrize("torque", [800.0, -800.0])
+def test_a_batch_after_another_is_what_it_would_be_alone(torque):
+    """Only where the load presses the same flanks is the geometry that of the one before."""
+    case = loaded(shipped("fgfbstts/both_errors"), "900 N*m")
+    samples = {"operating.torque [N*m]": [torque, 0.9 * torque]}
+    ((_, before),) = samples_of(case, {"operating.torque [N*m]": [900.0]})
+    ((_, after),), ((_, alone),) = (
+        samples_of(case, samples),
+        samples_of(ls.Case(case.to_dict()), samples),
+    )
+    assert (after.geometry is before.geometry) == (torque > 0.0)
+    for name in ARRAYS:
+        one, other = (getattr(group.situations(2), name) for group in (after, alone))
+        assert np.array_equal(one, other, equal_nan=True), name
+    turned = [[mesh.turned for mesh in g.train.meshes.values()] for g in (before, after, alone)]
+    assert turned[1] == turned[2]
+    assert (turned[0] == turned[1]) == (torque > 0.0)
+
+
 def test_texts_with_units_mean_what_numbers_mean():
     case = everything()
     ((_, texts),) = samples_of(case, {"rings.4.float": ["1 um", "0.002 mm", "3e-6 m"]})

@@ -29,4 +29,6 @@ def arrays_of(situations: Situations, answers: Equilibria) -> tuple[Any, Any]:
 
 def _array(array: Array) -> Array:
     """Return an array of the one kind that code is compiled for."""
+    if array.flags.carray and array.dtype == np.float64:
+        return array
     return np.require(array, np.float64, ["C", "W"])

@@ -138,6 +138,8 @@ def _is_soft(
     with np.errstate(all="ignore"):
         least = 0.5 * tolerance * load / deflection
     for stiffness in (*springs, situations.round_stiffness):
+        if not stiffness.any():
+            continue
         there = np.where(stiffness > 0.0, stiffness, np.inf)
         soft |= there.min(axis=1, initial=np.inf) < least
     return soft

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 import numpy as np
 
-from loadshare.case import Case
+from loadshare.case import Case, Gear, Operating
 from loadshare.case.content import ABOUT
+from loadshare.case.power_flow import has_sets
 from loadshare.case.quantity import NUMBER
 from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of
@@ -48,12 +50,20 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
             return None
         if array_unit(case, Column(path, "", np.array(numbers, dtype=float))) is None:
             return None
-    if any(path[0] == "operating" for path, _, _ in differences):
+    loaded = any(path[0] == "operating" for path, _, _ in differences)
+    if loaded and not _runs_alike(case.operating, base[0].operating, case.gears):
         turned = turned_meshes(case, base[1].gears)
         if any(turned[name] != pair.turned for name, pair in base[1].pairs.items()):
             return None
     changed = {path[:2] for path, _, _ in differences}
     return train_of(case, base[1], (base[0], base[2]), changed)
+
+
+def _runs_alike(now: Operating, before: Operating, gears: Mapping[str, Gear]) -> bool:
+    """Whether torques have the signs that they had, and nothing else tells what they press."""
+    if has_sets(gears) or now.external:
+        return False
+    return np.array_equal(np.sign(now.input_torque), np.sign(before.input_torque))
 
 
 def _number(value: object) -> float | None:

@@ -281,8 +281,7 @@ def stack(situations: Sequence[Situations]) -> Situations:
         parts = [arrays[name] for arrays in every]
         # Not-a-number is the same as itself.
         if len(value) == 1 and all(
-            p is value or (p.shape == value.shape and p.tobytes() == value.tobytes())
-            for p in parts
+            p is value or (p.shape == value.shape and p.tobytes() == value.tobytes()) for p in parts
         ):
             together[name] = value
             continue
