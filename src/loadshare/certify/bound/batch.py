@@ -57,7 +57,8 @@ def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Jud
     if plan is None or not np.array_equal(plan.layout.spring, held[0]):
         plan = _plans[columns] = Plan(columns, *held)
     here, claim = arrays_of(situations, answers)
-    found, sets = plan.found(len(answers.rotation)), plan.sets()
+    claims = len(answers.rotation)
+    found, sets = plan.found(claims), plan.sets(claims)
     count = kernel.find_all(plan.layout, here, claim, plan.work(), found, sets)
     acts = found.acts[sets.first[:count]]
     errors = np.empty_like(found.largest)

@@ -133,13 +133,11 @@ class Plan:
         ]
         return Found._make([number, acts, *map(np.empty, sizes)])
 
-    def sets(self) -> Sets:
-        """Return room for sets of elements."""
-        size = (BOUND.sets_distinguished, len(self.contacts) + len(self.springs) + len(self.pulls))
-        first, key = (
-            np.empty(BOUND.sets_distinguished, dtype=np.intp),
-            np.empty(BOUND.sets_distinguished, dtype=np.uint64),
-        )
+    def sets(self, count: int) -> Sets:
+        """Return room for the sets of elements of so many claims."""
+        most = min(count, BOUND.sets_distinguished)
+        size = most, len(self.contacts) + len(self.springs) + len(self.pulls)
+        first, key = np.empty(most, dtype=np.intp), np.empty(most, dtype=np.uint64)
         return Sets(first, key, np.full(size, np.inf), np.zeros(size))
 
     def _known(self, acts: Acts) -> Operators:

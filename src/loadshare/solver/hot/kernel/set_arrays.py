@@ -141,8 +141,10 @@ def packed_sets(structure: Structure, loading: Loading, sets: States) -> tuple[A
             known = _pack(*_structure(structure, loading, structure.basis(states), states))
             structure.remember(key, known)
         found.append(known)
-    floats, numbers = zip(*found, strict=True)
     begins = np.zeros((len(sets), 2), dtype=np.intp)
+    if len(found) == 1:
+        return *found[0], begins
+    floats, numbers = zip(*found, strict=True)
     for k, every in enumerate((floats, numbers)):
         np.cumsum([len(one) for one in every[:-1]], out=begins[1:, k])
     return np.concatenate(floats), np.concatenate(numbers), begins
