@@ -23,12 +23,18 @@ def _arc_forces(train: Train, answers: Equilibria) -> Array:
     return answers.ring_force[:, 2 * drums :].reshape(len(answers.rotation), drums, 2)
 
 
+def _largest(numbers: Array) -> Array:
+    """Largest of the numbers of every answer, (S, k), and zero: (S,)."""
+    # Column by column: rows are too short to be worth a loop each.
+    return np.asarray(np.maximum.reduce([np.zeros(len(numbers)), *numbers.T]))
+
+
 def arc_curvature(train: Train, answers: Equilibria) -> Array:
     """Stiffness [N/m] that arcs take across them, Σ F/a of the drum where it is largest, (S,)."""
     # All of the mechanics is more than this takes: most batches come with a train of their own.
     distance = np.sqrt((arms_of_drums(train) ** 2).sum(axis=2))
     taken = np.maximum(_arc_forces(train, answers), 0.0) / distance
-    return np.asarray(taken.sum(axis=2).max(axis=1, initial=0.0))
+    return _largest(taken[:, :, 0] + taken[:, :, 1])
 
 
 def is_convex(train: Train, situations: Situations, answers: Equilibria, load: Array) -> Array:
@@ -44,7 +50,8 @@ def is_convex(train: Train, situations: Situations, answers: Equilibria, load: A
         Of each case [N].
     """
     band = CERTIFY.carries * load
-    convex = _arc_forces(train, answers).max(axis=(1, 2), initial=0.0) <= band
+    forces = _arc_forces(train, answers)
+    convex = _largest(forces.reshape(len(forces), -1)) <= band
     fixed, per_torque = situations.spline[:, :, 3], situations.spline[:, :, 4]
     follows = np.isnan(fixed) & (per_torque > 0.0)
     if not follows.any():
