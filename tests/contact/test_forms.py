@@ -79,6 +79,34 @@ def test_cones_by_clarabel(exact_hertz: bool) -> None:
     same(formulation, formulation.read(form.point(np.array(answer.x), np.array(answer.z))))
 
 
+def test_a_loose_gear_whose_flanks_have_hertz_laws() -> None:
+    """Its place is any that its play allows: no flank without a force may be overlapped there."""
+    law = {"b": "5e-7 rad/(N*m)", "c": "2e-7 rad/(N*m)^(2/3)"}
+    gears = {
+        "g1": {"base_radius": "50 mm", "support": "free", "centre": ["0 mm", "0 mm"]},
+        "g2": {"base_radius": "50 mm", "support": "300 N/um", "centre": ["0 mm", "0 mm"]},
+        "h1": {"base_radius": "90 mm", "support": "300 N/um", "centre": ["149 mm", "0 mm"]},
+        "h2": {"base_radius": "90 mm", "support": "18 N/um", "centre": ["149 mm", "0 mm"]},
+    }
+    meshes = {
+        "g1-h1": {"driver": "g1", "driven": "h1", "backlash": "0.26 mm", "law": law},
+        "g2-h2": {"driver": "g2", "driven": "h2", "backlash": "0.12 mm", "law": law},
+    }
+    shafts = {
+        "in": {"ends": ["g1", "g2"], "stiffness": "12000 N*m/rad", "clocking": "-0.012 rad"},
+        "out": {"ends": ["h1", "h2"], "stiffness": "rigid"},
+    }
+    operating = {"input": "g1", "output": "h2", "torque": "-1.8 N*m"}
+    case = ls.Case({"operating": operating, "gears": gears, "meshes": meshes, "shafts": shafts})
+    formulation = ls.formulate(case)
+    written = formulation.cvxpy()
+    written.problem.solve(solver="CLARABEL")
+    read = formulation.read(written.point())
+    expected = ls.solve(case).positions[0].torque
+    assert read.equilibrium.flank_force["g2-h2 coast"] * 0.05 == pytest.approx(1.8, rel=1e-12)
+    assert expected["g2-h2"] == pytest.approx(-1.8, rel=1e-12)
+
+
 def test_cvxpy() -> None:
     formulation = ls.formulate(RING)
     form = formulation.cvxpy()

@@ -176,14 +176,21 @@ def _compliances(
     """Linear replacements of the laws: secants through the origin (Picard) or tangents (Newton)."""
     if method == "picard":
         return {n: (law.secant(forces[n]), 0.0) for n, law in _laws(problem).items()}
-    return tangents(problem, forces)
-
-
-def tangents(
-    problem: ContactProblem, forces: Mapping[str, float]
-) -> dict[str, tuple[float, float]]:
-    """Tangent compliances of the laws of all rows and arcs at some forces, and their offsets."""
     return {n: law.tangent(forces[n]) for n, law in _laws(problem).items()}
+
+
+def lines_of_laws(
+    problem: ContactProblem, forces: Mapping[str, float], least: float
+) -> dict[str, tuple[float, float]]:
+    """Compliances of the laws of all rows and arcs at some forces, and their offsets.
+
+    Tangents; of what carries nothing the secant up to the least force: by a tangent there, two
+    bodies that no force brings together could overlap.
+    """
+    return {
+        n: law.tangent(forces[n]) if forces[n] else (law.secant(least), 0.0)
+        for n, law in _laws(problem).items()
+    }
 
 
 def _laws(problem: ContactProblem) -> dict[str, Law]:

@@ -17,7 +17,7 @@ from loadshare.contact.forms import (
     quadratic_form,
 )
 from loadshare.contact.inner import solve_near
-from loadshare.contact.outer import Settled, tangents
+from loadshare.contact.outer import Settled, lines_of_laws
 from loadshare.contact.plan import Linearisation, Plan, Units, programme
 from loadshare.contact.programme import Point, Programme
 from loadshare.errors import Refused
@@ -148,8 +148,9 @@ def formulate(
     """Write the programme whose answer is the equilibrium of a case.
 
     The case is solved first. The programme is convex: arcs of limit rings are replaced by their
-    tangent faces at the equilibrium, nonlinear laws as their tangents, friction that follows a
-    torque as the bound at that torque. So its answer is the equilibrium itself.
+    tangent faces at the equilibrium, nonlinear laws by their tangents (by the secant up to a tiny
+    force where they carry none), friction that follows a torque by the bound at that torque. So its
+    answer is the equilibrium itself.
 
     Parameters
     ----------
@@ -173,11 +174,10 @@ def formulate(
     answer = explain(case, position, solver="clarabel", reduce=reduce)
     scene, found, record = answer.scene, answer.equilibrium, answer.record
     forces = {**found.flank_force, **found.ring_force}
-    least = JOB.least * scene.force_unit()
     x = coordinates_of(scene, found)
     at = Linearisation(
         x,
-        tangents(scene, {n: f or least for n, f in forces.items()}),
+        lines_of_laws(scene, forces, JOB.least * scene.force_unit()),
         {r.name: r.law(r.torque(forces), x) for r in scene.radials},
     )
     written, units = programme(scene, record.plan, at, exact_hertz=exact_hertz)
