@@ -14,7 +14,14 @@ from llvmlite import ir  # type: ignore[import-untyped]
 from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed, lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.extending import intrinsic, models, overload, register_model
+from numba.extending import (
+    intrinsic,
+    lower_builtin,
+    models,
+    overload,
+    register_model,
+    type_callable,
+)
 
 from loadshare.by_reference import by_reference, set_apart
 from loadshare.extremes import larger, smaller
@@ -100,27 +107,19 @@ def _set_apart_here():
     return lambda: _set_apart()
 
 
-def _extreme(name: str) -> Any:
-    @intrinsic
-    def extreme(_context, number, other):
-        def code(_target, builder, _signature, values):
-            kind = values[0].type
-            called = ir.FunctionType(kind, [kind, kind])
-            return builder.call(builder.module.declare_intrinsic(name, [kind], called), values)
+def _extreme(function: Any, name: str) -> None:
+    """Compile a function of two numbers as one instruction."""
 
-        return types.float64(types.float64, types.float64), code
+    @type_callable(function)
+    def _typed(_context):
+        return lambda number, other: types.float64
 
-    return extreme
-
-
-_largest, _smallest = _extreme("llvm.maxnum"), _extreme("llvm.minnum")
+    @lower_builtin(function, types.float64, types.float64)
+    def _code(_context, builder, _signature, values):
+        kind = values[0].type
+        called = ir.FunctionType(kind, [kind, kind])
+        return builder.call(builder.module.declare_intrinsic(name, [kind], called), values)
 
 
-@overload(larger, inline="always")
-def _larger_here(number, other):
-    return lambda number, other: _largest(number, other)
-
-
-@overload(smaller, inline="always")
-def _smaller_here(number, other):
-    return lambda number, other: _smallest(number, other)
+_extreme(larger, "llvm.maxnum")
+_extreme(smaller, "llvm.minnum")

@@ -25,6 +25,7 @@ from loadshare.certify.bound import Columns, bounds, kernel
 from loadshare.certify.bound.batch import is_covered, judged
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
+from loadshare.settings import BOUND
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
@@ -120,8 +121,12 @@ def test_bounds_hold_and_are_those_of_the_source(name, plain, monkeypatch):
     assert (off <= 1e-9).any()
     monkeypatch.setattr(kernel, "find_all", plain.find_all)
     monkeypatch.setattr(kernel, "bound_all", plain.bound_all)
+    # One row of claims that is full, and one that is not: the source alone is slow.
+    few = np.arange(BOUND.abreast + 6)
+    some = here.take(few) if here.count > 1 else here
     with np.errstate(all="ignore"):
-        again = relative_bounds(columns, here, wrong)
+        again = relative_bounds(columns, some, taken(wrong, few))
+    off = off[few]
     close = np.isfinite(off) & np.isfinite(again)
     assert (np.isfinite(off) == np.isfinite(again)).mean() > 0.99
     np.testing.assert_allclose(again[close], off[close], rtol=SAME, atol=ROUNDED)

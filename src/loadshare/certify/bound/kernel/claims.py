@@ -84,9 +84,10 @@ def _put_scales(work):  # type: ignore[no-untyped-def]
         deflection[v] = bent if bent > 0.0 else CERTIFY.least_deflection
 
 
-@inlined
+@within
 def _take(first, width, work, found):  # type: ignore[no-untyped-def]
     """Write what is found of the claims at hand."""
+    set_apart()
     take_rows(found.misfit, first, width, work.apart)
     take_rows(found.left, first, width, work.left_over)
     take_row(found.scale, first, width, work.scale)
@@ -105,9 +106,10 @@ def _take(first, width, work, found):  # type: ignore[no-untyped-def]
     take_row(found.displaced, first, width, work.displaced)
 
 
-@inlined
+@within
 def _put_loads(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
     """Load and largest torque of claims, and the largest force of their flanks [N]."""
+    set_apart()
     flanks, top = len(of.arm), work.top
     load, torque = work.scale, work.largest
     fill(load, 0.0)
@@ -134,9 +136,10 @@ def _put_loads(of, here, claim, first, width, work):  # type: ignore[no-untyped-
         work.root_of_light[v] = np.cbrt(work.light[v])
 
 
-@inlined
+@within
 def _put_acts(of, work):  # type: ignore[no-untyped-def]
     """Tell which contacts act, as `quick` does, and by how much the others are apart."""
+    set_apart()
     flanks, contacts, top, approach = len(of.arm), len(of.twin), work.top, work.approach
     room, aside = work.room, work.aside
     for v in range(BOUND.abreast):

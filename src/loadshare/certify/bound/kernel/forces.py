@@ -31,7 +31,7 @@ from loadshare.extremes import larger, smaller
 from loadshare.settings import BOUND
 
 
-@inlined
+@within
 def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignore[no-untyped-def]
     """Forces and misfits of contacts.
 
@@ -39,6 +39,7 @@ def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignor
     remains of their approach at rest [m]; and what is seen of residuals: length [m], work [J],
     pull [N], and a sum in which nothing that is no number is lost.
     """
+    set_apart()
     for row in (work.yielded, work.bent, work.misfit, work.energy, work.pulled, work.total):
         fill(row, 0.0)
     fill(work.weakest, np.inf)
@@ -176,9 +177,10 @@ def _spread_contact(work, c, first, width, found, sets, new, alike):  # type: ig
             spread(sets, found.number[first + v], c, least[v], upper)
 
 
-@inlined
+@within
 def put_springs(of, here, claim, first, width, work, found, sets, new):  # type: ignore[no-untyped-def]
     """Forces and misfits of elastic shafts and bearings; the largest deflection so far [m]."""
+    set_apart()
     soft, contacts = work.given, len(of.twin)
     put_rows(claim.shaft_torque, first, width, work.wound)
     put_vectors(claim.support_force, first, width, work.borne)
@@ -209,13 +211,14 @@ def put_springs(of, here, claim, first, width, work, found, sets, new):  # type:
                 spread(sets, found.number[first + v], contacts + k, soft[v], soft[v])
 
 
-@inlined
+@within
 def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-def]
     """Forces and misfits of radial elements: the point of their graph next to what is claimed.
 
     Writes the largest of their lengths [m], whether their laws have a meaning (1 or 0), and whether
     the bound covers them as well.
     """
+    set_apart()
     contacts, at = len(of.twin), len(of.twin) + len(of.spring)
     longest, lawful, covered = 0.0, True, True
     for q in range(len(of.pull_gear)):
@@ -296,9 +299,10 @@ def put_pushes(left, sizes, force, start, at, value):  # type: ignore[no-untyped
                 size[v] += abs(factor * row[v])
 
 
-@inlined
+@within
 def put_balance(of, work):  # type: ignore[no-untyped-def]
     """Load that is left over [N]: the largest, with its rounding; and over the load of the case."""
+    set_apart()
     left, sizes = work.left, work.sizes
     largest, residual, rounding, total = work.largest_push, work.residual, work.rounding, work.total
     for k in range(len(of.load)):

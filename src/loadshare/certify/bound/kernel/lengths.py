@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.by_reference import set_apart
 from loadshare.certify.bound.kernel.abreast import (
     fill,
     put_column,
@@ -15,18 +16,19 @@ from loadshare.certify.bound.kernel.abreast import (
     put_sum,
     put_vectors,
 )
-from loadshare.certify.bound.kernel.options import inlined
+from loadshare.certify.bound.kernel.options import within
 from loadshare.extremes import larger
 from loadshare.settings import BOUND
 
 
-@inlined
+@within
 def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
     """Coordinates, clockings and offsets of claims [m], and where their gears are.
 
     Writes the sum of the largest sizes of both as their width, and the largest offset of a centre
     as their deflection.
     """
+    set_apart()
     x, varying, shift, moved, square = work.x, work.varying, work.shift, work.moved, work.given
     widest, furthest = work.width, work.deflection
     shafts = here.clocking.shape[1]
@@ -67,9 +69,10 @@ def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-
         furthest[v] = np.sqrt(furthest[v])
 
 
-@inlined
+@within
 def put_lengths(of, work):  # type: ignore[no-untyped-def]
     """Lengths A X [m] with clockings and offsets, what of them remains at rest, turns of lines."""
+    set_apart()
     length, at_rest, across, shift = work.length, work.at_rest, work.across, work.shift
     length[:], at_rest[:] = 0.0, 0.0
     put_product(length, of.start, of.start[1:], of.at, of.value, work.x)
@@ -83,9 +86,10 @@ def put_lengths(of, work):  # type: ignore[no-untyped-def]
             put_sum(across[e], shift[3 * of.ends[e, 1] + k], -of.across[e, k])
 
 
-@inlined
+@within
 def put_limits(of, here, first, width, work):  # type: ignore[no-untyped-def]
     """Take gaps and floats from the lengths [m]; the largest of them, and the largest approach."""
+    set_apart()
     limits, approach, given = work.limits, work.approach, work.given
     flanks = work.gap[: len(of.arm)]
     put_rows(here.gap, first, width, flanks)
@@ -105,12 +109,13 @@ def put_limits(of, here, first, width, work):  # type: ignore[no-untyped-def]
             put_largest(limits, given, 1.0)
 
 
-@inlined
+@within
 def put_gaps(of, here, first, width, work):  # type: ignore[no-untyped-def]
     """Gaps of flanks, stops and arcs, the widest of them, and unit vectors of the latter.
 
     Where a gear stands beyond a neighbour on whose ring its own rolls, `behind` is 1.
     """
+    set_apart()
     flanks, drums = len(of.arm), len(of.drum_gear)
     for c in range(flanks + 2 * drums):
         length = work.length[c if c < flanks else of.first_stop + c - flanks]

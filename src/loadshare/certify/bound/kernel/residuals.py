@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.by_reference import set_apart
 from loadshare.certify.bound.kernel.abreast import (
     fill,
     put_column,
@@ -13,18 +14,19 @@ from loadshare.certify.bound.kernel.abreast import (
     put_sum,
     row_of,
 )
-from loadshare.certify.bound.kernel.options import inlined
+from loadshare.certify.bound.kernel.options import inlined, within
 from loadshare.extremes import larger
 from loadshare.settings import BOUND, CERTIFY
 
 
-@inlined
+@within
 def put_worst(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
     """Largest scaled residuals of claims but of balance: of laws, signs, and what is no column.
 
     Not a number where something claimed is none, and where two opposed contacts carry: these are
     for `residuals`.
     """
+    set_apart()
     force, length, total = work.pulled, work.misfit, work.total
     at = len(of.twin) + len(of.spring)
     _put_strayed(of, work)
@@ -177,12 +179,13 @@ def _squeeze(of, here, claim, s, work, v, d, band):  # type: ignore[no-untyped-d
     return squeeze * across / (np.sqrt(wedge) + np.sqrt(wedge + across))
 
 
-@inlined
+@within
 def put_displaced(of, work):  # type: ignore[no-untyped-def]
     """How far displacements go to a warning (see `Measuring.worst`).
 
     Not a number where an approach is neglected that only gears without force may take up.
     """
+    set_apart()
     most, furthest, worst = work.given, work.push, work.displaced
     moved = work.moved
     fill(most, 0.0)
