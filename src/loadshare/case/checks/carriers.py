@@ -20,7 +20,8 @@ def check_carriers(draft: Draft) -> Iterator[Problem]:
     """Yield carriers that are none, and planets that cannot ride on theirs."""
     centres = draft.centres()
     for name, gear in draft.gears.items():
-        carrier = draft.gears.get(gear.carrier or "")
+        # A gear may be named "", which is reported elsewhere: no carrier is no name.
+        carrier = None if gear.carrier is None else draft.gears.get(gear.carrier)
         if carrier is None:
             continue
         path: Path = ("gears", name, "carrier")
@@ -57,9 +58,9 @@ def check_planet_meshes(draft: Draft) -> Iterator[Problem]:
         for end, gear in zip(mesh.ends, ends, strict=True):
             if gear is not None and gear.is_carrier:
                 yield draft.problem(path, f"{end} is a carrier and has no teeth")
-        carrier = rides_on(draft.gears, *mesh.ends) or ""
-        holder = draft.gears.get(carrier)
-        if holder is None or not holder.is_carrier:
+        carrier = rides_on(draft.gears, *mesh.ends)
+        holder = None if carrier is None else draft.gears.get(carrier)
+        if carrier is None or holder is None or not holder.is_carrier:
             continue
         for end, gear in zip(mesh.ends, ends, strict=True):
             if gear is None or gear.is_carrier or gear.carrier == carrier:
