@@ -95,9 +95,14 @@ def test_positions_are_chosen_and_each_solved_once(command, cases, tmp_path):
     words = ("--position", "3", "--position", "2", "--position", "3", "-o", target)
     result = command("run", cases / "fgfbstts/base.toml", *words)
     assert result.exit_code == 0
-    assert "2-3 of 5 positions" in result.stdout
+    assert "positions 2-3 of 5\n" in result.stdout
     found = json.loads(target.read_text(encoding="utf-8"))["positions"]
     assert [p["position"] for p in found] == [3, 2]
+
+
+def test_a_single_position_is_not_given_as_a_count(command, cases):
+    result = command("run", cases / "fgfbstts/base.toml", "--position", "3")
+    assert "output gear 10; position 3 of 5\n" in result.stdout
 
 
 def test_a_change_is_reported_and_made(command, cases):

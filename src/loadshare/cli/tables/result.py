@@ -149,7 +149,9 @@ def print_heading(
     """
     solved = counted(count, "position")
     if len(wanted) < count:
-        solved = f"{ranges(list(wanted))} of {solved}"
+        # The noun first: "3 of 5 positions" would be how many, not which.
+        noun = "positions" if len(wanted) > 1 else "position"
+        solved = f"{noun} {ranges(list(wanted))} of {count}"
     say(case.title or case.name, style="bold")
     say(file, whole=True)
     for change in changes:
