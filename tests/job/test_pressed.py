@@ -107,3 +107,61 @@ def test_positions_that_press_both_flanks_need_a_backlash():
     case = two_sets(["100 N*m", "5 N*m"])
     with pytest.raises(ls.CaseError, match=r"s2-p21.*backlash: is missing: .* now the other"):
         ls.solve(case)
+
+
+def two_branches(taken: float, soft: float = 1e6, **mesh: str) -> ls.Case:
+    """Idlers 2 and 2b between 1 and ring 3; `taken` leaves idler 2, whose meshes are `soft`."""
+    gears = {"1": ("external", 47, 0), "2": ("external", 47, 100), "2b": ("external", 47, -100)}
+    gears["3"] = ("internal", 141, 0)
+    stiff = {"1-2": soft, "2-3": soft, "1-2b": 3e6, "2b-3": 3e6}
+    return ls.Case(
+        {
+            "operating": {
+                "input": "1",
+                "output": "3",
+                "torque": "100 N*m",
+                "external": {"2": f"{-taken} N*m"},
+            },
+            "gears": {
+                n: {"type": kind, "base_radius": f"{r} mm", "centre": [f"{x} mm", "0 mm"]}
+                for n, (kind, r, x) in gears.items()
+            },
+            "meshes": {n: {"stiffness": f"{k} N*m/rad", **mesh} for n, k in stiff.items()},
+            "stages": {"I": {"meshes": ["1-2", "1-2b"]}},
+        }
+    )
+
+
+def test_a_mesh_on_neither_flank_is_warned_of():
+    """Springs k, k beside 3k, 3k: without play x/k + (x - 60)/k = 2 (100 - x)/3k, so x = 47.5."""
+    exact = {"1-2": 47.5, "2-3": -12.5, "1-2b": 52.5, "2b-3": 52.5}
+    without = ls.solve(two_branches(60.0, backlash="0 um"))
+    assert without.positions[0].torque == pytest.approx(exact, rel=1e-9)
+    assert without.positions[0].validity.verdict == "small"
+    (unknown,) = ls.solve(two_branches(60.0)).positions
+    # With much play, 2 gives all that is taken: 1-2 carries 60, and 2-3 opens.
+    assert unknown.torque == pytest.approx({"1-2": 60, "2-3": 0, "1-2b": 40, "2b-3": 40}, abs=1e-9)
+    (measure,) = unknown.validity.warned.values()
+    # Opens by (60/k - 2 * 40/3k) r, k = 1e6; the median compression of a drive flank is 60/k r.
+    assert (measure.where, measure.refusal) == ("mesh 2-3", None)
+    assert measure.value == pytest.approx(5 / 9, rel=1e-9)
+    samples = {"operating.external.2": ["-60 N*m", "-20 N*m", "30 N*m"]}
+    many = ls.solve_many(two_branches(60.0), samples)
+    assert many.attrs["warned"] == 1
+    assert (many.displaced.values[:, 0] > 1.0).tolist() == [True, False, False]
+
+
+def test_a_mesh_whose_flank_carries_is_not_warned_of():
+    """The other flank would not touch, whatever the play: the answer is that without play."""
+    (found,) = ls.solve(two_branches(20.0)).positions
+    (without,) = ls.solve(two_branches(20.0, backlash="0 um")).positions
+    assert found.torque == pytest.approx(without.torque, rel=1e-9)
+    assert found.validity.verdict == "small"
+
+
+def test_planets_that_errors_unload_are_not_warned_of():
+    """Both loads reach the planets of the second set through its sun: they are one load there."""
+    case = two_sets().replace({"errors.p21.pin.tangential": "300 um"})
+    (found,) = ls.solve(case).positions
+    assert found.torque["s2-p21"] == pytest.approx(0.0, abs=1e-6)
+    assert not found.validity.warned

@@ -86,6 +86,9 @@ class Judge:
         found = judged(self.columns, situations, answers)
         # Of what is next to nothing the energy gap does not follow from forces that are in balance.
         found.worst[_is_soft(situations, found.load, found.deflection, tolerance)] = np.nan
+        if measuring(self.train).unsure:
+            # Compiled code does not measure how far these are open.
+            found.displaced[:] = np.nan
         for figure, name in ((found.worst, "worst"), (found.displaced, "displaced")):
             left = np.flatnonzero(np.isnan(figure))
             if len(left):

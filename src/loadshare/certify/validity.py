@@ -15,6 +15,10 @@ neglects is estimated here from the answer alone, and so are the bounds:
   all of the height, the flanks have passed through each other. The height is 2.25 modules where a
   gear's teeth are given; a gear of 17, the fewest without undercut, stands for one without: teeth
   may be lower than that, so the figure is then a lower bound.
+- **Neither flank.** A mesh of unknown backlash has the flank that the loads press. Where these may
+  press either one (`train.pressed`), and the mesh is open in the answer, the other flank would
+  carry with a play of less than the opening. There is no refusal: with more play the answer holds.
+  What a relief leaves between the other flanks is not counted, which is on the safe side.
 - **Ring.** Arcs hold exactly at any displacement, but a drum's stops keep their direction: they are
   off by the angle by which the arm from the neighbour turns.
 
@@ -44,6 +48,9 @@ from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 
+NEITHER = "neither"
+"""A mesh that is open where loads may press either flank."""
+
 LABELS = {
     "centre": "centre displaced / base radius",
     "rotation": "rotation [rad]",
@@ -51,6 +58,7 @@ LABELS = {
     "compression": "mesh compression / tooth height",
     "line_of_action": "line of action turned [rad]",
     "approach": "approach neglected / deflection",
+    NEITHER: "open where either flank may carry / deflection",
     "ring": "arm of a ring turned [rad]",
 }
 """What is measured, each a pure number, in the order in which it is reported."""
@@ -143,16 +151,19 @@ class Measuring:
         self.line, angle, self.height = geometry.T[:, :, None]
         self.vanishing = float(np.tan(0.5 * angle).min(initial=math.inf))
         held = {*train.held, *(g for s in train.shafts.values() for g in (s.first, s.second))}
+        self.unsure = [e for e, (mesh, drive) in enumerate(of.flanks) if drive and mesh.unsure]
         self.turnable = [k for g, k in order.items() if g not in held]
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
-        """Warning and refusal of what has bounds."""
+        """Warning and refusal of what has bounds; infinite where nothing is refused."""
         bounds = {
             "compression": (CERTIFY.compressed, CERTIFY.meaningless),
             "line_of_action": (min(CERTIFY.turned, self.vanishing), self.vanishing),
             "approach": (CERTIFY.neglected, CERTIFY.meaningless),
         }
+        if self.unsure:
+            bounds[NEITHER] = (CERTIFY.neglected, math.inf)
         if len(self.of.drum):
             bounds["ring"] = (CERTIFY.turned, self.vanishing)
         return bounds if self.of.flanks else {}
@@ -196,6 +207,10 @@ class Measuring:
             "line_of_action": turned,
             "approach": np.maximum(-room, 0.0) / deflection,
         }
+        if self.unsure:
+            # A gap opens the flank that is pressed, and not the other one.
+            apart = -(compression + situations.gap.T)[self.unsure]
+            found[NEITHER] = np.maximum(apart, 0.0) / deflection
         if len(of.drum):
             found["ring"] = self._arms(answers)
         return found
@@ -256,15 +271,17 @@ class Measuring:
 
     def _largest(self, name: str, values: Array) -> Measure:
         at = first_of_largest(values)
-        bounds = self.bounds.get(name, (None, None))
-        return Measure(max(float(values[at]), 0.0), self._where(name, at), *bounds)
+        warning, refusal = self.bounds.get(name, (None, None))
+        refusal = None if refusal == math.inf else refusal
+        return Measure(max(float(values[at]), 0.0), self._where(name, at), warning, refusal)
 
     def _where(self, name: str, element: int) -> str:
         if name in ("centre", "rotation"):
             return f"gear {self.of.gears[element]}"
         if name == "ring":
             return f"ring {self.train.drums[element // 2].gear}"
-        return f"mesh {self.of.flanks[element][0].name}"
+        flank = self.unsure[element] if name == NEITHER else element
+        return f"mesh {self.of.flanks[flank][0].name}"
 
     def every(
         self, situations: Situations, answers: Equilibria, deflection: Array

@@ -227,11 +227,14 @@ def _refuse_if_too_large(index: int, part: _Part | None) -> None:
 
 def _with_large(refusal: Refused, part: _Part | None) -> Refused:
     """Add to a refusal what a part of the load displaces too far for the geometry already."""
-    if part is None or not part.displaced.warned:
+    # What is never refused, however large, is no reason for a refusal.
+    large = {} if part is None else part.displaced.warned
+    large = {name: m for name, m in large.items() if m.refusal is not None}
+    if part is None or not large:
         return refusal
     text = "; ".join(
         f"{LABELS[name]} {m.value:.3g} at {m.where} (warning above {m.warning:.3g})"
-        for name, m in part.displaced.warned.items()
+        for name, m in large.items()
     )
     return Refused(
         f"{refusal}; under {part.share:.0%} of the load displacements are large for the "

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from loadshare.certify import FloatState
-from loadshare.certify.validity import LABELS
+from loadshare.certify.validity import LABELS, NEITHER
 from loadshare.report.numbers import runs, significant
 from loadshare.report.units import engineering
 from loadshare.results import Position, Result
@@ -165,13 +165,25 @@ def range_text(name: str, low: float, high: float) -> str:
 
 def advice(result: Result) -> str:
     """What to think of displacements above the bound of a warning; empty if there are none."""
-    names = dict.fromkeys(n for p in result.positions for n in p.validity.warned)
-    if not names:
-        return ""
-    where = ", ".join(runs(p.position for p in result.positions if p.validity.warned))
-    reasons = "; ".join(LABELS[name] for name in names)
+    large: dict[int, list[str]] = {}
+    neither: dict[str, list[int]] = {}
+    for p in result.positions:
+        for name, measure in p.validity.warned.items():
+            if name == NEITHER:
+                neither.setdefault(measure.where, []).append(p.position)
+            else:
+                large.setdefault(p.position, []).append(name)
     noun = "positions" if len(result.positions) > 1 else "position"
-    return (
-        f"displacements are large for the geometry in which they were found ({noun} {where}: "
-        f"{reasons}); figures may be off by some per cent"
-    )
+    found = [
+        f"{mesh} carries on neither flank ({noun} {', '.join(runs(where))}): the loads may press "
+        "either one, and without a backlash it has one only; shares of load may be wrong. Give the "
+        'mesh its backlash, such as backlash = "0 um"'
+        for mesh, where in neither.items()
+    ]
+    if large:
+        reasons = "; ".join(LABELS[n] for n in dict.fromkeys(n for s in large.values() for n in s))
+        found.append(
+            "displacements are large for the geometry in which they were found "
+            f"({noun} {', '.join(runs(large))}: {reasons}); figures may be off by some per cent"
+        )
+    return ". ".join(found)

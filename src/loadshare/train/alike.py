@@ -15,7 +15,7 @@ from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of
 from loadshare.train.columns import Column
 from loadshare.train.geometry import Geometry
-from loadshare.train.pressed import turned_meshes
+from loadshare.train.pressed import pressed_flanks
 from loadshare.train.train import Train
 
 _NUMBER = re.compile(NUMBER)
@@ -52,8 +52,9 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
             return None
     loaded = any(path[0] == "operating" for path, _, _ in differences)
     if loaded and not _runs_alike(case.operating, base[0].operating, case.gears):
-        turned = turned_meshes(case, base[1].gears)
-        if any(turned[name] != pair.turned for name, pair in base[1].pairs.items()):
+        found = pressed_flanks(case, base[1].gears)
+        pairs = base[1].pairs.items()
+        if any([bool(f) for f in found[n]] != [pair.turned, pair.unsure] for n, pair in pairs):
             return None
     changed = {path[:2] for path, _, _ in differences}
     return train_of(case, base[1], (base[0], base[2]), changed)

@@ -39,7 +39,7 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
     case : Case
         With a value for every key that varies.
     column : Column
-        Loads may press other flanks than those of the case: see `turned_meshes`.
+        Loads may press other flanks than those of the case: see `pressed_flanks`.
     """
     match column.path:
         case ("operating", "external", _):

@@ -25,7 +25,7 @@ from loadshare.train.layout import in_phase
 from loadshare.train.mesh import running_contact
 from loadshare.train.period import Period, period_of
 from loadshare.train.phases import is_whole
-from loadshare.train.pressed import turned_meshes
+from loadshare.train.pressed import pressed_flanks
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,6 +47,8 @@ class Pair:
         Along the line of action, where the mesh has it follow from its teeth [m].
     counted : (int, int)
         See `Mesh`.
+    unsure : bool
+        See `Mesh`.
     """
 
     driver: Gear
@@ -57,6 +59,7 @@ class Pair:
     phases: tuple[float, float] = (0.0, 0.0)
     backlash: float = math.inf
     counted: tuple[int, int] = (1, 1)
+    unsure: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -195,21 +198,23 @@ def _gear(
 
 def _pairs(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pair]:
     """Meshes with the flanks that the torque presses, whichever way it runs through them."""
-    every = turned_meshes(case, gears)
+    every = pressed_flanks(case, gears)
     found, centres = {}, case.centres()
     for name, mesh in case.meshes.items():
         line = line_of_action(mesh, case.gears, centres)
         if line is None:
             raise ValueError(f"no line of action: {name}")
         driver, driven = gears[mesh.driver], gears[mesh.driven]
-        turned = bool(every[name])
+        turned, unsure = (bool(flag) for flag in every[name])
         contact, counted = running_contact(driver, driven)
         if turned:
             # The other flank of the same two gears, whichever senses they are counted in.
             driver, driven = driven, driver
             contact, counted = running_contact(driver, driven, counted[1])
         normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
-        pair = Pair(driver, driven, (normals[0], normals[1]), turned, line, counted=counted)
+        pair = Pair(
+            driver, driven, (normals[0], normals[1]), turned, line, counted=counted, unsure=unsure
+        )
         if mesh.backlash == "teeth":
             left = backlash_of_teeth(mesh, case.gears, centres)
             pair = replace(pair, backlash=math.inf if left is None else left)

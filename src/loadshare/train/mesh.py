@@ -137,6 +137,8 @@ class Mesh:
     turned : bool
         Whether the case names the driven gear first: torque runs against the name of a mesh that
         has one flank only, and that flank is the one it presses.
+    unsure : bool
+        Whether that one flank may be the wrong one: see `train.pressed`.
     phase : float
         Part of its cycle that has passed at the first position [-].
     coast_phase : float
@@ -163,6 +165,7 @@ class Mesh:
     gaps: tuple[float, ...]
     backlash: float
     turned: bool = False
+    unsure: bool = False
     phase: float = 0.0
     counted: tuple[int, int] = (1, 1)
     coast_phase: float = 0.0

@@ -1,13 +1,19 @@
 """Which flanks the load presses: meshes without a backlash have that flank only.
 
 Loads may be arrays of samples, so that those that press the same flanks can be told from others.
+
+Where several loads press both flanks of a mesh in parallel branches, statics of rigid gears cannot
+tell which one carries. The flank of the even share is taken, and the mesh is marked as unsure: if
+it carries in the answer, the other flank would not touch whatever the play, and the choice was
+right; if it is open there, the play decides, and the answer is warned of (`certify.validity`). To
+refuse all such meshes would refuse most for nothing.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +27,23 @@ from loadshare.train.willis import Links
 Flags = NDArray[np.bool_]
 
 
-def turned_meshes(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Flags]:
-    """Tell which meshes have the one flank that their names do not.
+class Pressed(NamedTuple):
+    """Which flank loads press, each (1,) or (S,).
+
+    Attributes
+    ----------
+    turned : ndarray of bool
+        Whether the mesh has the one flank that its name does not.
+    unsure : ndarray of bool
+        Whether it may be its other flank, as stiffness shares the loads.
+    """
+
+    turned: Flags
+    unsure: Flags
+
+
+def pressed_flanks(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pressed]:
+    """Tell which flank the meshes without a backlash have.
 
     Parameters
     ----------
@@ -33,7 +54,7 @@ def turned_meshes(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Flags
 
     Returns
     -------
-    dict of mesh to ndarray of bool, shape (1,) or (S,)
+    dict of mesh to Pressed
 
     Raises
     ------
@@ -49,15 +70,17 @@ def turned_meshes(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Flags
     pressed = _pressed(case, gears, torque) if names and by_load else {}
     problems = []
     # Where statics does not tell, the names do.
-    found = {name: against & (name in names) for name in case.meshes if name not in pressed}
-    for name, signs in pressed.items():
+    none = np.zeros_like(against)
+    found = {n: Pressed(against & (n in names), none) for n in case.meshes if n not in pressed}
+    for name, (signs, either) in pressed.items():
         coast, drive = (signs < 0).any(axis=0), (signs > 0).any(axis=0)
         if name in names and (coast & drive).any():
             message = "is missing: the load presses now one flank, now the other"
             hint = "How much play the mesh has decides when its other flank carries."
             problems.append(case.problem(("meshes", name, "backlash"), message, "a length", hint))
         # As where the load presses neither.
-        found[name] = np.where(coast | drive, coast, against) & (name in names)
+        turned = np.where(coast | drive, coast, against) & (name in names)
+        found[name] = Pressed(turned, np.asarray(either.any(axis=0) & (name in names)))
     if problems:
         raise CaseError(problems)
     return found
@@ -72,7 +95,7 @@ def _against_the_names(case: spec.Case, torque: NDArray[np.float64]) -> Flags:
 
 def _pressed(
     case: spec.Case, gears: Mapping[str, Gear], torque: NDArray[np.float64]
-) -> dict[str, NDArray[np.intp]]:
+) -> dict[str, tuple[NDArray[np.intp], Flags]]:
     """Signs of the torques of meshes (positions, S), by statics (see `Links.pressed`)."""
     links = Links.of(
         gears,

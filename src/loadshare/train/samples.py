@@ -27,7 +27,7 @@ from loadshare.train.build import train_of, with_laws
 from loadshare.train.columns import Column, columns_of
 from loadshare.train.geometry import Geometry, geometry_of
 from loadshare.train.placed import standing
-from loadshare.train.pressed import turned_meshes
+from loadshare.train.pressed import pressed_flanks
 from loadshare.train.situations import Situations, situations_of
 from loadshare.train.train import Train
 
@@ -163,9 +163,10 @@ def _pressed_alike(
     loads = {path: si for path, si in values.items() if path[0] == "operating"}
     alike = np.ones(count, dtype=bool)
     if loads and count > 1:
-        turned = turned_meshes(_with(case, loads), geometry.gears)
+        found = pressed_flanks(_with(case, loads), geometry.gears)
         for name, pair in geometry.pairs.items():
-            alike &= turned[name] == pair.turned
+            alike &= found[name].turned == pair.turned
+            alike &= found[name].unsure == pair.unsure
     return alike
 
 

@@ -56,7 +56,7 @@ def _gear(gear: Gear) -> tuple[Any, ...]:
 
 
 def _mesh(mesh: Mesh) -> tuple[Any, ...]:
-    kept = (mesh.name, mesh.driver, mesh.driven, mesh.radii, mesh.turned, mesh.counted)
+    kept = (mesh.name, mesh.driver, mesh.driven, mesh.radii, mesh.turned, mesh.unsure, mesh.counted)
     places = (mesh.phase, mesh.coast_phase, mesh.means, len(mesh.gaps), len(mesh.coast_gaps))
     flanks = (_bytes(mesh.drive_normal), _bytes(mesh.coast_normal), math.isinf(mesh.backlash))
     laws = tuple(

@@ -103,8 +103,12 @@ class Links:
 
     def pressed(
         self, torques: Mapping[str, ArrayLike], free: Iterable[str]
-    ) -> dict[str, NDArray[np.intp]]:
-        """Tell which flank of every mesh loads press: 1 drive, −1 coast, 0 neither.
+    ) -> dict[str, tuple[NDArray[np.intp], NDArray[np.bool_]]]:
+        """Tell which flank of every mesh loads press, and whether it may be the other one.
+
+        It may where statics leaves open how a load is shared, and the loads one by one press both
+        flanks: which share prevails is a matter of stiffness. Where each load presses the same
+        flank, their sum does too, in whatever way parallel branches share it.
 
         Parameters
         ----------
@@ -112,17 +116,48 @@ class Links:
             External torques [N·m], of one shape.
         free : iterable of str
             Gears that turn, without those that the housing or the load holds.
+
+        Returns
+        -------
+        dict of str to (ndarray, ndarray)
+            1 for drive, −1 for coast, 0 for neither; and whether it may be the other one.
         """
         order = {name: k for k, name in enumerate(self.gears)}
         turning = [order[name] for name in free]
         every = np.broadcast_arrays(*(torques.get(name, 0.0) for name in self.gears))
         load = np.stack(every)[turning]
-        force = np.linalg.pinv(self.matrix[:, turning].T, rcond=1e-9) @ load.reshape(
-            len(turning), -1
-        )
+        balance = self.matrix[:, turning].T
+        response: Array = np.linalg.pinv(balance, rcond=1e-9).astype(float, copy=False)
+        force = response @ load.reshape(len(turning), -1)
+        either = self._either(balance, response, load)
         force[np.abs(force) <= NOISE * np.abs(force).max(axis=0, initial=0.0)] = 0.0
         signs = np.sign(force).astype(np.intp).reshape(-1, *load.shape[1:])
-        return dict(zip(self.names, signs, strict=True))
+        return dict(zip(self.names, zip(signs, either, strict=True), strict=True))
+
+    def _either(self, balance: Array, response: Array, load: Array) -> NDArray[np.bool_]:
+        """Whether links may pass on loads (gears, ...) either way, (links, ...)."""
+        # What statics leaves open: forces in balance without a load.
+        idle = np.eye(len(response)) - response @ balance
+        left = np.abs(balance @ response - np.eye(len(balance))).max(axis=0, initial=0.0)
+        loaded = np.array([torque.any() for torque in load], dtype=bool)
+        alone, together = loaded & (left <= NOISE), loaded & (left > NOISE)
+        # Where two speeds are free, loads balance one another: none of those acts without the rest.
+        parts = [np.multiply.outer(response[:, k], load[k]) for k in np.flatnonzero(alone)]
+        if together.any():
+            parts.append(np.tensordot(response[:, together], load[together], 1))
+        either = np.zeros((len(response), *load.shape[1:]), dtype=bool)
+        least = NOISE * max((np.abs(part).max() for part in parts), default=0.0)
+        for own in idle if len(parts) > 1 else ():
+            block = np.flatnonzero(np.abs(own) > NOISE)
+            if not len(block):
+                continue
+            here = np.array([part[block] for part in parts])
+            flat = here.swapaxes(0, 1).reshape(len(block), -1)
+            sizes = np.linalg.svd(flat, compute_uv=False)
+            # Loads that reach parallel branches through one link are a single load to them.
+            if (sizes[1:] > NOISE * sizes[:1]).any():
+                either[block] |= (here.max(axis=0) > least) & (here.min(axis=0) < -least)
+        return either
 
 
 def seen_from(gears: Mapping[str, Gear], driver: str, driven: str) -> str | None:
