@@ -80,6 +80,7 @@ def solve_exact(
     rounds: int = 0,
     work: Work | None = None,
     stay: bool = False,
+    shared: bool = False,
 ) -> tuple[Point, ActiveSet] | None:
     """Solve on an active set and exchange until every sign is right.
 
@@ -99,6 +100,9 @@ def solve_exact(
     stay : bool
         Leave coordinates that a set does not determine where they are; by default they go to their
         least norm, where contacts that carry nothing may be violated.
+    shared : bool
+        Leave forces that a set does not determine as `start` shares them; by default they go to
+        their least norm, where friction may hold more than it can.
 
     Returns
     -------
@@ -109,7 +113,7 @@ def solve_exact(
     limit = rounds or 20 + 6 * (len(programme.gaps) + len(programme.cones))
     active, seen, one_only = guess, {guess}, False
     for _ in range(limit):
-        solved = _solve_fixed(programme, active, start, work, stay)
+        solved = _solve_fixed(programme, active, start, work, stay, shared)
         if solved is None:
             active = _held_again(programme, active)
             if active in seen:
@@ -119,13 +123,25 @@ def solve_exact(
         point, settled = solved
         better = _exchange(programme, active, point, one_only)
         if better == active:
-            return (point, active) if settled else None
+            return (point, active) if settled and _balances(programme, point) else None
         if better in seen and not one_only:
             one_only = True
             better = _exchange(programme, active, point, one_only)
         seen.add(better)
         active, start = better, point
     return None
+
+
+def _balances(programme: Programme, point: Point) -> bool:
+    """Whether forces balance to what a claim may leave.
+
+    The force of what slips has no direction where others hold it at its centre: there Newton's
+    steps end anywhere.
+    """
+    pushed = [programme.load, -programme.stiffness @ point.x, -programme.rows.T @ point.forces]
+    pushed += [-c.matrix.T @ f for c, f in zip(programme.cones, point.cone_forces, strict=True)]
+    sizes = np.abs(pushed).max(initial=1.0)
+    return bool(np.abs(sum(pushed)).max(initial=0.0) <= CONTACT.tolerance * sizes)
 
 
 def _held_again(programme: Programme, active: ActiveSet) -> ActiveSet:
@@ -152,7 +168,12 @@ def at_rest(programme: Programme) -> Point:
 
 
 def _solve_fixed(
-    programme: Programme, active: ActiveSet, start: Point, work: Work | None, stay: bool
+    programme: Programme,
+    active: ActiveSet,
+    start: Point,
+    work: Work | None,
+    stay: bool,
+    shared: bool,
 ) -> tuple[Point, bool] | None:
     """Newton's method on the smooth equations of an active set; a point, and whether it settled.
 
@@ -165,7 +186,7 @@ def _solve_fixed(
     for _ in range(CONTACT.newton_steps if curved else 1):
         if work is not None:
             work.step()
-        solved = _newton_system(programme, active, Point(x, forces, cone_forces), stay)
+        solved = _newton_system(programme, active, Point(x, forces, cone_forces), stay, shared)
         if solved is None:
             return None
         point = solved
@@ -180,7 +201,9 @@ def _solve_fixed(
     return point, previous <= CONTACT.near
 
 
-def _newton_system(programme: Programme, active: ActiveSet, at: Point, stay: bool) -> Point | None:
+def _newton_system(
+    programme: Programme, active: ActiveSet, at: Point, stay: bool, shared: bool
+) -> Point | None:
     """One Newton step, in the absolute form that a linear problem solves at once."""
     size = programme.stiffness.shape[0]
     closed = np.array(active.closed, dtype=bool)
@@ -216,18 +239,28 @@ def _newton_system(programme: Programme, active: ActiveSet, at: Point, stay: boo
         return None
     if stay:
         x = x + solved.moves @ (solved.moves.T @ (at.x - x))
+    carried = solved.values[size:]
+    if shared and solved.stresses.shape[1]:
+        held = [directions @ at.cone_forces[j] for j, directions in multipliers]
+        wanted = np.concatenate([at.forces[closed], *held])
+        carried = carried + _nearest_share(solved.stresses, wanted - carried)
     forces = np.zeros(len(programme.gaps))
-    forces[closed] = solved.values[size : size + flanks]
+    forces[closed] = carried[:flanks]
     cone_forces = np.zeros((len(programme.cones), 2))
     for j, (cone, graph_state) in enumerate(zip(programme.cones, active.graph_states, strict=True)):
         if not graph_state.corner:
             cone_forces[j] = _piece_force(cone, graph_state, cone.offset(x))
-    at_multiplier = size + flanks
+    at_multiplier = flanks
     for j, directions in multipliers:
         width = len(directions)
-        cone_forces[j] = solved.values[at_multiplier : at_multiplier + width] @ directions
+        cone_forces[j] = carried[at_multiplier : at_multiplier + width] @ directions
         at_multiplier += width
     return Point(x, forces, cone_forces)
+
+
+def _nearest_share(stresses: Array, wanted: Array) -> Array:
+    """Combine forces that balance one another, as near as they come to what is wanted."""
+    return np.asarray(stresses @ np.linalg.lstsq(stresses, wanted, rcond=None)[0])
 
 
 def _row_tangents(programme: Programme, forces: Array) -> tuple[Array, Array]:

@@ -97,7 +97,8 @@ def _from_rough(
     try:
         return *solve_proximal(programme, rough, work), "proximal + exact"
     except Unsolved:
-        exact = solve_exact(programme, guess, rough, work=work, stay=True)
-        if exact is None:
-            raise
-        return *exact, "exact in place"
+        for shared, via in ((False, "exact in place"), (True, "exact as shared")):
+            exact = solve_exact(programme, guess, rough, work=work, stay=True, shared=shared)
+            if exact is not None:
+                return *exact, via
+        raise

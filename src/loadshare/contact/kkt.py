@@ -12,10 +12,20 @@ from loadshare.settings import CONTACT
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solved:
-    """Solution of a system, and the directions (size, f) in which its coordinates are free."""
+    """Solution of a system, and what it leaves free.
+
+    Attributes
+    ----------
+    values : ndarray, shape (N,)
+    moves : ndarray, shape (size, f)
+        Directions in which its coordinates are free.
+    stresses : ndarray, shape (N - size, s)
+        Forces that balance one another and move nothing.
+    """
 
     values: Array
     moves: Array
+    stresses: Array
 
 
 def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
@@ -38,7 +48,7 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
     from scipy.linalg import lapack
 
     if not len(right):
-        return Solved(right, np.zeros((size, 0)))
+        return _determined(right, size)
     scale = _equilibrate(matrix)
     scaled = matrix * scale[:, None] * scale
     if not (np.isfinite(scaled).all() and np.isfinite(right).all()):
@@ -51,8 +61,13 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
             for _ in range(CONTACT.refined):
                 residual = right - matrix @ values
                 values = values + scale * lapack.dgetrs(factor, pivots, scale * residual)[0]
-            return Solved(values, np.zeros((size, 0)))
+            return _determined(values, size)
     return _least_norm(matrix, scaled, scale, right, size)
+
+
+def _determined(values: Array, size: int) -> Solved:
+    """Return a solution that leaves nothing free."""
+    return Solved(values, np.zeros((size, 0)), np.zeros((len(values) - size, 0)))
 
 
 def _equilibrate(matrix: Array) -> Array:
@@ -79,7 +94,7 @@ def _least_norm(
         return None
     null = scale[:, None] * vectors[:, ~kept]
     if null.shape[1] == 0:
-        return Solved(values, np.zeros((size, 0)))
+        return _determined(values, size)
     null /= np.linalg.norm(null, axis=0)
     outer, sizes, inner = np.linalg.svd(null[:size], full_matrices=True)
     freedom = int((sizes > CONTACT.moves).sum())
@@ -89,4 +104,4 @@ def _least_norm(
     if forces_only.shape[1]:
         share = np.linalg.lstsq(forces_only[size:], values[size:], rcond=None)[0]
         values = values - forces_only @ share
-    return Solved(values, moves[:size])
+    return Solved(values, moves[:size], forces_only[size:])
