@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loadshare.contact.backends.backend import backend
+from loadshare.contact.conflict import conflict
 from loadshare.contact.findings import Unsolved
 from loadshare.contact.left_open import left_open
 from loadshare.contact.outer import Settled, settle
@@ -116,6 +117,9 @@ def solve_contact(
         if answer.passed:
             return answer
         last = f"residual {answer.residuals.worst:.2g} of 1e-9 allowed"
+    against = conflict(problem)
+    if against:
+        raise Refused(f"rigid limits contradict one another: {', '.join(against)}")
     moved = runaway(problem)
     if moved:
         last = f"the load moves {', '.join(moved)} without end, and too little resists it"

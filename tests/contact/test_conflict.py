@@ -1,0 +1,38 @@
+"""Rigid rows that cannot hold together are named, and nothing that has no part in it."""
+
+import numpy as np
+import pytest
+
+from loadshare.contact import RIGID, ContactProblem, PowerLaw, Row, solve_contact
+from loadshare.errors import Refused
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1e6])
+def test_stops_that_contradict_one_another_are_named(stiffness):
+    """x <= 50 um and x >= 200 um; x <= 1 mm and a soft stop have no part in it."""
+    rows = (
+        Row("upper", "stop", [1.0], 5e-5, RIGID),
+        Row("lower", "stop", [-1.0], -2e-4, RIGID),
+        Row("far", "stop", [1.0], 1e-3, RIGID),
+        Row("soft", "stop", [1.0], 0.0, PowerLaw(1e-8, 0.0)),
+    )
+    with pytest.raises(Refused, match=r"contradict one another: upper, lower$"):
+        solve_contact(ContactProblem(("x",), [[stiffness]], [3.0], rows))
+    # Without room between them they can hold.
+    meets = (rows[0], Row("lower", "stop", [-1.0], -5e-5, RIGID))
+    found = solve_contact(ContactProblem(("x",), [[stiffness]], [3.0], meets))
+    assert found.place["x"] == pytest.approx(5e-5, rel=1e-9)
+
+
+def test_three_sides_without_a_place_are_named():
+    """x >= 0, y >= 0 and x + y <= -1e-4, whatever the size of the vectors."""
+    rows = tuple(
+        Row(name, "stop", np.array(vector), gap, RIGID)
+        for name, vector, gap in (
+            ("left", [-1e3, 0.0], 0.0),
+            ("below", [0.0, -1.0], 0.0),
+            ("slope", [1.0, 1.0], -1e-4),
+        )
+    )
+    with pytest.raises(Refused, match=r"contradict one another: left, below, slope$"):
+        solve_contact(ContactProblem(("x", "y"), 1e6 * np.eye(2), [1.0, 2.0], rows))
