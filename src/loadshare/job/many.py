@@ -197,11 +197,10 @@ def solve_many(
     trains = [group.train for _, group in groups]
     wanted = wanted_of(trains, positions)
     found = Table(trains, wanted, len(columns[0].values), kept)
-    blocks = _solved(case, groups, wanted, tolerance, engine, workers, least_norm)
     try:
-        found.fill(blocks, progress)
+        found.fill(_solved(case, groups, wanted, tolerance, engine, workers, least_norm), progress)
     except CaseError as error:
         # It names what may be another sample's value.
-        table = {column.key: column.values for column in columns}
-        raise next(iter(unusable(case, table).values()), error) from None
+        wrong = unusable(case, {column.key: column.values for column in columns})
+        raise next(iter(wrong.values()), error) from None
     return found.dataset(case, tolerance)

@@ -80,8 +80,7 @@ def train_of(
     base : (spec.Case, Train), optional
         Another case and its train, which has all elements of which the two cases say the same.
     changed : collection of Path, optional
-        Section and name of the elements of which they do not; by default all that are not the same
-        object in both.
+        Section and name of the others; by default all that are not one object in both.
 
     Raises
     ------
@@ -96,13 +95,9 @@ def train_of(
         now = getattr(case, section)
         if base is None or anew:
             return {name: convert(name, item) for name, item in now.items()}
-        before, there = getattr(base[0], section), getattr(base[1], known or section)
-        return {
-            name: convert(name, item)
-            if (item is not before[name] if changed is None else (section, name) in changed)
-            else there[name]
-            for name, item in now.items()
-        }
+        there = getattr(base[1], known or section)
+        kept = _kept(section, now, getattr(base[0], section), changed)
+        return {n: there[n] if n in kept else convert(n, item) for n, item in now.items()}
 
     problems: list[Problem] = []
 
@@ -142,16 +137,31 @@ def train_of(
         rings={name: ring for name, ring in rings.items() if ring is not None},
         bearings=elements("bearings", bearing_of),
         offsets=with_growth(case, gears, offsets) if warm else offsets,
-        stages=tuple(
-            Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
-            for n, s in case.stages.items()
-        ),
+        stages=_stages(case),
         **_operation(case.operating, gears),
         forces=_forces(case),
         march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
         period=geometry.period,
         uneven=is_uneven(case),
     )
+
+
+def _kept(
+    section: str,
+    now: Mapping[str, Any],
+    before: Mapping[str, Any],
+    changed: Collection[Path] | None,
+) -> set[str]:
+    """Names of the elements of a section that are not built again (see `train_of`)."""
+    if changed is None:
+        return {name for name, item in now.items() if item is before[name]}
+    return {name for name in now if (section, name) not in changed}
+
+
+def _stages(case: spec.Case) -> tuple[Stage, ...]:
+    """Stages, each with its groups of meshes, of which there may be one."""
+    groups = {name: s.groups or (s.meshes,) for name, s in case.stages.items()}
+    return tuple(Stage(n, tuple(s.meshes), tuple(groups[n])) for n, s in case.stages.items())
 
 
 def _operation(operating: spec.Operating, gears: Mapping[str, Gear]) -> dict[str, Any]:
