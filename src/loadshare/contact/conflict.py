@@ -1,39 +1,87 @@
-"""Which rigid rows of a contact problem cannot hold together, if any."""
+"""Which rigid rows cannot hold together, if any."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.contact.law import PowerLaw
-from loadshare.contact.problem import ContactProblem
+from loadshare.contact.problem import ContactProblem, Row
 from loadshare.settings import PLACES
 
 
-def conflict(problem: ContactProblem) -> tuple[str, ...]:
-    r"""Return the rigid rows that contradict one another; empty if all can hold.
+@dataclass(frozen=True, slots=True, eq=False)
+class Overlap:
+    """The place at which rows overlap least.
 
-    The least overlap t of any place, :math:`\min t` subject to :math:`a_e\cdot x - \lvert a_e\rvert
-    t \le g_e`, is positive where they do, and those with a multiplier are those that do. Arcs and
-    round limits leave room that turns with the place; they are not judged here.
+    Attributes
+    ----------
+    size : float
+        By how much, in the unit of lengths; negative where all have room.
+    place : ndarray, shape (size,)
+        In that unit.
+    names : tuple of str
+        Rows that leave it no room.
+    """
+
+    size: float
+    place: NDArray[np.float64]
+    names: tuple[str, ...]
+
+
+def least_overlap(rows: Sequence[Row], size: int, unit: float) -> Overlap | None:
+    r"""Return the least overlap of rows; None if the linear programme was not solved.
+
+    .. math:: \min_{x, t} t \quad \text{s.t.}\; a_e\cdot x - t \le g_e
+
+    Where it is positive the rows contradict one another, and those with a multiplier are those that
+    do.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+    size : int
+        Coordinates.
+    unit : float
+        Of lengths [m].
     """
     from scipy.optimize import linprog
 
-    rows = [r for r in problem.rows if isinstance(r.law, PowerLaw) and r.law.is_rigid]
-    if not rows:
-        return ()
-    vectors = np.array([r.vector / np.linalg.norm(r.vector) for r in rows])
-    gaps = np.array([r.gap / np.linalg.norm(r.vector) for r in rows])
-    unit = float(np.abs(gaps).max()) or 1.0
     found = linprog(
-        np.append(np.zeros(problem.size), 1.0),
-        np.hstack([vectors, -np.ones((len(rows), 1))]),
-        gaps / unit,
-        bounds=[(None, None)] * problem.size + [(-1.0, None)],
+        np.append(np.zeros(size), 1.0),
+        np.array([[*r.vector, -1.0] for r in rows]),
+        [r.gap / unit for r in rows],
+        bounds=[(None, None)] * size + [(-1.0, None)],
         method="highs",
     )
-    # Highs leaves some 1e-9 of the bounds: less than that is no proof.
-    if found.status != 0 or found.x is None or not float(found.x[-1]) > PLACES.pushed:
-        return ()
+    if found.status != 0 or found.x is None:
+        return None
     shares = np.abs(np.asarray(found.ineqlin.marginals))
-    part = shares > PLACES.named * shares.max()
-    return tuple(r.name for r, has in zip(rows, part.tolist(), strict=True) if has)
+    part = (shares > PLACES.named * shares.max()).tolist()
+    names = dict.fromkeys(r.name for r, has in zip(rows, part, strict=True) if has)
+    return Overlap(float(found.x[-1]), found.x[:-1], tuple(names))
+
+
+def is_rigid(row: Row) -> bool:
+    """Whether nothing yields at a row."""
+    return isinstance(row.law, PowerLaw) and row.law.is_rigid
+
+
+def conflict(problem: ContactProblem) -> tuple[str, ...]:
+    """Return the rigid rows that contradict one another; empty if all can hold.
+
+    Arcs and round limits leave room that turns with the place; they are not judged here.
+    """
+    rows = []
+    for row in filter(is_rigid, problem.rows):
+        norm = float(np.linalg.norm(row.vector))
+        rows.append(replace(row, vector=row.vector / norm, gap=row.gap / norm))
+    if not rows:
+        return ()
+    unit = max(abs(row.gap) for row in rows) or 1.0
+    found = least_overlap(rows, problem.size, unit)
+    # The programme is solved to some 1e-9 of the unit: less than that is no proof.
+    return found.names if found is not None and found.size > PLACES.pushed else ()

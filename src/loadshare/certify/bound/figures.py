@@ -80,7 +80,7 @@ class Workspace(NamedTuple):
     offset: Array  # (q, 2, w): from their centres [m]
     pull: Array  # (q, 3, w): claimed, in the gear's frame and along its axis [N]
     given: Array  # (w,): any number, as the following one of each claim
-    push: Array  # force of the contact at hand if it acts [N]
+    push: Array  # force of the contact at hand if it acts [N]; after the contacts any number
     root: Array  # its cube root
     band: Array  # force up to which a contact may as well be open [N]
     light: Array  # force below which a contact is light [N]

@@ -189,9 +189,10 @@ class Plan:
         least, most : ndarray, shape (G, c + springs + q)
             Smallest and largest compliance of contacts, springs and radial elements [m/N].
         """
-        key = acts.tobytes(), least.tobytes(), most.tobytes()
-        if key in self._single:
-            return self._single[key]
+        key = tuple(each.tobytes() for each in (acts, least, most)) if len(acts) == 1 else ()
+        # Other threads may be clearing.
+        if (known_one := self._single.get(key)) is not None:
+            return known_one
         count, n, rows = len(acts), self.contacts.shape[1], self._rows
         pulls, splines = len(self.pulls), len(self.layout.moment)
         known = [self._known(each) for each in acts]

@@ -194,7 +194,8 @@ def put_springs(of, here, claim, first, width, work, found, sets, new):  # type:
         else:
             put_column(here.support[:, number, axis], first, width, soft)
             alike, claimed = len(here.support) == 1, work.borne[2 * number + axis]
-        put_multiple(force, claimed, 1.0 / arm)
+        for v in range(BOUND.abreast):
+            force[v] = claimed[v] / arm
         for v in range(BOUND.abreast):
             soft[v] = arm * arm / soft[v]
         for v in range(BOUND.abreast):
@@ -294,9 +295,9 @@ def put_pushes(left, sizes, force, start, at, value):  # type: ignore[no-untyped
         for i in range(start[j], start[j + 1]):
             factor, over, size = value[i], left[at[i]], sizes[at[i]]
             for v in range(BOUND.abreast):
-                over[v] -= factor * row[v]
-            for v in range(BOUND.abreast):
-                size[v] += abs(factor * row[v])
+                term = factor * row[v]
+                over[v] -= term
+                size[v] += abs(term)
 
 
 @within
@@ -308,8 +309,11 @@ def put_balance(of, work):  # type: ignore[no-untyped-def]
     for k in range(len(of.load)):
         c = of.load[k, 0]
         due = work.torque[of.load[k, 1]]
-        put_sum(left[c], due, 1.0 / of.load_radius[k])
-        put_sizes(sizes[c], due, 1.0 / of.load_radius[k])
+        # A quotient is rounded once, a multiple by the inverse twice.
+        for v in range(BOUND.abreast):
+            work.given[v] = due[v] / of.load_radius[k]
+        put_sum(left[c], work.given, 1.0)
+        put_sizes(sizes[c], work.given, 1.0)
     fill(largest, 0.0)
     fill(rounding, 0.0)
     fill(residual, 0.0)
