@@ -27,7 +27,7 @@ from loadshare.job.machine import Machine
 from loadshare.later import known
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Result, Stamp
-from loadshare.scene.structure import units_of
+from loadshare.scene.units import units_of
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.train import Train

@@ -18,11 +18,12 @@ from loadshare.case.keys import Path
 from loadshare.case.uneven import is_uneven
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.errors import CaseError, Problem
-from loadshare.train.elements import Shaft, Spline, Stage
+from loadshare.train.elements import Shaft, Spline
 from loadshare.train.gear import Gear, Vector, cross
 from loadshare.train.geometry import Geometry, Pair, geometry_of
 from loadshare.train.mesh import Mesh
-from loadshare.train.offset import Offset, polar
+from loadshare.train.offset import Offset, polar, vector_of
+from loadshare.train.operation import forces_of, operation_of, stages_of
 from loadshare.train.rim import with_harmonics
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing, transverse
 from loadshare.train.thermal import fitted, flank_growth, grows, with_growth
@@ -137,9 +138,9 @@ def train_of(
         rings={name: ring for name, ring in rings.items() if ring is not None},
         bearings=elements("bearings", bearing_of),
         offsets=with_growth(case, gears, offsets) if warm else offsets,
-        stages=_stages(case),
-        **_operation(case.operating, gears),
-        forces=_forces(case),
+        stages=stages_of(case),
+        **operation_of(case.operating, gears),
+        forces=forces_of(case),
         march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
         period=geometry.period,
         uneven=is_uneven(case),
@@ -156,45 +157,6 @@ def _kept(
     if changed is None:
         return {name for name, item in now.items() if item is before[name]}
     return {name for name in now if (section, name) not in changed}
-
-
-def _stages(case: spec.Case) -> tuple[Stage, ...]:
-    """Stages, each with its groups of meshes, of which there may be one."""
-    groups = {name: s.groups or (s.meshes,) for name, s in case.stages.items()}
-    return tuple(Stage(n, tuple(s.meshes), tuple(groups[n])) for n, s in case.stages.items())
-
-
-def _operation(operating: spec.Operating, gears: Mapping[str, Gear]) -> dict[str, Any]:
-    """Ends, torques and positions of a train."""
-    return {
-        "input": operating.input,
-        "output": operating.output,
-        "input_torque": operating.input_torque,
-        # A member of a planetary set may turn against the sense in which its rotation is counted.
-        "external": {
-            n: -t.si if gears[n].ratio < 0.0 else t.si for n, t in operating.external.items()
-        },
-        "positions": operating.positions,
-        "rotating": operating.rotation == "teeth",
-    }
-
-
-def _vector(lengths: tuple[spec.Quantity, ...]) -> Vector:
-    """Three components, the last of them 0 where it is not given."""
-    components = [*(q.si for q in lengths), 0.0][:3]
-    return np.stack(np.broadcast_arrays(*components), axis=-1)
-
-
-def _forces(case: spec.Case) -> dict[str, Vector]:
-    """Forces from outside and weights."""
-    operating = case.operating
-    forces = {name: _vector(force) for name, force in operating.forces.items()}
-    if operating.gravity is not None:
-        pulls = _vector(operating.gravity)
-        for name, gear in case.gears.items():
-            weight = np.multiply.outer(spec.mass_of(gear) or 0.0, pulls)
-            forces[name] = forces[name] + weight if name in forces else weight
-    return forces
 
 
 def _support(case: spec.Case, name: str) -> Vector | None:
@@ -397,7 +359,7 @@ def _offset(errors: spec.Errors, gear: Gear, gears: Mapping[str, Gear]) -> Offse
         amount, direction = errors.installation.amount.si, errors.installation.direction.si
         installation = polar(amount, direction) @ gear.plane
     elif errors.installation is not None:
-        installation = _vector(errors.installation)
+        installation = vector_of(errors.installation)
     if errors.pin is not None and gear.carrier is not None:
         installation = installation + _pin(errors.pin, gear, gears[gear.carrier])
     given = errors.eccentricity

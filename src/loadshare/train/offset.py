@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.case import Quantity
 from loadshare.train.gear import Gear, Vector, transverse_frame
 
 Angle = float | Vector
@@ -70,3 +71,9 @@ def polar(amount: float, direction: float) -> Vector:
     both = amount * np.cos(direction), amount * np.sin(direction)
     alone = not any(isinstance(component, np.ndarray) for component in both)
     return np.array(both) if alone else np.stack(both, axis=-1)
+
+
+def vector_of(lengths: tuple[Quantity, ...]) -> Vector:
+    """Three components, the last of them 0 where it is not given."""
+    components = [*(q.si for q in lengths), 0.0][:3]
+    return np.stack(np.broadcast_arrays(*components), axis=-1)

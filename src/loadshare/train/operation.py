@@ -1,0 +1,46 @@
+"""What a case asks of a train: its ends and loads, forces from outside, and its stages."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from loadshare import case as spec
+from loadshare.train.elements import Stage
+from loadshare.train.gear import Gear, Vector
+from loadshare.train.offset import vector_of
+
+
+def stages_of(case: spec.Case) -> tuple[Stage, ...]:
+    """Stages, each with its groups of meshes, of which there may be one."""
+    groups = {name: s.groups or (s.meshes,) for name, s in case.stages.items()}
+    return tuple(Stage(n, tuple(s.meshes), tuple(groups[n])) for n, s in case.stages.items())
+
+
+def operation_of(operating: spec.Operating, gears: Mapping[str, Gear]) -> dict[str, Any]:
+    """Ends, torques and positions of a train."""
+    return {
+        "input": operating.input,
+        "output": operating.output,
+        "input_torque": operating.input_torque,
+        # A member of a planetary set may turn against the sense in which its rotation is counted.
+        "external": {
+            n: -t.si if gears[n].ratio < 0.0 else t.si for n, t in operating.external.items()
+        },
+        "positions": operating.positions,
+        "rotating": operating.rotation == "teeth",
+    }
+
+
+def forces_of(case: spec.Case) -> dict[str, Vector]:
+    """Forces from outside and weights."""
+    operating = case.operating
+    forces = {name: vector_of(force) for name, force in operating.forces.items()}
+    if operating.gravity is not None:
+        pulls = vector_of(operating.gravity)
+        for name, gear in case.gears.items():
+            weight = np.multiply.outer(spec.mass_of(gear) or 0.0, pulls)
+            forces[name] = forces[name] + weight if name in forces else weight
+    return forces
