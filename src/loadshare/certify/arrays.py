@@ -6,6 +6,7 @@ again in every call that it took for the other.
 
 from __future__ import annotations
 
+import math
 from collections import namedtuple
 from typing import Any
 
@@ -22,13 +23,16 @@ Claim = namedtuple("Claim", CLAIMED)  # type: ignore[misc]
 
 
 def arrays_of(situations: Situations, answers: Equilibria) -> tuple[Any, Any]:
-    """Return situations and claims as tuples."""
-    here = Here(*(_array(getattr(situations, name)) for name in VARYING))
-    return here, Claim(*(_array(array) for array in answers.arrays))
+    """Return situations and claims as tuples, the vectors of gears one after another in rows."""
+    here = Here(*(_array(name, getattr(situations, name)) for name in VARYING))
+    return here, Claim(*(_array(name, getattr(answers, name)) for name in CLAIMED))
 
 
-def _array(array: Array) -> Array:
+def _array(name: str, array: Array) -> Array:
     """Return an array of the one kind that code is compiled for."""
-    if array.flags.carray and array.dtype == np.float64:
-        return array
-    return np.require(array, np.float64, ["C", "W"])
+    if not (array.flags.carray and array.dtype == np.float64):
+        array = np.require(array, np.float64, ["C", "W"])
+    return array.reshape(len(array), math.prod(array.shape[1:])) if name in _OF_GEARS else array
+
+
+_OF_GEARS = {"offset", "displacement", "support_force"}

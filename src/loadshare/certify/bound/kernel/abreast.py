@@ -30,17 +30,6 @@ def put_rows(array, first, width, rows):  # type: ignore[no-untyped-def]
 
 
 @within
-def put_vectors(array, first, width, rows):  # type: ignore[no-untyped-def]
-    """Write vectors that claims have, or that all have in common, (S or 1, k, i), into rows."""
-    set_apart()
-    step, size = 1 if len(array) > 1 else 0, array.shape[2]
-    for v in range(width):
-        for k in range(array.shape[1]):
-            for i in range(size):
-                rows[size * k + i, v] = array[step * (first + v), k, i]
-
-
-@within
 def take_rows(array, first, width, rows):  # type: ignore[no-untyped-def]
     """Write rows into what claims have, (S, k)."""
     set_apart()

@@ -15,7 +15,6 @@ from loadshare.certify.bound.kernel.abreast import (
     put_rows,
     put_sizes,
     put_sum,
-    put_vectors,
 )
 from loadshare.certify.bound.kernel.laws import (
     law_of,
@@ -183,7 +182,7 @@ def put_springs(of, here, claim, first, width, work, found, sets, new):  # type:
     set_apart()
     soft, contacts = work.given, len(of.twin)
     put_rows(claim.shaft_torque, first, width, work.wound)
-    put_vectors(claim.support_force, first, width, work.borne)
+    put_rows(claim.support_force, first, width, work.borne)
     for k in range(len(of.spring)):
         j, number, axis = of.spring[k, 0], of.spring[k, 1], of.spring[k, 2]
         force, length, arm = work.force[j], work.length[j], of.spring_arm[k]

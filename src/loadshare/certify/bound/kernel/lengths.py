@@ -14,7 +14,6 @@ from loadshare.certify.bound.kernel.abreast import (
     put_product,
     put_rows,
     put_sum,
-    put_vectors,
 )
 from loadshare.certify.bound.kernel.options import within
 from loadshare.extremes import larger
@@ -33,9 +32,9 @@ def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-
     widest, furthest = work.width, work.deflection
     shafts = here.clocking.shape[1]
     put_rows(claim.rotation, first, width, work.turned)
-    put_vectors(claim.displacement, first, width, moved)
+    put_rows(claim.displacement, first, width, moved)
     put_rows(here.clocking, first, width, varying[:shafts])
-    put_vectors(here.offset, first, width, varying[shafts:])
+    put_rows(here.offset, first, width, varying[shafts:])
     fill(widest, 0.0)
     fill(furthest, 0.0)
     fill(work.limits, 0.0)
@@ -50,7 +49,7 @@ def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-
             put_sum(row, moved[3 * g + 2], frame[2])
     for c in range(len(x)):
         put_largest(widest, x[c], 1.0)
-    for g in range(here.offset.shape[1]):
+    for g in range(here.offset.shape[1] // 3):
         fill(square, 0.0)
         for i in range(3 * g, 3 * g + 3):
             offset, row, way = varying[shafts + i], shift[i], moved[i]

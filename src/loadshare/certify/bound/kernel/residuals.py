@@ -167,8 +167,8 @@ def _squeeze(of, here, claim, s, work, v, d, band):  # type: ignore[no-untyped-d
             y += of.frame[g, 1, i] * here.arc_shift[r, d, k % 2, i]
         size = np.sqrt(x * x + y * y)
         units = units[0] + x / size, units[1] + y / size
-    for i in range(3):
-        moved += claim.displacement[s, g, i] ** 2
+    for i in range(3 * g, 3 * g + 3):
+        moved += claim.displacement[s, i] ** 2
     wedge, distance = units[0] ** 2 + units[1] ** 2, min(of.apart[2 * d], of.apart[2 * d + 1])
     known = band
     if wedge * distance > 8.0 * band:
