@@ -255,7 +255,8 @@ class Machine:
         ways: list[Way] = []
         if by_rule:
             ways.append(lambda _: self._by_rule(loading, engine, learn_from))
-        if starts or self._beside(loading.count) is not None:
+        # To find where the train itself stands takes as long as a few samples.
+        if loading.count > len(starts) > 0 or self._beside(loading.count) is not None:
             ways.append(lambda some: self._from_near(loading, engine, starts, some))
         ways.append(lambda some: self._from_rest(loading, engine, some))
         if engine is not numpy:
