@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from loadshare.job.many import solve_many
     from loadshare.job.search import search
     from loadshare.report.figure import Figure
-    from loadshare.report.plots import plot
+    from loadshare.report.plot import plot
     from loadshare.results import Result, load_result
     from loadshare.study.compare import Comparison, compare
     from loadshare.study.critical import Critical, critical
@@ -58,7 +58,7 @@ _LAZY = {
     "load_case": "loadshare.case",
     "load_result": "loadshare.results",
     "march": "loadshare.study.march",
-    "plot": "loadshare.report.plots",
+    "plot": "loadshare.report.plot",
     "run_study": "loadshare.study.named",
     "search": "loadshare.job.search",
     "sensitivity": "loadshare.study.sensitivity",

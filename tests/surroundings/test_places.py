@@ -10,8 +10,8 @@ from tests.job.test_compilation import as_a_user, read_only  # noqa: F401 -- a f
 from tests.support import CASES
 from tests.tooth.use.pairs import SPUR
 
+from loadshare import user_cache
 from loadshare.cli.main import main
-from loadshare.tooth.law import folder as cache
 
 RING = CASES / "fgfbstts" / "limit_ring.toml"
 SWEEP = ("sweep", RING, "--set", "rings.4.float=1 um, 2 um", "--position", 1)
@@ -116,7 +116,7 @@ def no_home(monkeypatch, tmp_path):
 def test_without_a_home_laws_are_not_kept(no_home, tmp_path):
     pair = tmp_path / "pair.toml"
     pair.write_text(SPUR, encoding="utf-8")
-    assert cache.cache_folder() is None
+    assert user_cache.cache_folder() is None
     assert ended("ltca", pair, "--positions", 1, "-o", tmp_path / "out") == 0
     assert list(no_home.iterdir()) == []
 

@@ -88,13 +88,15 @@ def _with_studies(chapters: list[Chapter], named: dict[str, Path | None]) -> lis
     typer.BadParameter
         If no case holds a study of some name.
     """
-    from loadshare.report.page.studies import quick_studies, run_part
-
     held = {name for one in chapters if one.case for name in one.case.study}
     if unknown := [name for name in named if name not in held]:
         message = f"{', '.join(unknown)}: no such study"
         allowed = f"Allowed: {', '.join(sorted(held))}" if held else "The cases hold none"
         raise typer.BadParameter(f"{message}. {allowed}.", param_hint="--study")
+    if not held:
+        return chapters
+    from loadshare.report.page.studies import quick_studies, run_part
+
     made = []
     for one in chapters:
         case = one.case

@@ -1,25 +1,15 @@
-"""The pictures of what was found: `loadshare.plot`, and `plot` of results and studies."""
+"""The pictures of a result: `Result.plot`."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import singledispatch
-from typing import Any
 
-from loadshare.arguments import one_of
 from loadshare.report.figure import Figure
-from loadshare.report.figures import branches, comparison, critical, sensitivity, sweep, tolerance
+from loadshare.report.figures import branches
 from loadshare.report.figures import floats as rests
 from loadshare.report.figures import law as laws
 from loadshare.report.figures import train as trains
 from loadshare.results import Result
-from loadshare.study.compare import Comparison
-from loadshare.study.critical import Critical
-from loadshare.study.fit import Fit
-from loadshare.study.march import March
-from loadshare.study.sensitivity import Sensitivity
-from loadshare.study.sweep import Sweep
-from loadshare.study.tolerance.result import OVERS, Over, Tolerance
 from loadshare.train import build_train
 
 
@@ -73,65 +63,3 @@ class Plots:
     def train(self) -> Figure:
         """Drawing of the train, with the push of the flanks that carry at the first position."""
         return trains.train(self.result.case, self.result)
-
-
-@singledispatch
-def plot(found: object, *settings: Any, **named: Any) -> Any:
-    """Draw what was found.
-
-    Parameters
-    ----------
-    found : Result or study
-        What `solve`, `sweep`, `critical`, `sensitivity`, `tolerance`, `march`, `compare` or `fit`
-        returned.
-    *settings, **named
-        What to show: as for ``found.plot`` of the study.
-
-    Returns
-    -------
-    Plots or Figure
-        The pictures of a result, each a method; the one picture of a study.
-
-    Raises
-    ------
-    TypeError
-        If there are no pictures of such a thing.
-    """
-    raise TypeError(f"there are no pictures of {type(found).__name__}, only of results and studies")
-
-
-@plot.register
-def _(found: Result) -> Plots:
-    return Plots(found)
-
-
-@plot.register
-def _(found: Sweep, *settings: Any, **named: Any) -> Figure:
-    return sweep.sweep(found.dataset, *settings, **named)
-
-
-@plot.register
-def _(found: Critical) -> Figure:
-    return critical.critical(found)
-
-
-@plot.register
-def _(found: Sensitivity, stage: str = "system", over: Over = "stage") -> Figure:
-    return sensitivity.sensitivity(found, stage, over)
-
-
-@plot.register
-def _(found: March, over: branches.Mean = "stage") -> Figure:
-    return branches.share(found.result, over)
-
-
-@plot.register(Comparison)
-@plot.register(Fit)
-def _(found: Comparison | Fit) -> Figure:
-    return comparison.comparison(found.comparison if isinstance(found, Fit) else found)
-
-
-@plot.register
-def _(found: Tolerance, stage: str = "system", over: Over = "stage") -> Figure:
-    one_of("over", over, OVERS)
-    return tolerance.tolerance(found.dataset.sel(over=over), stage)

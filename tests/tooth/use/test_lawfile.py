@@ -9,13 +9,13 @@ from platformdirs import user_cache_path
 from tests.tooth.use.pairs import CASE, FACE, SPUR, written
 
 import loadshare as ls
-from loadshare import tooth
+from loadshare import tooth, user_cache
 from loadshare.case import load_case
 from loadshare.errors import CaseError
 from loadshare.tooth import resolve
-from loadshare.tooth.law import folder as cache
+from loadshare.tooth.law import folder
 from loadshare.tooth.law.file import law_of, law_text, load_law, parsed_law
-from loadshare.tooth.law.folder import computed_law, known_law
+from loadshare.tooth.law.folder import code_hash, computed_law, known_law
 from loadshare.tooth.pair.file import load_pair
 from loadshare.tooth.pair.gears import gears_of
 
@@ -143,14 +143,14 @@ def test_another_pair_is_another_entry(own_cache, spur, tmp_path):
 def test_other_code_is_another_entry(spur, monkeypatch):
     pair = load_pair(spur)
     computed_law(pair)
-    monkeypatch.setattr(cache, "code_hash", lambda: "another")
+    monkeypatch.setattr(folder, "code_hash", lambda: "another")
     assert known_law(pair) is None
 
 
 def test_all_code_of_the_room_counts():
     room = Path(tooth.__file__).parent
-    assert cache.code_hash() == cache.code_hash(room)
-    assert cache.code_hash(room / "contact") != cache.code_hash(room)
+    assert code_hash() == code_hash(room)
+    assert code_hash(room / "contact") != code_hash(room)
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(spur, tmp_path, monkeypatch):
@@ -160,6 +160,6 @@ def test_a_cache_that_cannot_be_written_is_done_without(spur, tmp_path, monkeypa
 
 
 def test_where_the_cache_is(tmp_path, monkeypatch):
-    assert cache.cache_folder() == tmp_path / "cache"
+    assert user_cache.cache_folder() == tmp_path / "cache"
     monkeypatch.delenv("LOADSHARE_CACHE")
-    assert cache.cache_folder() == user_cache_path("loadshare", appauthor=False)
+    assert user_cache.cache_folder() == user_cache_path("loadshare", appauthor=False)

@@ -29,7 +29,10 @@ class _Encoding(alt.FacetedEncoding):
 
 
 class _Chart(alt.Chart):
-    """A chart whose channels are not copied."""
+    """A chart of which nothing is copied but the chart itself."""
+
+    def __deepcopy__(self, _: object) -> _Chart:
+        return self.copy(deep=False)
 
     def encode(self, *channels: Any, **named: Any) -> Any:
         drawn = super().encode(*channels, **named)

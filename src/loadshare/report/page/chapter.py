@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from loadshare.case import Case, load_case
 from loadshare.case.reader import load_draft
@@ -18,12 +18,14 @@ from loadshare.report.figures.train import train as draw
 from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
-from loadshare.report.page.studies import StudyPart, study_part
 from loadshare.report.page.verdict import trust, verdict_tables
+from loadshare.report.plots import Plots
 from loadshare.report.records import Cell, Table, table
 from loadshare.report.teeth import teeth_tables
 from loadshare.results import Result
-from loadshare.view import Viewed
+
+if TYPE_CHECKING:
+    from loadshare.report.page.studies import StudyPart
 
 CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused", "cannot be used"
 
@@ -123,7 +125,6 @@ def chapter(
     file: str = "",
     progress: Progress | None = None,
     result: Result | None = None,
-    studies: Mapping[str, Viewed] | None = None,
 ) -> Chapter:
     """Solve a case and put together its chapter.
 
@@ -136,9 +137,6 @@ def chapter(
         Called after every position.
     result : Result, optional
         Of the case, where it is solved already.
-    studies : mapping of str to study, optional
-        Studies of the case that were run already, such as a `Sweep`, by the names under which the
-        page shows them.
 
     Raises
     ------
@@ -168,7 +166,6 @@ def chapter(
         tables=tuple(_tables(result)) if result else (),
         inputs=tuple(input_tables(case)),
         derived=tuple(teeth_tables(case)),
-        studies=tuple(study_part(name, found, case) for name, found in (studies or {}).items()),
     )
 
 
@@ -206,7 +203,7 @@ def _verdict(result: Result | None, refused: int) -> str:
 
 
 def _figures(result: Result) -> Iterator[Figure]:
-    plots, positions = result.plot, result.positions
+    plots, positions = Plots(result), result.positions
     if any(s is not None for p in positions for s in p.share.values()):
         yield plots.share()
         if any(omega(p.share[m]) != omega(p.pair_share[m]) for p in positions for m in p.share):

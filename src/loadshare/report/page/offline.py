@@ -10,7 +10,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from loadshare.report.vega import vega_lite_version
-from loadshare.tooth.law.folder import read_entry, write_entry
+from loadshare.user_cache import digest_of, read_entry, write_entry
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 OWN_SCRIPTS = "OWN_SCRIPTS"
 """Placeholder in the policy of a page for the hashes of its scripts."""
 SCRIPT = re.compile("<script>(.*?)</script>", re.DOTALL)
-SCRIPTS = "scripts/{}.js"
-"""Their place among the user's caches."""
 EXPOSED = "window.vegaEmbed = vegaEmbed;"
 """What the page's own script needs of the bundle."""
 
@@ -34,13 +32,14 @@ def scripts() -> str:
     import vl_convert
 
     parts = (version("vl-convert-python"), vega_lite_version(), EXPOSED)
-    key = sha256("\n".join(parts).encode()).hexdigest()
-    found = read_entry(key, SCRIPTS)
+    key = digest_of("\n".join(parts))
+    place = f"scripts/{key}.js"
+    found = read_entry(place)
     if found is None:
         bundle = str(vl_convert.javascript_bundle(EXPOSED, vl_version=vega_lite_version()))
         # A closing tag within a text of the bundle would end the element.
         found = bundle.replace("</script", "<\\/script")
-        write_entry(key, found, SCRIPTS)
+        write_entry(place, found)
     return found
 
 

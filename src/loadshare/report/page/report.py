@@ -14,9 +14,7 @@ from loadshare.case import Case
 from loadshare.output import write_whole
 from loadshare.report.page.answers import effort_text
 from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
-from loadshare.report.page.comparison import comparison
 from loadshare.report.page.offline import render
-from loadshare.report.page.studies import quick_studies, run_part, study_part
 from loadshare.report.records import Table
 from loadshare.view import Viewed
 
@@ -53,6 +51,8 @@ def _differences(chapters: list[Chapter]) -> list[Table]:
     solved = {n: one.result for n, one in enumerate(chapters, start=1) if one.result}
     if len(solved) < 2:
         return []
+    from loadshare.report.page.comparison import comparison
+
     return comparison([f"case {number}" for number in solved], list(solved.values()))
 
 
@@ -97,7 +97,9 @@ def write_report(
     chapters = []
     for case in given:
         made = chapter(case) if isinstance(case, Case) else chapter_of_file(case)
-        if made.case is not None:
+        if made.case is not None and (studies or made.case.study):
+            from loadshare.report.page.studies import quick_studies, run_part, study_part
+
             parts = (
                 [study_part(name, found, made.case) for name, found in studies.items()]
                 if studies
