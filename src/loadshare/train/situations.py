@@ -288,11 +288,13 @@ def stack(situations: Sequence[Situations]) -> Situations:
         if name == "table":
             points = max(p.shape[-1] for p in parts)
             parts = [_filled(p, points) for p in parts]
+        # One row after another, which rows that are all alike would not be by themselves.
         together[name] = np.concatenate(
             [
                 np.broadcast_to(p, (s.count, *p.shape[1:]))
                 for p, s in zip(parts, situations, strict=True)
-            ]
+            ],
+            out=np.empty((count, *parts[0].shape[1:])),
         )
     return replace(first, count=count, **together)
 
