@@ -100,16 +100,14 @@ def prepared(workload: Workload, count: int) -> Prepared:
     structure = machine.structure
     loading = loading_of(structure, stack([samples.situations(k) for k in positions]))
     iterate, states = at_rest(structure, loading), first_sets(structure, loading)
-    taught = np.zeros(loading.count, dtype=bool)
-    taught[samples_to_learn(loading.count)] = True
-    found = exchange(structure, loading, iterate, compiled.settle, states, only=taught)
-    known = np.flatnonzero(found.solved)
-    share = np.abs(iterate.force[known]) / pushes(loading)[known, None]
-    rows = structure.rows
-    rule = rule_of(loading, known, found.states[known, :rows], share)
-    iterate = at_rest(structure, loading)
-    states[:, :rows] = rule.states[rule.named]
-    iterate.begin(slice(None), rule.share, loading, rule.named)
+    taught = loading.take(samples_to_learn(loading.count))
+    forces = at_rest(structure, taught)
+    found = exchange(structure, taught, forces, compiled.settle)
+    rows, share = structure.rows, np.abs(forces.force) / pushes(taught)[:, None]
+    rule = rule_of(taught, found.states[:, :rows], share)
+    named = rule.named(loading)
+    states[:, :rows] = rule.states[named]
+    iterate.begin(slice(None), rule.share, loading, named)
     return Prepared(structure, loading, iterate, states)
 
 

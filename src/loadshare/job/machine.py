@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,16 +24,30 @@ from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Engine, Found, States, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.proximal import search
-from loadshare.solver.hot.rule import rule_of, samples_to_learn
+from loadshare.solver.hot.rule import Rule, rule_of, samples_to_learn
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.placed import standing
-from loadshare.train.situations import Situations, situation_of, situations_of
+from loadshare.train.samples import Samples
+from loadshare.train.situations import Situations, situation_of, situations_of, stack
 
 Some = NDArray[np.bool_] | None
 """Samples (S,) to solve; None for all."""
+Outcome = TypeVar("Outcome")
 Way = Callable[[Some], tuple[Iterate, Found]]
 """How samples are solved."""
+
+
+def _compiling(engine: Engine, act: Callable[[Engine], Outcome]) -> Outcome:
+    """Act with an engine, or with the vectorised one in place of one that does not compile."""
+    try:
+        return act(engine)
+    except Exception as error:
+        if not compilation.is_failure(error):
+            raise
+        compilation.give_up(f"it does not compile ({compilation.words_of(error)})")
+    compilation.tell_why_not()
+    return act(vectorised.settle)
 
 
 def _parts(count: int, parts: int) -> list[slice]:
@@ -115,6 +130,7 @@ class Machine:
         self._own: tuple[tuple[int, ...], Situations] | None = None
         self._placed: dict[int, Machine] = {}
         self._like: Machine | None = None
+        self._rule: Rule | None = None
 
     @cached_property
     def structure(self) -> Structure:
@@ -184,14 +200,24 @@ class Machine:
             Positions (1-based) at which equal parts of the samples begin where the train itself
             stands.
         """
-        try:
-            return self._answer(situations, tolerance, engine, starts)
-        except Exception as error:
-            if not compilation.is_failure(error):
-                raise
-            compilation.give_up(f"it does not compile ({compilation.words_of(error)})")
-        compilation.tell_why_not()
-        return self._answer(situations, tolerance, vectorised.settle, starts)
+        return _compiling(
+            engine, lambda engine: self._answer(situations, tolerance, engine, starts)
+        )
+
+    def learn(self, samples: Samples, positions: Sequence[int], engine: Engine) -> None:
+        """Learn from some of many samples, over all positions, where all begin."""
+        if self.train.is_placed_anew and len(positions) > 1:
+            for position in positions:
+                self.at(position).learn(samples, [position], engine)
+            return
+        at, rows = np.divmod(samples_to_learn(samples.count * len(positions)), samples.count)
+        if not len(rows):
+            return
+        situations = [
+            samples.take(rows[at == k]).situations(positions[k]) for k in np.unique(at).tolist()
+        ]
+        loading = loading_of(self.structure, stack(situations))
+        self._rule = _compiling(engine, lambda engine: self._taught(loading, engine))
 
     def _answer(
         self, situations: Situations, tolerance: float, engine: Engine, starts: Sequence[int]
@@ -250,11 +276,13 @@ class Machine:
         A beginning or compiled code that fails: once more from rest, then with NumPy, at last by
         one element after another.
         """
-        learn_from = samples_to_learn(loading.count if starts else 0)
-        by_rule, numpy = len(learn_from) > 0, vectorised.settle
+        rule, numpy = self._rule if starts else None, vectorised.settle
+        if starts and rule is None:
+            some = samples_to_learn(loading.count)
+            rule = self._taught(loading.take(some), engine) if len(some) else None
         ways: list[Way] = []
-        if by_rule:
-            ways.append(lambda _: self._by_rule(loading, engine, learn_from))
+        if rule is not None:
+            ways.append(lambda _: self._by_rule(loading, engine, rule))
         # To find where the train itself stands takes as long as a few samples.
         if loading.count > len(starts) > 0 or self._beside(loading.count) is not None:
             ways.append(lambda some: self._from_near(loading, engine, starts, some))
@@ -262,7 +290,7 @@ class Machine:
         if engine is not numpy:
             ways.append(lambda some: self._from_rest(loading, numpy, some))
         ways.append(lambda some: self._from_rest(loading, numpy, some, singly=True))
-        return ways, by_rule
+        return ways, rule is not None
 
     def _from_rest(
         self,
@@ -291,23 +319,23 @@ class Machine:
                 iterate.begin(part, start.share, loading)
         return iterate, exchange(self.structure, loading, iterate, engine, states, only=some)
 
-    def _by_rule(
-        self, loading: Loading, engine: Engine, learn_from: NDArray[np.intp]
-    ) -> tuple[Iterate, Found]:
-        """Solve some samples; the others begin where a rule says, which it learns from these."""
-        iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
-        taught = np.zeros(loading.count, dtype=bool)
-        taught[learn_from] = True
-        found = exchange(self.structure, loading, iterate, engine, states, only=taught)
+    def _taught(self, loading: Loading, engine: Engine) -> Rule | None:
+        """Return the rule that samples teach; None if none of them is solved."""
+        iterate = at_rest(self.structure, loading)
+        found = exchange(self.structure, loading, iterate, engine)
         known = np.flatnonzero(found.solved)
-        if len(known):
-            share = np.abs(iterate.force[known]) / pushes(loading)[known, None]
-            rule = rule_of(loading, known, found.states[known, : self.structure.rows], share)
-            # Those that are solved begin nowhere.
-            states[:, : self.structure.rows] = rule.states[rule.named]
-            iterate.begin(slice(None), rule.share, loading, rule.named)
-        others = exchange(self.structure, loading, iterate, engine, states, only=~found.solved)
-        return iterate, found.completed(others)
+        if not len(known):
+            return None
+        share = np.abs(iterate.force[known]) / pushes(loading)[known, None]
+        return rule_of(loading.take(known), found.states[known, : self.structure.rows], share)
+
+    def _by_rule(self, loading: Loading, engine: Engine, rule: Rule) -> tuple[Iterate, Found]:
+        """Let samples begin where a rule says."""
+        iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
+        named = rule.named(loading)
+        states[:, : self.structure.rows] = rule.states[named]
+        iterate.begin(slice(None), rule.share, loading, named)
+        return iterate, exchange(self.structure, loading, iterate, engine, states)
 
     def _search(
         self,

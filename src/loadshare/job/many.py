@@ -81,19 +81,20 @@ def _solved(
     keep_freed_memory()
     total = sum(len(rows) for rows, _ in groups)
     size = max(JOB.block, JOB.together // len(wanted))
+    solver = engine_named(engine, total * len(wanted))
     tasks: list[tuple[Machine, NDArray[np.intp], Samples, slice]] = []
     for rows, group in groups:
         machine = _machine(case, group)
         # Equal blocks: a short one takes more time for every sample.
         each = -(-len(rows) // max(1, -(-len(rows) // size)))
         tasks += [(machine, rows, group, slice(at, at + each)) for at in range(0, len(rows), each)]
-    solver = engine_named(engine, total * len(wanted))
+        if each < len(rows):
+            machine.learn(group, _there(group, wanted), solver)
 
     def work(task: tuple[Machine, NDArray[np.intp], Samples, slice]) -> Block:
         machine, rows, group, part = task
         samples = group.take(part)
-        # Of samples that have none of them, the first says what an answer holds.
-        there = tuple(k for k in wanted if k <= group.train.count) or (1,)
+        there = _there(group, wanted)
         found = solve_block(machine, rows[part], samples, there, tolerance, solver, least_norm)
         return found if there == wanted else found.over(wanted)
 
@@ -108,6 +109,11 @@ def _solved(
                 block = running.pop(0).result()
                 running += [pool.submit(work, task) for task in islice(queue, 1)]
                 yield block
+
+
+def _there(samples: Samples, wanted: tuple[int, ...]) -> tuple[int, ...]:
+    """Positions that samples have; of those that have none, the first says what an answer holds."""
+    return tuple(k for k in wanted if k <= samples.train.count) or (1,)
 
 
 _recent: Recent[Machine] = Recent()

@@ -61,15 +61,19 @@ class Loading:
     radial: Array
     carried: Array
 
-    def one(self, row: int) -> Loading:
-        """Return a sample alone."""
+    def take(self, rows: NDArray[np.intp]) -> Loading:
+        """Return some of the samples."""
         varying = {
-            f.name: value[row : row + 1]
+            f.name: value[rows]
             for f in fields(self)
             if f.name not in ("count", "tabulated", "nominal", "relative", "carried")
             and len(value := getattr(self, f.name)) > 1
         }
-        return replace(self, count=1, **varying)
+        return replace(self, count=len(rows), **varying)
+
+    def one(self, row: int) -> Loading:
+        """Return a sample alone."""
+        return self.take(np.array([row]))
 
     @cached_property
     def loaded(self) -> NDArray[np.intp]:

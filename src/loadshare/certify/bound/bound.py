@@ -185,15 +185,18 @@ class _Enclosure(Part):
         force = np.full(self.soft.shape, np.inf)
         coordinate = np.full((len(self.rows), len(self.statics.directions.T)), np.inf)
         allowed = rounding_of(self.found.force[self.rows], scale)
-        left = np.flatnonzero(self.stray <= allowed)
+        left, alike = np.flatnonzero(self.stray <= allowed), True
         for _ in range(BOUND.references):
             if not len(left):
                 break
-            middle = int(left[len(left) // 2])
-            response = Response(self, middle)
-            force[left], coordinate[left] = self._errors(response, left)
+            middle = left[len(left) // 2]
+            # Where the operators of one prove no other, the others are not much alike either.
+            rows = left if alike else np.array([middle])
+            response = Response(self, int(middle))
+            force[rows], coordinate[rows] = self._errors(response, rows)
             self.shared = np.maximum(self.shared, response.shared)
-            left = left[(left != middle) & np.isinf(force[left]).any(axis=1)]
+            more = left[(left != middle) & np.isinf(force[left]).any(axis=1)]
+            left, alike = more, alike and len(more) < len(left) - 1
         return force, coordinate
 
     def _errors(self, response: Response, rows: NDArray[np.intp]) -> tuple[Array, Array]:

@@ -119,7 +119,8 @@ def completed(
     """
     left = np.flatnonzero(~(relative <= tolerance) & wanted)
     if len(left):
-        more = bounds(columns, situations.take(left), answers.take(left)).relative
+        some = situations.take(left), answers.take(left)
+        more = bounds(columns, *some, enough=tolerance).relative
         relative[left] = np.fmin(relative[left], more)
     return Bounds(columns, relative, None, None, None)
 

@@ -9,7 +9,9 @@ costs a visit or two, and never an answer.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,21 +24,53 @@ from loadshare.solver.hot.exchange import States
 Rows = NDArray[np.intp]
 
 
+class Part(NamedTuple):
+    """Weights of numbers that are one array of a loading.
+
+    Attributes
+    ----------
+    name : str
+        Of the array.
+    used : ndarray of int or None
+        Columns with a weight; None for all, where it takes less time than to pick them.
+    weights : ndarray, shape (columns, sets)
+    """
+
+    name: str
+    used: Rows | None
+    weights: Array
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Rule:
-    """Sets that were met, and which of them each of some samples is to begin with.
+    """Sets that were met, and what names one of them.
 
     Attributes
     ----------
     states : ndarray of int8, shape (sets, rows)
     share : ndarray, shape (sets, m)
         Mean forces on each, in shares of the load.
-    named : ndarray of int, shape (S,)
+    constant : ndarray, shape (sets,)
+    parts : sequence of Part
     """
 
     states: States
     share: Array
-    named: Rows
+    constant: Array
+    parts: Sequence[Part] = ()
+
+    def named(self, loading: Loading) -> Rows:
+        """Return the number of the set, one of `states`, on which each of S samples is to begin."""
+        if not self.parts:
+            return np.zeros(loading.count, dtype=np.intp)
+        fit = np.tile(self.constant, (loading.count, 1))
+        for name, used, weights in self.parts:
+            table = getattr(loading, name)
+            table = table.reshape(len(table), -1)
+            # What is infinite without a weight spoils the name of its own sample only.
+            with np.errstate(invalid="ignore"):
+                fit += table @ weights if used is None else table[:, used] @ weights
+        return np.asarray(fit.argmax(axis=1))
 
 
 def samples_to_learn(count: int) -> Rows:
@@ -50,17 +84,15 @@ def samples_to_learn(count: int) -> Rows:
     return np.unique((multiples % 1.0 * count).astype(np.intp))
 
 
-def rule_of(loading: Loading, taught: Rows, states: States, share: Array) -> Rule:
-    """Learn from some samples how all begin.
+def rule_of(loading: Loading, states: States, share: Array) -> Rule:
+    """Learn from samples that were solved where others begin.
 
     Parameters
     ----------
     loading : Loading
-        S samples.
-    taught : ndarray of int, shape (T,)
-        Numbers of those that were solved.
+        T samples.
     states : ndarray of int8, shape (T, rows)
-        Sets that these ended on.
+        Sets that they ended on.
     share : ndarray, shape (T, m)
         Their forces, in shares of the load.
     """
@@ -74,23 +106,20 @@ def rule_of(loading: Loading, taught: Rows, states: States, share: Array) -> Rul
     number[kept] = np.arange(len(kept))
     met, which = states[first[kept]], number[every]
     shares = np.array([share[which == k].mean(axis=0) for k in range(len(kept))])
-    named = np.zeros(loading.count, dtype=np.intp)
-    tables = _varying(loading, taught) if len(met) > 1 else []
-    if tables:
-        known = np.concatenate([table[taught][:, columns] for table, columns in tables], axis=1)
-        weights, constant = _learnt(known, states, met, which)
-        fit, start = np.tile(constant, (loading.count, 1)), 0
-        for table, columns in tables:
-            here = np.zeros((table.shape[1], len(met)))
-            here[columns] = weights[start : start + len(columns)]
-            start += len(columns)
-            used = np.flatnonzero(here.any(axis=1))
-            if len(used) > RULE.dense * table.shape[1] and np.isfinite(table[taught]).all():
-                fit += table @ here
-            else:
-                fit += table[:, used] @ here[used]
-        named = fit.argmax(axis=1)
-    return Rule(met, shares, named)
+    tables = _varying(loading) if len(met) > 1 else {}
+    if not tables:
+        return Rule(met, shares, np.zeros(len(met)))
+    known = np.concatenate([table[:, columns] for table, columns in tables.values()], axis=1)
+    weights, constant = _learnt(known, states, met, which)
+    parts, start = [], 0
+    for name, (table, columns) in tables.items():
+        here = np.zeros((table.shape[1], len(met)))
+        here[columns] = weights[start : start + len(columns)]
+        start += len(columns)
+        used = np.flatnonzero(here.any(axis=1))
+        whole = len(used) > RULE.dense * table.shape[1] and np.isfinite(table).all()
+        parts.append(Part(name, None, here) if whole else Part(name, used, here[used]))
+    return Rule(met, shares, constant, parts)
 
 
 def _learnt(numbers: Array, states: States, met: States, which: Rows) -> tuple[Array, Array]:
@@ -153,15 +182,14 @@ def _discriminant(values: Array, which: Rows, sets: int) -> tuple[Array, Array]:
     return weights, np.log(times) - 0.5 * (means.T * weights).sum(axis=0)
 
 
-def _varying(loading: Loading, taught: Rows) -> list[tuple[Array, Rows]]:
-    """What varies among some samples: tables (S, numbers) and the columns that do."""
-    found = []
+def _varying(loading: Loading) -> dict[str, tuple[Array, Rows]]:
+    """What varies among samples: arrays by name, as tables (T, numbers), and columns that do."""
+    found = {}
     for name in ("load", "gap", "bending", "hertz", "shift", "clearance", "radial"):
         table = getattr(loading, name)
         if len(table) > 1:
             table = table.reshape(len(table), -1)
-            some = table[taught]
-            varies = np.isfinite(some).all(axis=0) & (np.ptp(some, axis=0) > 0.0)
+            varies = np.isfinite(table).all(axis=0) & (np.ptp(table, axis=0) > 0.0)
             if varies.any():
-                found.append((table, np.flatnonzero(varies)))
+                found[name] = table, np.flatnonzero(varies)
     return found
