@@ -400,3 +400,56 @@ def test_what_only_rounding_presses_rests_at_the_end_of_its_clearance(digits, en
     for i in range(5):
         part = found.torque.sel(mesh=f"s-p{i}").values[:, 0] / torques
         assert part == pytest.approx(exact[f"s-p{i}"] / 100.0, abs=10.0**-digits)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
+@pytest.mark.parametrize("torque", [3.0, 100.0])
+def test_what_nothing_presses_rests_at_the_end_of_its_clearance(law, torque):
+    """A sun between two planets stands where the flanks share alike; aside it is free.
+
+    Its least place lies at the wall of its bearing, without force: a wall that is a power yields
+    there without end.
+    """
+    key, stiffness, _ = law
+    clearance, centre = 12e-6, np.array([-3e-6, 14e-6])
+    compliances = np.array([1e-7 + 1e-6, 4e-7 + 2.5e-7])
+    planet = {"base_radius": "50 mm", "support": "rigid"}
+    case = ls.Case(
+        {
+            "operating": {"input": "s", "output": "r", "torque": f"{torque} N*m"},
+            "gears": {
+                "s": {"centre": ["0 mm", "0 mm"], "base_radius": "50 mm", "support": "free"},
+                "p0": {"centre": ["110 mm", "0 mm"], **planet},
+                "p1": {"centre": ["-110 mm", "0 mm"], **planet},
+                "r": {"type": "internal", "centre": ["0 mm", "0 mm"], "base_radius": "150 mm"},
+            },
+            "meshes": {
+                "s-p0": {"stiffness": "1e7 N*m/rad"},
+                "s-p1": {"stiffness": "2.5e6 N*m/rad"},
+                "p0-r": {"stiffness": "1e6 N*m/rad"},
+                "p1-r": {"stiffness": "4e6 N*m/rad"},
+            },
+            "bearings": {
+                "s": {
+                    "clearance": f"{clearance!r} m",
+                    key: stiffness,
+                    "offset": [f"{v!r} m" for v in centre.tolist()],
+                }
+            },
+        }
+    )
+    found = ls.solve(case).positions[0]
+    assert found.torque["s-p0"] == pytest.approx(torque / 2.0, rel=1e-12)
+    assert found.torque["s-p1"] == pytest.approx(torque / 2.0, rel=1e-12)
+    assert found.certificate.proved < 1e-12
+    cosine = 100.0 / 110.0
+    along = np.array([math.sqrt(1.0 - cosine**2), cosine])
+    across = np.array([-along[1], along[0]])
+    # r φ ± n·p = r² (compliances) F, F = T / 2 r.
+    place = 0.05 * torque / 2.0 * (compliances[0] - compliances[1]) / 2.0
+    half = math.sqrt(clearance**2 - (place - along @ centre) ** 2)
+    aside = across @ centre - half
+    assert aside > 0.0
+    expected = place * along + aside * across
+    # Balls yield by 1e-13 m under the rounding of the load, 1e-12 of it.
+    assert found.displacement["s"] == pytest.approx(tuple(expected), abs=1e-12)

@@ -258,7 +258,8 @@ def elements(
     )
     if pairs:
         with np.errstate(divide="ignore", invalid="ignore"):
-            _pairs(claim, act[:, flanks + stops :], found, softest)
+            open_ended = None if verge is None else verge[:, flanks + stops :]
+            _pairs(claim, act[:, flanks + stops :], found, least, open_ended, softest)
     if claim.slack is not None:
         found.width[:] += claim.slack
     return found
@@ -366,7 +367,9 @@ def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Arr
     width[:, linear] += EPS * np.abs(yielded)
 
 
-def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
+def _pairs(
+    claim: Claim, act: Acts, found: Elements, least: Array, verge: Flags | None, softest: float
+) -> None:
     """Arcs and radial elements."""
     columns, here = claim.columns, claim.situations
     first, count = columns.first_pair, claim.count
@@ -404,6 +407,9 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     lined = (act == Act.STOP) | (act == Act.STEP) | (act == Act.SLIP)
     off = normal - sign * yields * (size - preload)
     off = np.where(act == Act.SLIP, 0.0, off)
+    light = np.zeros(here.round_power.shape, dtype=bool)
+    if claim.rolls and verge is not None:
+        light = _light_walls(claim, found, act, verge, least, (size, distance), (yields, off))
     spread = EPS * (reach + yields * np.abs(size)) + np.where(begins, distance, 0.0)
     most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
     across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
@@ -438,7 +444,7 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     found.line[:], found.distance[:], found.size[:] = line, distance, size
     found.begins[:], found.along[:] = begins, yields
     if claim.rolls:
-        _bends(claim, acts, found, arcs)
+        _bends(claim, acts, found, arcs, light)
     true = np.where(size > 0.0, sign / across, 0.0)
     wrong = np.where(begins, 0.0, np.abs(true - 1.0 / lateral) * (1.0 + EPS))
     wrong += np.where(act == Act.SLIP, 1.0 / along, 0.0)
@@ -457,11 +463,57 @@ def _lose_torque(claim: Claim, found: Elements) -> None:
     found.width[:, first:] += np.repeat(found.shrinks * lost, 2, axis=1)
 
 
-def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int) -> None:
+def _light_walls(
+    claim: Claim,
+    found: Elements,
+    act: Acts,
+    verge: Flags,
+    least: Array,
+    where: tuple[Array, Array],
+    laws: tuple[Array, Array],
+) -> Flags:
+    """Put in walls that are powers on the verge, and return which these are, (S, rounds).
+
+    As of a light Hertz contact, their tangent is taken at more than their force. Up to there the
+    wall is softer: it answers by something between that tangent and none.
+
+    Parameters
+    ----------
+    claim : Claim
+    found : Elements
+        Whose `room` is filled in.
+    act : ndarray of int8, shape (S, pairs)
+    verge : ndarray of bool, shape (S, pairs)
+    least : ndarray, shape (S, 1)
+        Smallest force at which a tangent is taken [N].
+    where : (ndarray, ndarray)
+        Sizes of the forces [N] and distances [m] of the pairs.
+    laws : (ndarray, ndarray)
+        Their compliances [m/N] and misfits [m] along their lines, filled in.
+    """
+    here, columns = claim.situations, claim.columns
+    radius, stiffness, power = here.round_radius, here.round_stiffness, here.round_power
+    first = (columns.arcs.stop - columns.arcs.start) // 2
+    rounds = slice(first, first + power.shape[1])
+    size, distance = (v[:, rounds] for v in where)
+    light = (power != 1.0) & (act[:, rounds] == Act.STOP) & (verge[:, rounds] | (size == 0.0))
+    at = np.maximum(BOUND.reached * size, least)
+    soft = (at / stiffness) ** (1.0 / power) / (power * at)
+    off = distance - radius - (size / stiffness) ** (1.0 / power)
+    for target, value in zip(laws, (soft, off), strict=True):
+        target[:, rounds] = np.where(light, value, target[:, rounds])
+    # A force stays below that all along its line while its two components change by less than this.
+    room = np.where(light, np.sqrt(0.5) * (at - size), np.inf)
+    start = columns.radials.start
+    found.room[:, start : start + 2 * power.shape[1]] = np.repeat(room, 2, axis=1)
+    return np.asarray(light)
+
+
+def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int, light: Flags) -> None:
     """Curvature of the walls that are powers, and what their tangents leave at the claim."""
     power = claim.situations.round_power
     rounds = slice(arcs, arcs + power.shape[1])
-    acting = (power != 1.0) & (acts[:, : power.shape[1]] != Act.OPEN)
+    acting = (power != 1.0) & (acts[:, : power.shape[1]] != Act.OPEN) & ~light
     size = np.abs(found.size[:, rounds])
     compliance = found.along[:, rounds]
     with np.errstate(divide="ignore", invalid="ignore"):
