@@ -222,3 +222,35 @@ def test_what_ends_a_free_move_takes_more_than_the_load_along_it() -> None:
     assert force_at_end(move, np.empty((0, 2)), np.eye(2)[None]) == pytest.approx(1.0)
     assert force_at_end(np.array([[1.0], [0.0]]), at_start, nothing) == 1.0
     assert force_at_end(move[:, :0], at_start, nothing) == 1.0
+
+
+@pytest.mark.parametrize("torque", [1e-5, 1e-6, 1e-8])
+def test_a_force_beside_a_light_torque_leaves_it_proved(torque: float) -> None:
+    """A bearing takes 500 N of a planet that carries nothing; the other takes all of the torque.
+
+    That planet may turn freely, and the rounding of what its bearing takes does no work on that.
+    """
+    case = ls.Case(
+        {
+            "operating": {
+                "input": "s",
+                "output": "r",
+                "torque": f"{torque} N*m",
+                "forces": {"p1": ["500 N", "100 N", "0 N"]},
+            },
+            "gears": {
+                "s": {"centre": ["0 mm", "0 mm"], "base_radius": "50 mm"},
+                "p0": {"centre": ["110 mm", "0 mm"], "base_radius": "50 mm", "support": "1e8 N/m"},
+                "p1": {"centre": ["-110 mm", "0 mm"], "base_radius": "50 mm", "support": "1e7 N/m"},
+                "r": {"type": "internal", "centre": ["0 mm", "0 mm"], "base_radius": "150 mm"},
+            },
+            "meshes": {
+                **{mesh: {"stiffness": "1e6 N*m/rad"} for mesh in ("s-p0", "p0-r", "p1-r")},
+                "s-p1": {"stiffness": "1e6 N*m/rad", "gap": "1 mrad"},
+            },
+        }
+    )
+    found = ls.solve(case).positions[0]
+    expected = {"s-p0": torque, "p0-r": torque, "s-p1": 0.0, "p1-r": 0.0}
+    assert found.torque == pytest.approx(expected, rel=1e-9, abs=0.0)
+    assert found.certificate.proved < 1e-9

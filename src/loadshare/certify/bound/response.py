@@ -32,10 +32,14 @@ class Part:
         self.soft, self.misfit, self.width = found.soft[pick], found.misfit[pick], found.width[pick]
         self.left, self.rounding = left[rows], rounding[rows]
         moves = self.statics.moves
-        # Balance along moves that nothing resists is the case's own; only rounding may be left.
+        # Balance along moves that nothing resists is the case's own; only rounding may be left: of
+        # balances, and what errors of forces, smaller than these, have along rounded moves.
         self.stray = np.abs(self.left @ moves).max(axis=1, initial=0.0)
         if moves.size:
-            self.stray += EPS * np.abs(found.force[rows]).max(axis=1, initial=0.0)
+            known, force = self.statics.directions, np.abs(found.force[pick])
+            along = np.abs(known @ moves) + EPS * (np.abs(known) @ np.abs(moves))
+            spread = (self.rounding @ np.abs(moves) + force @ along).max(axis=1)
+            self.stray += np.minimum(spread, EPS * force.max(axis=1, initial=0.0))
         # What goes along a free move may end at any contact, and push what that joins.
         self.ended = self.stray * claim.columns.force_at_end(moves)
         self.left = self.left - self.left @ moves @ moves.T
