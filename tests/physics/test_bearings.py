@@ -14,6 +14,8 @@ from tests.support import shipped
 import loadshare as ls
 from benchmarks import families
 from benchmarks.reference.solve import reference
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Machine
 from loadshare.train import build_train
 
 FORCE = 100.0 / 0.05
@@ -402,19 +404,15 @@ def test_what_only_rounding_presses_rests_at_the_end_of_its_clearance(digits, en
         assert part == pytest.approx(exact[f"s-p{i}"] / 100.0, abs=10.0**-digits)
 
 
-@pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
-@pytest.mark.parametrize("torque", [3.0, 100.0])
-def test_what_nothing_presses_rests_at_the_end_of_its_clearance(law, torque):
-    """A sun between two planets stands where the flanks share alike; aside it is free.
+CLEARANCE, OFF = 12e-6, np.array([-3e-6, 14e-6])
+"""Clearance of the bearing of a sun between two planets, and its offset [m]."""
 
-    Its least place lies at the wall of its bearing, without force: a wall that is a power yields
-    there without end.
-    """
-    key, stiffness, _ = law
-    clearance, centre = 12e-6, np.array([-3e-6, 14e-6])
-    compliances = np.array([1e-7 + 1e-6, 4e-7 + 2.5e-7])
+
+def between_planets(key: str, stiffness: str, torque: float) -> ls.Case:
+    """A sun between two planets, in a bearing in which the place without displacement is not."""
     planet = {"base_radius": "50 mm", "support": "rigid"}
-    case = ls.Case(
+    offset = [f"{v!r} m" for v in OFF.tolist()]
+    return ls.Case(
         {
             "operating": {"input": "s", "output": "r", "torque": f"{torque} N*m"},
             "gears": {
@@ -429,27 +427,43 @@ def test_what_nothing_presses_rests_at_the_end_of_its_clearance(law, torque):
                 "p0-r": {"stiffness": "1e6 N*m/rad"},
                 "p1-r": {"stiffness": "4e6 N*m/rad"},
             },
-            "bearings": {
-                "s": {
-                    "clearance": f"{clearance!r} m",
-                    key: stiffness,
-                    "offset": [f"{v!r} m" for v in centre.tolist()],
-                }
-            },
+            "bearings": {"s": {"clearance": f"{CLEARANCE!r} m", key: stiffness, "offset": offset}},
         }
     )
-    found = ls.solve(case).positions[0]
+
+
+@pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
+@pytest.mark.parametrize("torque", [3.0, 100.0])
+def test_what_nothing_presses_rests_at_the_end_of_its_clearance(law, torque):
+    """A sun between two planets stands where the flanks share alike; aside it is free.
+
+    Its least place lies at the wall of its bearing, without force: a wall that is a power yields
+    there without end.
+    """
+    found = ls.solve(between_planets(*law[:2], torque)).positions[0]
     assert found.torque["s-p0"] == pytest.approx(torque / 2.0, rel=1e-12)
     assert found.torque["s-p1"] == pytest.approx(torque / 2.0, rel=1e-12)
-    assert found.certificate.proved < 1e-12
+    # The wall is taken to begin under 1e-12 of the load.
+    assert found.certificate.proved < 1e-11
     cosine = 100.0 / 110.0
     along = np.array([math.sqrt(1.0 - cosine**2), cosine])
     across = np.array([-along[1], along[0]])
-    # r φ ± n·p = r² (compliances) F, F = T / 2 r.
+    # r φ ± n·p = r² F (1/K + 1/K'), F = T / 2 r.
+    compliances = 1.0 / 1e7 + 1.0 / 1e6, 1.0 / 2.5e6 + 1.0 / 4e6
     place = 0.05 * torque / 2.0 * (compliances[0] - compliances[1]) / 2.0
-    half = math.sqrt(clearance**2 - (place - along @ centre) ** 2)
-    aside = across @ centre - half
+    aside = across @ OFF - math.sqrt(CLEARANCE**2 - (place - along @ OFF) ** 2)
     assert aside > 0.0
     expected = place * along + aside * across
-    # Balls yield by 1e-13 m under the rounding of the load, 1e-12 of it.
+    # Balls yield by 1e-13 m under 1e-12 of the load.
     assert found.displacement["s"] == pytest.approx(tuple(expected), abs=1e-12)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
+def test_what_nothing_presses_finds_room_without_a_search(law):
+    """Room ends at the clearance, not where the tangent of a wall begins in which a gear stands."""
+    machine = Machine(build_train(between_planets(*law[:2], 100.0)))
+    found = machine.answer(machine.situations([1]), 1e-9, engine_named("vectorised", 1))
+    assert found.passed.all()
+    assert not found.searched.any()
+    off = found.equilibria.displacement[0, 0, :2] - OFF
+    assert np.hypot(*off) == pytest.approx(CLEARANCE, abs=1e-12)

@@ -550,7 +550,8 @@ class _Passes:
             column = structure.radial_column(j)
             matrix = structure.vectors[column : column + 2] @ loose
             offset = self._offset(j)
-            reach = float(self._graph(j, offset).reach[k])
+            # A wall that is a power begins at the clearance, not where its tangent from here does.
+            reach = float(self._graph(j, np.zeros_like(offset)).reach[k])
             # Without friction and without an end a spline is nowhere.
             discs += [(matrix, offset[k], reach)] if np.isfinite(reach) else []
         closes = vectors @ loose
