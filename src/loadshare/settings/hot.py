@@ -189,6 +189,8 @@ class Search(NamedTuple):
     """Round-offs of the lengths at hand by which the compliance presses a contact in at least."""
     newton: int = 60
     """Newton steps of a pass."""
+    rolls: float = 0.1
+    """How much deeper a straight step may press a round wall, over how deep it is pressed."""
     slope: float = 0.1
     """Part of the slope at its beginning to which a line search brings a step."""
     secants: int = 6
@@ -202,6 +204,8 @@ class Search(NamedTuple):
     """Gradient, over the largest force, at which a pass has arrived."""
     still: float = 1e-15
     """Step, over the largest coordinate, that is round-off."""
+    gain: float = 1e-18
+    """Energy that a step may gain, over the work of all forces, that is round-off."""
     tries: int = 3
     """Passes from which a set is solved exactly: a later one may stand nearer."""
     idle: float = 1e-6

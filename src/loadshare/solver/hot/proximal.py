@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loadshare.array_types import Flags
 from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
@@ -129,7 +130,10 @@ class Proximal:
             tired = since > SEARCH.patience or self.looks > SEARCH.looks
             if tired or flat <= SEARCH.flat * largest:
                 break
-            step = self._step(here)
+            step = self._rolled(here, self._step(here))
+            work = float(np.abs(here.force) @ np.abs(here.pressed))
+            if -(here.gradient @ step) <= SEARCH.gain * work:
+                break
             here = self._along(here, step)
             if np.abs(step).max() <= SEARCH.still * np.abs(here.x).max():
                 break
@@ -143,9 +147,21 @@ class Proximal:
         gradient = self.vectors.T @ force - self.load + self.pull * (x - self.x)
         return _Point(x, pressed, force, gradient)
 
-    def _step(self, here: _Point) -> Array:
-        """Newton step, of coordinates and the forces that act: regular, whatever acts."""
+    def _step(self, here: _Point, led: Flags | None = None, ways: Array | None = None) -> Array:
+        """Newton step, of coordinates and the forces that act: regular, whatever acts.
+
+        Parameters
+        ----------
+        here : _Point
+        led : ndarray of bool, shape (radials,), optional
+            Radial elements whose way is given; none by default.
+        ways : ndarray, shape (radials, 2), optional
+        """
         compliance, stiffness = self.laws.tangents(here.pressed, here.force)
+        compliance = np.append(compliance, np.full(len(here.pressed) - self.scalar, np.inf))
+        if led is not None:
+            stiffness[led] = 0.0
+            compliance[self.scalar :][np.repeat(led, 2)] = SEARCH.softer
         acts = np.flatnonzero(np.isfinite(compliance))
         size, count = len(here.x), len(acts)
         matrix = np.zeros((size + count, size + count))
@@ -159,7 +175,29 @@ class Proximal:
         matrix[size:, :size] = self.vectors[acts]
         right = np.zeros(size + count)
         right[:size] = -here.gradient
+        if led is not None and ways is not None:
+            right[len(right) - 2 * led.sum() :] = ways[led].ravel()
         return np.asarray(np.linalg.solve(matrix, right)[:size])
+
+    def _rolled(self, here: _Point, step: Array) -> Array:
+        """Lead a step along the round walls on which floats roll, if the energy falls that way.
+
+        A straight step leaves a wall, which a line search hardly lets it: a float that has far to
+        roll would do so in tiny steps. It is led to where the step points, at the radius of its
+        tangent, and all else follows: a chord, along which no wall is pressed any further.
+        """
+        offset = here.pressed[self.scalar :].reshape(-1, 2)
+        ends = offset + (self.vectors[self.scalar :] @ step).reshape(-1, 2)
+        radius, there = (np.sqrt((v * v).sum(axis=1)) for v in (offset, ends))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            tangent = (offset * ends).sum(axis=1) / radius
+            deeper = there - tangent > SEARCH.rolls * (radius - self.laws.level)
+            led = (radius > self.laws.level) & (tangent > 0.0) & deeper
+            ends *= (tangent / there)[:, None]
+        if not led.any():
+            return step
+        chord = self._step(here, led, ends - offset)
+        return chord if here.gradient @ chord < 0.0 else step
 
     def _along(self, here: _Point, step: Array) -> _Point:
         """Go along a step until the slope of the energy has all but gone.
