@@ -252,7 +252,7 @@ class Machine:
             if at_once and unproved.any():
                 left, at_once = unproved, False
                 continue
-            if unproved.any() and without_noise(self.structure, iterate, unproved):
+            if unproved.any() and without_noise(self.structure, iterate, unproved, searched):
                 verdicts = judging.renewed(unproved)
             left = found.solved & ~verdicts.passed & ~searched
             if not left.any():

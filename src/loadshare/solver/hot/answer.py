@@ -66,17 +66,23 @@ def pin(structure: Structure, loading: Loading, iterate: Iterate, states: States
             iterate.x[rows, at] = pins[rows] / structure.vectors[column, at]
 
 
-def without_noise(structure: Structure, iterate: Iterate, rows: NDArray[np.bool_]) -> bool:
+def without_noise(
+    structure: Structure, iterate: Iterate, rows: NDArray[np.bool_], searched: NDArray[np.bool_]
+) -> bool:
     """Let radial elements of some samples drop what is round-off; return whether any do.
 
-    What holds a gear that no load reaches pulls by what the sums of its contacts leave.
+    What holds a gear that no load reaches pulls by what the sums of its contacts leave. Contacts
+    drop it at last, where a search came to no other answer: without a torque, what round-off
+    presses flanks with would be the largest torque of the case.
     """
-    first = structure.columns.radials.start
-    pairs = iterate.force[rows, first:].reshape(int(rows.sum()), -1, 2)
-    size = np.sqrt((pairs * pairs).sum(axis=2))
-    largest = np.abs(iterate.force[rows]).max(axis=1, initial=0.0)
-    noise = (size > 0.0) & (size <= HOT.sign * largest[:, None])
-    iterate.force[rows, first:] = np.where(noise[:, :, None], 0.0, pairs).reshape(len(pairs), -1)
+    contacts, first = structure.columns.contacts, structure.columns.radials.start
+    force = iterate.force[rows]
+    size = np.abs(force)
+    size[:, first:] = np.repeat(np.hypot(force[:, first::2], force[:, first + 1 :: 2]), 2, axis=1)
+    noise = (size > 0.0) & (size <= HOT.sign * np.abs(force).max(axis=1, initial=0.0)[:, None])
+    noise[:, : contacts.start] = False
+    noise[~searched[rows], contacts] = False
+    iterate.force[rows] = np.where(noise, 0.0, force)
     return bool(noise.any())
 
 
