@@ -105,7 +105,7 @@ def print_certificate(result: Result, wanted: int) -> None:
     """Print the worst value of every residual over the positions, and the verdict."""
     fields = _fields(result, "figure", "value", "unit", "scaled", "where")
     show("Certificate: the worst residuals", texts(records.residuals(result), fields, WORDS))
-    proved = max(p.certificate.bound.relative for p in result.positions)
+    proved = records.proved(result)
     none = "no bound of the torques is proved: they are in balance"
     say(none if math.isinf(proved) else f"torques proved to {small(proved)} of the largest")
     passed = result.passed and len(result.positions) == wanted

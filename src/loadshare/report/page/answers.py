@@ -153,7 +153,7 @@ def certificate_table(result: Result) -> Table:
             "Recomputed from the answer and the physics alone; a scaled residual is a part of the "
             f"case's load or deflection. Allowed: {result.stamp.tolerance:.0e}.",
             "Every torque lies within "
-            f"{small(max(p.certificate.bound.relative for p in result.positions))} of the exact "
+            f"{small(records.proved(result))} of the exact "
             "equilibrium's, as a part of the largest torque.",
             f"{result.uniqueness.text[0].upper()}{result.uniqueness.text[1:]}.",
         ],

@@ -125,7 +125,7 @@ def trust(result: Result) -> Mapping[str, str]:
     ----------
     result : Result
     """
-    bound = max(p.certificate.bound.relative for p in result.positions)
+    bound = records.proved(result)
     worst = result.certificate.worst
     assumed = ", ".join(result.case.assumed)
     found = {
