@@ -12,7 +12,7 @@ from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import pressed
 from loadshare.study.follow.ranges import Range, sampled
-from loadshare.study.follow.stretches import Stretches
+from loadshare.study.follow.stretches import Around, Stretches
 
 
 class Force(NamedTuple):
@@ -89,23 +89,15 @@ def forces(s: Stretches, dev: Array) -> Iterator[Force]:
     for k in np.flatnonzero(e.acts).tolist():
         if k in slopes:
             slope = slopes[k]
-            yield Force(_along(s, s.vectors[:, k]), _slack(s, k, slope.off), *slope[1:])
+            yield Force(s.inputs[:, k], _slack(s, k, slope.off), *slope[1:])
     for k, where in s.turning():
         yield from _turning_force(s, k, where, dev, slopes)
     for k in e.radials:
         stiff = s.sampled(s.state.laws[k].first)
         if e.states[k] == at.STICK and stiff.off.any():
-            matrix, still = s.own(e.matrix(k, s.at_middle)), np.zeros(s.count)
-            for i in (0, 1):
-                slack = _slack(s, s.columns[k].start + i, stiff.off)
-                yield Force(_along(s, matrix[:, i]), slack, still, still)
-
-
-def _along(s: Stretches, vector: Array) -> Array:
-    """Row of U of a force that enters the balance along a vector (B, n)."""
-    row = np.zeros((s.count, s.equations.size))
-    row[:, : s.equations.n] = vector
-    return row
+            still = np.zeros(s.count)
+            for i in range(s.columns[k].start, s.columns[k].stop):
+                yield Force(s.inputs[:, i], _slack(s, i, stiff.off), still, still)
 
 
 def _slack(s: Stretches, columns: int | slice, slack: Array) -> Array:
@@ -209,43 +201,57 @@ def _turning_force(
     s: Stretches, k: int, where: int | None, dev: Array, slopes: dict[int, Slope]
 ) -> Iterator[Force]:
     """Yield the components of a force that turns, and the condition that an unknown one meets."""
-    e, offset, along, here = s.equations, s.offsets[k], s.along[k], s.columns[k]
+    e, offset, here = s.equations, s.offsets[k], s.columns[k]
     bound = None
     if where is None and k in e.radials:
         bound = friction_bound(s, k, slopes)
-    around, radius, turn = s.around(k, dev)
+    around = s.around(k, dev)
     push = _push(s, k, where, dev, bound)
-    near = radius - around
-    largest = np.maximum(np.abs(push.value.low), np.abs(push.value.high)) + push.extra
-    across = largest / near
-    off = push.value.off + push.extra
-    across_off = off / near + np.abs(push.value.middle) * around / (near * radius)
-    slack = push.off + 2.0 * across_off + (push.steep + across) * 2.0 * turn
-    stiff = s.split(s.state.polars[k].stiffness)[:, FOLLOW.nodes // 2]
-    rate = (stiff @ offset.rate[:, :, None])[:, :, 0] + push.rate[:, None] * along
-    bends = offset.spread.sum(axis=1)
-    moved = np.abs(offset.rate).sum(axis=1) + bends
-    spread = slack * moved + (push.steep + across) * bends
-    spread += push.spread + (np.abs(push.rate) + push.spread) * turn
-    every = _slack(s, here, slack[:, None])
-    if where is not None:
-        every[:, s.z_in + where] += turn
-    elif bound is not None:
-        every += bound.felt * turn[:, None] + bound.varies
-    matrix = s.own(e.matrix(k, s.at_middle))
-    for i in range(matrix.shape[1]):
-        yield Force(_along(s, matrix[:, i]), every, rate[:, i], spread)
+    width = offset.rate.shape[1]
+    # By how much the way itself may differ, along that in the middle and across.
+    turn = np.stack([around.rise, *[around.turn] * (width - 1)], axis=1)
+    slack, stiff = _turned(s, k, around, push, width)
+    moved = np.abs(offset.rate) + offset.spread
+    rate = stiff * offset.rate
+    rate[:, 0] += push.rate
+    spread = (slack @ moved[:, :, None])[:, :, 0] + np.abs(stiff) * offset.spread
+    spread += (np.abs(push.rate) + push.spread)[:, None] * turn
+    spread[:, 0] += push.spread
+    for i in range(width):
+        every = _slack(s, here, slack[:, i])
+        if where is not None:
+            every[:, s.z_in + where] += turn[:, i]
+        elif bound is not None:
+            every += bound.felt * turn[:, i, None] + (bound.varies if i == 0 else 0.0)
+        yield Force(s.inputs[:, here.start + i], every, rate[:, i], spread[:, i])
     if where is not None:
         limit = _limit(s, k)
         row = np.zeros((s.count, e.size))
         row[:, where] = 1.0
-        straight = s.state.polars[k].sense * (along * offset.rate).sum(axis=1)
-        yield Force(
-            row,
-            _slack(s, here, turn[:, None]),
-            straight - limit.rate,
-            turn * moved + bends + limit.spread,
-        )
+        straight = s.state.polars[k].sense * offset.rate[:, 0]
+        turned = (turn * moved).sum(axis=1) + offset.spread[:, 0]
+        yield Force(row, _slack(s, here, turn), straight - limit.rate, turned + limit.spread)
+
+
+def _turned(s: Stretches, k: int, around: Around, push: Push, width: int) -> tuple[Array, Array]:
+    """By how much the stiffness of a force that turns varies, (B, width, width), and its diagonal.
+
+    Along its way the stiffness is that of the push, across it the force over the radius.
+    """
+    largest = np.maximum(np.abs(push.value.low), np.abs(push.value.high)) + push.extra
+    radius = s.radii[k]
+    across = push.value.middle / radius
+    across_off = (push.value.off + push.extra + np.abs(across) * around.off) / around.least
+    # What is stiff one way and soft the other, turned.
+    twist = push.steep + largest / around.least
+    diagonal = np.stack([push.off, *[across_off] * (width - 1)], axis=1)
+    slack = np.tile((twist * around.turn**2)[:, None, None], (1, width, width))
+    slack[:, 0, 1:] = slack[:, 1:, 0] = (twist * around.turn)[:, None]
+    slack += diagonal[:, :, None] * np.eye(width)
+    stiff = np.stack(
+        [s.split(s.state.polars[k].slope)[:, FOLLOW.nodes // 2], *[across] * (width - 1)], axis=1
+    )
+    return slack, stiff
 
 
 def _limit(s: Stretches, k: int) -> Range:
@@ -269,17 +275,17 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
         p = s.chord[where]
         value = Range(polar.sense * p.nodes, polar.sense * p.rate, p.spread)
         return Push(value, value.rate, value.spread, dev[:, s.z_in + where], still, still)
-    around, radius, _ = s.around(k, dev)
+    around = s.around(k, dev)
     value, give = s.sampled(polar.size), s.sampled(polar.slope)
     # The chord's own sagitta is far below the band of the offset; it is bounded by it.
-    sagitta = around**2 / radius
+    felt = s.felt(k, dev, around.turn) + around.sagitta
     if bound is None:
         clearance = s.sampled(s.numbers.clearance[:, k - e.arcs.start])
         margin = s.sampled(s.state.margin[k])
         rate = give.middle * clearance.rate + margin.middle * give.rate
         spread = give.off * np.abs(clearance.rate) + give.most * clearance.spread
         spread += margin.off * np.abs(give.rate) + margin.most * give.spread
-        extra = give.most * s.felt(k, dev) + give.most * sagitta
+        extra = give.most * felt
         return Push(value, rate, spread, extra, give.most, give.off)
     follows = (bound.felt * dev).sum(axis=1)
     if e.states[k] == at.SLIP:
@@ -287,22 +293,22 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
         return Push(value, value.rate, value.spread, follows, still, still)
     power = s.numbers.radial[0, k - e.radials.start, 6]
     if power != 1.0:
-        return _rolling_push(s, k, dev, value, give, float(power))
+        return _rolling_push(s, k, felt, value, give, float(power))
     reach = s.sampled(s.state.laws[k].reach)
-    past = np.abs(radius - reach.middle) + around + reach.off
-    rate = bound.value.rate + give.rate * (radius - reach.middle) - give.middle * reach.rate
-    spread = bound.value.spread + give.spread * past + give.most * reach.spread
-    spread += np.abs(give.rate) * (around + reach.off) + give.off * np.abs(reach.rate)
-    extra = follows + give.most * (s.felt(k, dev) + sagitta)
+    past = s.radii[k] - reach.middle
+    past_off = around.off + reach.off
+    rate = bound.value.rate + give.rate * past - give.middle * reach.rate
+    spread = bound.value.spread + give.spread * (np.abs(past) + past_off)
+    spread += np.abs(give.rate) * past_off + give.off * np.abs(reach.rate)
+    spread += give.most * reach.spread
+    extra = follows + give.most * felt
     return Push(value, rate, spread, extra, give.most, give.off)
 
 
 def _rolling_push(
-    s: Stretches, k: int, dev: Array, value: Range, give: Range, power: float
+    s: Stretches, k: int, felt: Array, value: Range, give: Range, power: float
 ) -> Push:
-    """Force of a bearing's wall, K (R − clearance)^power."""
-    around, radius, _ = s.around(k, dev)
-    felt = s.felt(k, dev) + around**2 / radius
+    """Force of a bearing's wall, K (R − clearance)^power; the radius may be off by `felt`."""
     numbers = s.numbers.radial[:, k - s.equations.radials.start]
     reach, stiffness = s.sampled(numbers[:, 2]), s.sampled(numbers[:, 5])
     gap = s.sampled(s.state.polars[k].radius).low - felt - reach.high

@@ -149,21 +149,21 @@ def _known(nodes: Array) -> Enclosure:
 def _radius(s: Stretches, k: int, dev: Array, bend: Array) -> Enclosure:
     """Radius of an offset; of an arc, its margin."""
     offset = s.offsets[k]
-    _, _, turn = s.around(k, dev)
+    around = s.around(k, dev)
     if k in s.equations.arcs:
         nodes = s.split(s.state.margin[k])
         clearance = s.sampled(s.numbers.clearance[:, k - s.equations.arcs.start])
     else:
         nodes = s.split(s.state.polars[k].radius)
         clearance = sampled(np.zeros((s.count, FOLLOW.nodes)))
-    moved = np.sqrt((offset.rate**2).sum(axis=1))
-    straight = (s.along[k] * offset.rate).sum(axis=1)
-    spread = moved * turn + np.sqrt((offset.spread**2).sum(axis=1))
+    straight, across = offset.rate[:, 0], np.sqrt((offset.rate[:, 1:] ** 2).sum(axis=1))
+    varies = np.sqrt((offset.spread**2).sum(axis=1))
+    spread = around.rise * np.abs(straight) + around.turn * across
     # The radius is no faster than the offset itself, however its way turns.
-    spread = np.minimum(spread, np.abs(straight) + moved + np.sqrt((offset.spread**2).sum(axis=1)))
-    spread = np.where(np.isfinite(spread), spread, np.abs(straight) + moved)
+    moved = np.sqrt((offset.rate**2).sum(axis=1))
+    spread = np.fmin(spread, np.abs(straight) + moved) + varies
     chord = Range(nodes, straight + clearance.rate, spread + clearance.spread)
-    return Enclosure(chord, s.felt(k, dev), s.felt(k, bend))
+    return Enclosure(chord, s.felt(k, dev, around.turn), s.felt(k, bend, around.turn))
 
 
 def _bound(s: Stretches, k: int, dev: Array, bend: Array) -> Enclosure:

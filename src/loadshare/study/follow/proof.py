@@ -108,12 +108,14 @@ def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
     dev = FOLLOW.least_deviation * np.ones((s.count, s.width))
     done = np.zeros(s.count, dtype=bool)
     found = bend = np.full((s.count, s.width), np.inf)
+    base = None
     for _ in range(FOLLOW.enclosures):
         into, slack, rates, spreads = _stacked(s, dev)
         through = reach @ into.transpose(0, 2, 1)
         spread = straight.spread + (np.abs(through) @ spreads[:, :, None])[:, :, 0]
         matrix = np.abs(through) @ slack + drift
-        base = ends + noise + 0.5 * spread
+        # The chord itself does not deviate.
+        base = ends + noise + 0.5 * spread if base is None else base
         fresh = base + (matrix @ dev[:, :, None])[:, :, 0]
         fits = (fresh <= dev).all(axis=1) & np.isfinite(fresh).all(axis=1) & ~done
         if fits.any():

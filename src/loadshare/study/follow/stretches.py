@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from loadshare.scene.scene import Array
@@ -10,6 +12,32 @@ from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.numbers import Numbers
 from loadshare.study.follow.ranges import Enclosure, Range, sampled
+
+
+class Around(NamedTuple):
+    """Where offsets may be along stretches; every entry of shape (B,).
+
+    Attributes
+    ----------
+    least : ndarray
+        No radius is smaller.
+    off : ndarray
+        By how much the radius may differ from that in the middle.
+    sagitta : ndarray
+        By how much the radius may exceed the part along the way in the middle.
+    turn : ndarray
+        How far the way may turn: the part across over that along, at most.
+    """
+
+    least: Array
+    off: Array
+    sagitta: Array
+    turn: Array
+
+    @property
+    def rise(self) -> Array:
+        """By how much a unit vector of the way may fall short of that in the middle, along it."""
+        return np.asarray(np.minimum(0.5 * self.turn**2, 2.0))
 
 
 class Stretches:
@@ -30,6 +58,10 @@ class Stretches:
         elements, then the unknowns themselves.
     inputs : ndarray, shape (B, width, size)
         V.
+    frames : mapping of switch to ndarray, shape (B, k, k)
+        Directions in which an offset is told: its own in the middle, then those across. A force
+        along an offset is stiff along it and may be soft across; told in other directions each
+        would count as both.
     """
 
     def __init__(self, equations: Equations, ends: Array, numbers: Numbers) -> None:
@@ -48,18 +80,22 @@ class Stretches:
             self.columns[k] = slice(start, start + (3 if k in e.arcs else 2))
             start = self.columns[k].stop
         self.z_in, self.width = start, start + e.size
-        self.inputs = np.zeros((self.count, self.width, e.size))
-        self.inputs[:, : e.scalars, : e.n] = self.vectors[:, : e.scalars]
-        for k, columns in self.columns.items():
-            self.inputs[:, columns, : e.n] = self.own(e.matrix(k, self.at_middle))
-        self.inputs[:, self.z_in :] = np.eye(e.size)
         with np.errstate(all="ignore"):
             self.state = e.state(self.flat, numbers)
             self.approach = self.sampled(self.state.approach)
             polars = self.state.polars
-            self.offsets = {k: self.sampled(p.offset) for k, p in polars.items()}
+            middles = {k: self.split(p.along)[:, FOLLOW.nodes // 2] for k, p in polars.items()}
+            self.frames = {k: _framed(along) for k, along in middles.items()}
+            self.offsets = {
+                k: sampled(self.split(p.offset) @ self.frames[k].transpose(0, 2, 1))
+                for k, p in polars.items()
+            }
             self.radii = {k: self.split(p.radius)[:, FOLLOW.nodes // 2] for k, p in polars.items()}
-            self.along = {k: self.split(p.along)[:, FOLLOW.nodes // 2] for k, p in polars.items()}
+        self.inputs = np.zeros((self.count, self.width, e.size))
+        self.inputs[:, : e.scalars, : e.n] = self.vectors[:, : e.scalars]
+        for k, columns in self.columns.items():
+            self.inputs[:, columns, : e.n] = self.frames[k] @ e.matrix(k, self.at_middle)
+        self.inputs[:, self.z_in :] = np.eye(e.size)
 
     @classmethod
     def at_points(cls, equations: Equations, z: Array, numbers: Numbers) -> Stretches:
@@ -87,19 +123,34 @@ class Stretches:
         acting = e.polar_at.items()
         return [(k, w) for k, w in acting if k in e.arcs or int(e.states[k]) in turning]
 
-    def around(self, k: int, dev: Array) -> tuple[Array, Array, Array]:
-        """Distance of an offset from its middle, its radius there, and how far its way turns."""
+    def around(self, k: int, dev: Array) -> Around:
+        """Where an offset may be, and how far its way may turn from that in the middle."""
         off = self.offsets[k].off + dev[:, self.columns[k]]
-        around, radius = np.sqrt((off * off).sum(axis=1)), self.radii[k]
-        around = np.where(around < radius, around, np.inf)
-        return around, radius, 2.0 * around / radius
+        least = self.radii[k] - off[:, 0]
+        across = np.sqrt((off[:, 1:] ** 2).sum(axis=1))
+        turn = np.where(least > 0.0, across / least, np.inf)
+        sagitta = across * turn
+        return Around(np.where(least > 0.0, least, 0.0), off[:, 0] + sagitta, sagitta, turn)
 
-    def felt(self, k: int, dev: Array) -> Array:
-        """Length of the deviation of an offset."""
+    def felt(self, k: int, dev: Array, turn: Array) -> Array:
+        """By how much the deviation of an offset may change its radius."""
         part = dev[:, self.columns[k]]
-        return np.asarray(np.sqrt((part * part).sum(axis=1)))
+        across = np.sqrt((part[:, 1:] ** 2).sum(axis=1))
+        whole = np.sqrt((part * part).sum(axis=1))
+        return np.asarray(np.fmin(part[:, 0] + turn * across, whole))
 
     def unknown(self, where: int, dev: Array, bend: Array) -> Enclosure:
         """Enclose an unknown."""
         inner = self.z_in + where
         return Enclosure(self.chord[where], dev[:, inner], bend[:, inner])
+
+
+def _framed(along: Array) -> Array:
+    """Orthonormal directions (B, k, k) that begin with given ones (B, k), if those are not zero."""
+    first = np.eye(along.shape[1])[0]
+    ways = np.where(np.any(along, axis=1, keepdims=True), along, first)
+    mirror = ways + np.where(ways[:, :1] < 0.0, -1.0, 1.0) * first
+    dyad = mirror[:, :, None] * mirror[:, None, :]
+    frames = np.eye(along.shape[1]) - 2.0 * dyad / (mirror**2).sum(axis=1)[:, None, None]
+    frames[:, 0] = ways
+    return np.asarray(frames)

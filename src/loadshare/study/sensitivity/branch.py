@@ -201,7 +201,7 @@ class Branch:
         for gauge in found:
             k, gradient = gauge.switch, None
             if k in e.arcs and k not in e.polar_at:
-                gradient = -here.along[k][0] @ e.matrix(k, self.numbers)[0]
+                gradient = -here.frames[k][0, 0] @ e.matrix(k, self.numbers)[0]
             elif k < e.arcs.start and e.states[k] == at.OPEN:
                 gradient = here.vectors[0, e.structure.springs + k]
             # What the coordinates cannot close is none.
