@@ -1,5 +1,8 @@
 """A set followed between two points on its own equations: how few certified solves that takes."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 import loadshare as ls
@@ -26,6 +29,45 @@ def pressed(stiffness: str) -> ls.Case:
     )
 
 
+def loop() -> ls.Case:
+    """Two pairs, wound up against each other, on floats that open where their meshes do."""
+    return ls.Case(
+        {
+            "operating": {
+                "input": "g1",
+                "output": "h2",
+                "torque": "-66 N*m",
+                "running": "clockwise",
+                "forces": {"g2": ["-240 N", "-1350 N", "0 N"]},
+            },
+            "gears": {
+                "g1": {"base_radius": "50 mm", "centre": ["0 mm", "0 mm"]},
+                "g2": {"base_radius": "50 mm", "centre": ["0 mm", "0 mm"]},
+                "h1": {"base_radius": "90 mm", "centre": ["149 mm", "0 mm"], "support": "1e8 N/m"},
+                "h2": {"base_radius": "90 mm", "centre": ["149 mm", "0 mm"]},
+            },
+            "meshes": {
+                "g1-h1": {"backlash": "0.19 mm", "stiffness": "4e6 N*m/rad"},
+                "g2-h2": {"backlash": "0.29 mm", "stiffness": "2e6 N*m/rad"},
+            },
+            "shafts": {
+                "first": {"ends": ["g1", "g2"], "stiffness": "6e5 N*m/rad", "clocking": "2.2 mrad"},
+                "second": {"ends": ["h1", "h2"], "stiffness": "rigid"},
+            },
+            "bearings": {"g1": {"clearance": "20 um", "stiffness": "7e8 N/m"}},
+            "splines": {
+                "g2": {
+                    "bending_stiffness": "8e7 N/m",
+                    "clearance": "50 um",
+                    "friction_force": "90 N",
+                }
+            },
+            "rings": {"h2": {"radius": "40 um", "stiffness": "5e7 N/m"}},
+            "errors": {"g1": {"installation": ["-49 um", "-12 um"]}},
+        }
+    )
+
+
 def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> Search:
     return Search(Line(case, read_parameter(case, key, unit), low, high), 1, low, high)
 
@@ -45,7 +87,7 @@ def solves(monkeypatch):
 
 
 @pytest.mark.parametrize("stiffness", ["3e9 N/m", "3e7 N/m", "rigid"])
-@pytest.mark.parametrize(("low", "high"), [(50.0, 60.0)])
+@pytest.mark.parametrize(("low", "high"), [(1e-3, 100.0), (50.0, 60.0)])
 def test_a_float_that_moves_straight_outwards_does_not_turn(stiffness, low, high, solves):
     """Its ring is stiff one way and soft the other: counted as stiff both ways nothing was proved
     of a ring that widens by more than it is pressed in.
@@ -53,4 +95,36 @@ def test_a_float_that_moves_straight_outwards_does_not_turn(stiffness, low, high
     search = searched(pressed(stiffness), "rings.a.radius", low, high, "um")
     search.run()
     assert (search.changes, search.gaps) == ([], [])
+    assert len(solves) == FIRST
+
+
+def test_a_body_at_rest_elsewhere_is_followed_across_its_room(solves):
+    """A free body may rest anywhere: on opposite sides at both ends it has most room between."""
+    search = searched(loop(), "meshes.g1-h1.backlash", 0.6, 0.7, "mm")
+    values = np.array([0.6, 0.7])
+    first, last = search.points(values)
+    assert first.active == last.active
+    equations, numbers = search.equations(first.active), search.line.numbers(1, values)
+    state = equations.state(np.array([first.z, last.z]), numbers)
+    (bearing,) = (k for k in equations.radials if k not in equations.polar_at)
+    names = search.line.structure.coordinates.names
+    at = [names.index(f"gear g1 {axis}") for axis in "xy"]
+    ends = []
+    for k, point in enumerate((first, last)):
+        z = point.z.copy()
+        edge = (-1.0) ** k * 0.95 * state.laws[bearing].reach[k] * np.array([0.6, 0.8])
+        z[at] += edge - state.polars[bearing].offset[k]
+        ends.append(replace(point, z=z))
+    solves.clear()
+    assert search.proved_alike([(ends[0], ends[1])]) == []
+    assert search.gaps == []
+    assert solves == []
+
+
+def test_what_round_off_hides_is_not_solved_again_and_again(solves):
+    """Close to where a mesh opens, the forces that hold a float vanish with it."""
+    search = searched(loop(), "meshes.g1-h1.backlash", 0.0, 0.3, "mm")
+    search.run()
+    assert len(search.changes) == 2
+    assert all(gap.last.value - gap.first.value < 1e-6 for gap in search.gaps)
     assert len(solves) == FIRST

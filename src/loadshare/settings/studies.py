@@ -53,6 +53,8 @@ class Follow(NamedTuple):
     """Width of a stretch that is not cut any more, over the largest value."""
     hopeful: int = 5
     """How often stretches are cut of which nothing was proved, before all of it is given up."""
+    parts: int = 512
+    """Parts, at once, in which sets are followed between points; what is left then is named."""
     most: int = 2000
     """Stretches of a position; what is left then is named as not proved."""
     rounded: float = 64.0

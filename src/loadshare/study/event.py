@@ -59,7 +59,8 @@ class Event:
     worst : float
         Larger one of the two certificates' worst scaled residuals.
     apart : float
-        Distance of the two certified solves from the event, in the unit.
+        Distance of the two certified solves from the event, in the unit; where it is not confirmed,
+        of the ends of what is not proved.
     """
 
     value: float

@@ -13,7 +13,7 @@ from loadshare.study.follow.line import Missing
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Point:
-    """A certified point on a set.
+    """A certified point on a set, or one between two of them that its equations lead to.
 
     Attributes
     ----------
@@ -21,7 +21,7 @@ class Point:
     active : WorkingSet
     z : ndarray
     worst : float
-        Worst scaled residual of its certificate.
+        Worst scaled residual of its certificate, or of theirs.
     """
 
     value: float
@@ -43,7 +43,7 @@ class Change:
     worst : float
         Larger one of the worst residuals on both sides.
     apart : float
-        Distance of the certified points on both sides.
+        Distance of the points on both sides.
     """
 
     value: float

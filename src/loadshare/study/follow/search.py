@@ -1,13 +1,15 @@
-"""Every change of the set along a parameter: stretches are proved, or halved until they are.
+"""Every change of the set along a parameter: stretches are proved, or cut until they are.
 
 A stretch between two certified points that stand on one set is proved to hold no event. One whose
 ends differ is cut at the value where a gauge of either end vanishes: its two parts are proved on
-their own sets, up to the event itself. Whatever is not proved is cut again, down to a width at
-which it is named. Nothing depends on where the range ends.
+their own sets, up to the event itself. What more points may help with is cut again, down to a width
+at which it is named; where round-off hides what holds a body they do not, and it is named at once.
+Nothing depends on where the range ends.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -23,7 +25,7 @@ from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
 from loadshare.study.follow.line import Line, Missing, Solved
 from loadshare.study.follow.numbers import Numbers
-from loadshare.study.follow.proof import Proof, prove
+from loadshare.study.follow.parts import HIDDEN, Prover, between
 from loadshare.study.follow.ranges import Flags
 from loadshare.study.follow.stretches import Stretches
 from loadshare.study.follow.zero import first_zero
@@ -48,11 +50,11 @@ class Search:
         # Which contacts are rigid or curved anywhere on the way.
         self._anywhere = line.numbers(position, np.linspace(low, high, 3))
         self.least = FOLLOW.least * max(abs(low), abs(high))
+        self.prover = Prover(line, position, self.least)
         self.changes: list[Change] = []
         self.gaps: list[Gap] = []
         self._equations: dict[WorkingSet, Equations] = {}
         self._hints: dict[tuple[float, float], float] = {}
-        self._alone: dict[float, tuple[bool, bool]] = {}
 
     def run(self) -> None:
         """Find all changes, by value, and what could not be proved.
@@ -206,13 +208,6 @@ class Search:
         apart = max(value - first.value, last.value - value)
         return Change(value, first.active, last.active, False, max(first.worst, last.worst), apart)
 
-    def _prove(self, equations: Equations, ends: list[tuple[float, float, Array, Array]]) -> Proof:
-        """Try to prove that a set holds on stretches, given by values and z at both ends."""
-        tau = np.linspace(0.0, 1.0, FOLLOW.nodes)
-        values = np.concatenate([low + tau * (high - low) for low, high, *_ in ends])
-        numbers = self.line.numbers(self.position, values)
-        return prove(Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers))
-
     def proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
         """Prove stretches whose ends have the same set, and return the others."""
         groups: dict[WorkingSet, list[tuple[Point, Point]]] = {}
@@ -224,35 +219,15 @@ class Search:
                 left.append((first, last))
         for active, group in groups.items():
             ends = [(a.value, b.value, a.z, b.z) for a, b in group]
-            holds = self._prove(self._equations[active], ends).holds
-            failed = [s for s, good in zip(group, holds, strict=True) if not good]
-            self._look_at_ends(active, failed)
-            left += [s for s in failed if not self._hidden(active, s)]
+            parts = self.prover.unproved(self._equations[active], ends)
+            lost = {part.number for part in parts if not part.why}
+            left += [group[k] for k in sorted(lost)]
+            for k, (low, high, p, q), why in parts:
+                if k not in lost:
+                    worst = max(point.worst for point in group[k])
+                    first, last = (Point(v, active, z, worst) for v, z in ((low, p), (high, q)))
+                    self.gaps.append(Gap(first, last, why))
         return left
-
-    def _hidden(self, active: WorkingSet, stretch: tuple[Point, Point]) -> bool:
-        """Give up a stretch of which no part, however short, could be proved."""
-        first, last = stretch
-        known = [self._alone[point.value] for point in stretch]
-        if not any(enclosed for _, enclosed in known):
-            self.gaps.append(Gap(*stretch, "round-off hides what holds its bodies"))
-            return True
-        if any(holds for holds, _ in known):
-            return False
-        middle, z = 0.5 * (first.value + last.value), 0.5 * (first.z + last.z)
-        if self._prove(self._equations[active], [(middle, middle, z, z)]).holds[0]:
-            return False
-        self.gaps.append(Gap(*stretch, "all of it is too close to a change for double precision"))
-        return True
-
-    def _look_at_ends(self, active: WorkingSet, stretches: list[tuple[Point, Point]]) -> None:
-        """Tell of the ends of stretches whether the set holds there, and each is enclosed."""
-        ends = {p.value: (p.value, p.value, p.z, p.z) for s in stretches for p in s}
-        new = {value: end for value, end in ends.items() if value not in self._alone}
-        if new:
-            found = self._prove(self._equations[active], list(new.values()))
-            both = zip(found.holds.tolist(), found.enclosed.tolist(), strict=True)
-            self._alone |= dict(zip(new, both, strict=True))
 
     def _crossed(self, stretch: Stretch) -> bool:
         """Find and prove the change between two ends; on failure note where it may be."""
@@ -268,37 +243,52 @@ class Search:
         if value is None:
             return False
         self._hints[first.value, last.value] = value
-        if not all(self._reaches(point, value) for point in (first, last)):
+        low, high = (self._reached(point, value) for point in (first, last))
+        if low is None or high is None:
             return False
-        apart = float(max(value - first.value, last.value - value))
-        worst = max(first.worst, last.worst)
-        if first.active.states != last.active.states:
+        if low.value < high.value:
+            self.gaps.append(Gap(low, high, HIDDEN))
+        elif first.active.states != last.active.states:
+            apart = float(max(value - first.value, last.value - value))
+            worst = max(first.worst, last.worst)
             self.changes.append(Change(value, first.active, last.active, True, worst, apart))
         return True
 
-    def _reaches(self, point: Point, value: float) -> bool:
-        """Whether a point's set is proved to hold up to an event at a value."""
+    def _reached(self, point: Point, value: float) -> Point | None:
+        """Return up to where a point's set is proved to hold on the way to an event at a value.
+
+        Short of the event only where round-off hides all that is nearer, None where more points
+        may help.
+        """
         if value == point.value:
-            return True
+            return point
         equations = self._equations[point.active]
         z, good = self._solved(equations, np.array([value]), point.z[None])
-        if good[0] and self._proved(equations, [point.value, value], np.array([point.z, z[0]])):
-            return True
+        event = replace(point, value=value, z=z[0])
+        whole = between([point.value, value], [point.z, z[0]])
+        if good[0] and self.prover.proof(equations, whole).holds[0]:
+            return event
         # Bodies active by vanishing forces alone: their equations become singular at the event, so
         # stretches shrink towards it, down to what counts as the event itself.
-        parts = [(value - point.value) * FOLLOW.grade**k for k in range(200)]
+        steps = [(value - point.value) * FOLLOW.grade**k for k in range(200)]
         near = FOLLOW.resolved * max(abs(value), abs(value - point.value))
-        values = np.array([value - part for part in parts if abs(part) > near])
+        values = [value - step for step in steps if abs(step) > near]
         if len(values) < 2:
-            return True
-        z, good = self._solved(equations, values, np.repeat(point.z[None], len(values), axis=0))
-        return bool(good.all()) and self._proved(equations, values.tolist(), z)
-
-    def _proved(self, equations: Equations, values: list[float], z: Array) -> bool:
-        """Whether a set is proved to hold between neighbouring values."""
-        pairs = list(zip(values[:-1], values[1:], z[:-1], z[1:], strict=True))
-        ends = [(a, b, p, q) if a < b else (b, a, q, p) for a, b, p, q in pairs]
-        return bool(self._prove(equations, ends).holds.all())
+            return event
+        start = np.repeat(point.z[None], len(values), axis=0)
+        z, good = self._solved(equations, np.array(values), start)
+        if not good.all():
+            return None
+        left = self.prover.unproved(equations, between(values, z))
+        if not left:
+            return event
+        last = min(part.number for part in left)
+        beyond = self.prover.proof(
+            equations, [(values[k], values[k], z[k], z[k]) for k in range(last + 1, len(values))]
+        )
+        # The set is not left on the way: it holds wherever this can be told; at the end it cannot.
+        hidden = not beyond.enclosed[-1] and (beyond.holds == beyond.enclosed).all()
+        return replace(point, value=values[last], z=z[last]) if hidden else None
 
     def _solved(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
         """Solve a set at values (S,), from unknowns near by; what nothing holds is centred."""
