@@ -312,26 +312,34 @@ class Equations:
         rate[:, :, self.rigid_at] += weights[:, :, self.rigid]
         return rate
 
-    def sizes(self, z: Array, numbers: Numbers, state: Evaluation) -> Array:
-        """Sum of the sizes of the terms of every equation, shape (S, size)."""
+    def sizes(self, z: Array, numbers: Numbers, state: Evaluation, yields: bool = True) -> Array:
+        """Sum of the sizes of the terms of every equation, shape (S, size).
+
+        With or without what the terms of a displacement move the force that follows it.
+        """
         vectors = np.abs(numbers.vectors[:, : self.scalars])
         x = np.abs(z[:, : self.n])
-        gap = np.where(np.isfinite(numbers.gap), np.abs(numbers.gap), 0.0)
-        reach = (vectors @ x[:, :, None])[:, :, 0] + gap[:, : self.scalars]
-        pushes = np.abs(state.force) + state.slope * reach
+        reach = self.lengths(x, numbers)
+        pushes = np.abs(state.force) + yields * state.slope * reach
         found = np.zeros(z.shape)
         found[:, : self.n] = (pushes[:, None, :] @ vectors)[:, 0] + np.abs(numbers.load)
         found[:, self.rigid_at] = reach[:, self.rigid]
         for k, polar in state.polars.items():
             matrix = np.abs(polar.matrix)
             moved = (matrix @ x[:, :, None])[:, :, 0]
-            push = (np.abs(polar.size) + polar.slope * moved.max(axis=1))[:, None]
+            push = (np.abs(polar.size) + yields * polar.slope * moved.max(axis=1))[:, None]
             found[:, : self.n] += (np.broadcast_to(push, moved.shape)[:, None, :] @ matrix)[:, 0]
             where = self.polar_at.get(k)
             if where is not None:
                 width = 2 if self.states[k] == at.PINNED else 1
                 found[:, where : where + width] += moved.max(axis=1)[:, None]
         return found
+
+    def lengths(self, x: Array, numbers: Numbers) -> Array:
+        """Sum of the sizes of the terms of every approach (S, scalars), by those of x."""
+        gap = np.where(np.isfinite(numbers.gap), np.abs(numbers.gap), 0.0)
+        vectors = np.abs(numbers.vectors[:, : self.scalars])
+        return np.asarray((vectors @ x[:, :, None])[:, :, 0] + gap[:, : self.scalars])
 
     # --- Answers --------------------------------------------------------------------------------
 

@@ -25,6 +25,7 @@ import numpy as np
 
 from loadshare.scene.scene import Array
 from loadshare.settings import FOLLOW
+from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import free_moves, scaling
 from loadshare.study.follow.forces import forces
 from loadshare.study.follow.gauges import gauges
@@ -101,8 +102,7 @@ def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
     reach = s.inputs @ inverse
     across = reach.transpose(0, 2, 1)
     ends = np.abs(s.split(residual)[:, [0, -1]] @ across).max(axis=1)
-    sizes = s.split(s.equations.sizes(s.flat, s.numbers, s.state)).max(axis=1)
-    noise = FOLLOW.round_off * (np.abs(reach) @ sizes[:, :, None])[:, :, 0]
+    noise = FOLLOW.round_off * _roundings(s, reach)
     straight = sampled(_linear(s, residual) @ across)
     drift = _drift(s, reach)
     dev = FOLLOW.least_deviation * np.ones((s.count, s.width))
@@ -127,6 +127,40 @@ def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
             break
         dev = np.where(done[:, None], dev, _wider(matrix, base, fresh))
     return done & np.isfinite(bend).all(axis=1), found, bend
+
+
+def _roundings(s: Stretches, reach: Array) -> Array:
+    """What moves the quantities by round-off, (B, width), in units of the last digit.
+
+    Errors of a displacement move a force along its direction. Where that is the direction in which
+    a body is held well, they say nothing of the other, in which forces that vanish hold it.
+    """
+    e = s.equations
+    follows = np.isnan(s.numbers.radial[:, :, 3]) & (s.numbers.radial[:, :, 4] > 0.0)
+    alike = (s.numbers.vectors == s.numbers.vectors[:1]).all()
+    apart = bool(alike and not follows.any())
+    sizes = s.split(e.sizes(s.flat, s.numbers, s.state, yields=not apart)).max(axis=1)
+    found = (np.abs(reach) @ sizes[:, :, None])[:, :, 0]
+    if not apart:
+        return np.asarray(found)
+    x = np.abs(s.flat[:, : e.n])
+    moved = s.state.slope * e.lengths(x, s.numbers)
+    through = np.abs(reach[:, :, : e.n] @ s.vectors[:, : e.scalars].transpose(0, 2, 1))
+    found += (through @ s.split(moved).max(axis=1)[:, :, None])[:, :, 0]
+    still = np.zeros((s.count, s.width))
+    for k in e.polar_at:
+        polar, columns = s.state.polars[k], s.columns[k]
+        if e.states[k] == at.PINNED:
+            continue
+        around = s.around(k, still)
+        length = (np.abs(polar.matrix) @ x[:, :, None])[:, :, 0].max(axis=1) + polar.radius
+        length = s.split(length).max(axis=1)
+        push, slope = (s.split(np.abs(v)).max(axis=1) for v in (polar.size, polar.slope))
+        across = slope if polar.spring else push / around.least + slope * around.turn
+        pulls = np.abs(reach @ s.inputs[:, columns].transpose(0, 2, 1))
+        found += (slope * length)[:, None] * pulls[:, :, 0]
+        found += (across * length)[:, None] * pulls[:, :, 1:].sum(axis=2)
+    return np.asarray(found)
 
 
 def _stacked(s: Stretches, dev: Array) -> tuple[Array, Array, Array, Array]:

@@ -237,15 +237,17 @@ class Search:
         # Where a body comes to float, room is exacter than forces that vanish all together.
         ways = [(first, last), (last, first)]
         ways.sort(key=lambda way: not self._equations[way[0].active].floats)
-        value = self.exit(*ways[0])
-        if value is None:
-            value = self.exit(*ways[1])
+        exits = ((self.exit(*way), *way) for way in ways)
+        value, near, far = next((e for e in exits if e[0] is not None), (None, first, last))
         if value is None:
             return False
         self._hints[first.value, last.value] = value
-        low, high = (self._reached(point, value) for point in (first, last))
-        if low is None or high is None:
+        # If there are several changes between the ends, the far one's set does not hold here.
+        beyond = self._reached(far, value)
+        before = self._reached(near, value) if beyond else None
+        if not (before and beyond):
             return False
+        low, high = sorted((before, beyond), key=lambda point: point.value)
         if low.value < high.value:
             self.gaps.append(Gap(low, high, HIDDEN))
         elif first.active.states != last.active.states:
@@ -263,18 +265,22 @@ class Search:
         if value == point.value:
             return point
         equations = self._equations[point.active]
-        z, good = self._solved(equations, np.array([value]), point.z[None])
-        event = replace(point, value=value, z=z[0])
-        whole = between([point.value, value], [point.z, z[0]])
-        if good[0] and self.prover.proof(equations, whole).holds[0]:
-            return event
         # Bodies active by vanishing forces alone: their equations become singular at the event, so
         # stretches shrink towards it, down to what counts as the event itself.
         steps = [(value - point.value) * FOLLOW.grade**k for k in range(200)]
         near = FOLLOW.resolved * max(abs(value), abs(value - point.value))
         values = [value - step for step in steps if abs(step) > near]
+        two = np.array([value, values[-1] if values else value])
+        z, good = self._solved(equations, two, np.repeat(point.z[None], 2, axis=0))
+        event = replace(point, value=value, z=z[0])
+        whole = between([point.value, value], [point.z, z[0]])
+        if good[0] and self.prover.proof(equations, whole).holds[0]:
+            return event
         if len(values) < 2:
             return event
+        last = self.prover.proof(equations, [(values[-1], values[-1], z[1], z[1])])
+        if not good[1] or (last.enclosed[0] and not last.holds[0]):
+            return None
         start = np.repeat(point.z[None], len(values), axis=0)
         z, good = self._solved(equations, np.array(values), start)
         if not good.all():
@@ -282,13 +288,13 @@ class Search:
         left = self.prover.unproved(equations, between(values, z))
         if not left:
             return event
-        last = min(part.number for part in left)
+        proved = min(part.number for part in left)
         beyond = self.prover.proof(
-            equations, [(values[k], values[k], z[k], z[k]) for k in range(last + 1, len(values))]
+            equations, [(values[k], values[k], z[k], z[k]) for k in range(proved + 1, len(values))]
         )
         # The set is not left on the way: it holds wherever this can be told; at the end it cannot.
         hidden = not beyond.enclosed[-1] and (beyond.holds == beyond.enclosed).all()
-        return replace(point, value=values[last], z=z[last]) if hidden else None
+        return replace(point, value=values[proved], z=z[proved]) if hidden else None
 
     def _solved(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
         """Solve a set at values (S,), from unknowns near by; what nothing holds is centred."""
