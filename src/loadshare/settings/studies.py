@@ -41,6 +41,8 @@ class Follow(NamedTuple):
     """Gauge, in deflections or loads, that counts as zero: a hundredth of what is certified."""
     unfelt: float = 1e-10
     """Part of a move, or of the load along it, that counts as none."""
+    mixed: float = 1e-6
+    """Part of a move that round-off may have mixed into it from one that is barely resisted."""
     nodes: int = 5
     """Values of a stretch at which the parameter's effect is sampled."""
     first: int = 8

@@ -68,10 +68,32 @@ def _inverse(s: Stretches) -> tuple[Array, Flags]:
     scaled = jacobian * factor[:, :, None] * factor[:, None, :]
     right, null = free_moves(scaled)
     moves = np.where(null[:, :, None], right, 0.0)
+    if null.any():
+        moves = _unmixed(s, moves, factor)
     held = scaled + moves.transpose(0, 2, 1) @ moves
     inverse = np.linalg.inv(held + 0.0)
     inverse = factor[:, :, None] * inverse * factor[:, None, :]
     return inverse, _unfelt(s, moves * factor[:, None, :], np.asarray(null.any(axis=1)))
+
+
+def _acting(s: Stretches) -> Array:
+    """Directions (B, k, n) in which elements act."""
+    e = s.equations
+    acting = [s.vectors[:, : e.scalars][:, e.acts]]
+    acting += [s.own(e.matrix(k, s.at_middle)) for k in e.polar_at]
+    return np.concatenate(acting, axis=1)
+
+
+def _unmixed(s: Stretches, moves: Array, factor: Array) -> Array:
+    """Moves (B, size, size) without what round-off mixed into them of moves barely resisted."""
+    n = s.equations.n
+    rows = _acting(s) * factor[:, None, :n]
+    free = np.zeros_like(moves)
+    free[:, :, :n] = moves[:, :, :n]
+    across = np.linalg.pinv(rows, rcond=FOLLOW.unfelt) @ rows
+    free[:, :, :n] -= free[:, :, :n] @ across.transpose(0, 2, 1)
+    close = np.abs(free - moves).max(axis=2, keepdims=True) <= FOLLOW.mixed
+    return np.where(close, free, moves)
 
 
 def _unfelt(s: Stretches, moves: Array, loose: Flags) -> Flags:
@@ -85,10 +107,8 @@ def _unfelt(s: Stretches, moves: Array, loose: Flags) -> Flags:
         return np.asarray(np.abs(parts).max(axis=(1, 2), initial=0.0))
 
     size = np.abs(moves).max(axis=(1, 2))
-    acting = [s.vectors[:, : e.scalars][:, e.acts]]
-    acting += [s.own(e.matrix(k, s.at_middle)) for k in e.polar_at]
     felt = np.abs(moves[:, :, e.n :]).max(axis=(1, 2), initial=0.0)
-    felt = np.maximum(felt, along(np.concatenate(acting, axis=1)))
+    felt = np.maximum(felt, along(_acting(s)))
     load = s.split(s.numbers.load)
     push = np.abs(load).max(axis=(1, 2), initial=0.0)
     return np.asarray(
