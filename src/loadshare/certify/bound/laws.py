@@ -392,7 +392,7 @@ def _pairs(
     sign = np.ones(where.shape[1])
     sign[:arcs] = -1.0
     size[:, :arcs] = claimed[:, :arcs, 0]
-    stick_stiffness, stick, level, radius, last = claim.graphs.transpose(2, 0, 1)
+    _, stick, level, radius, last = claim.graphs.transpose(2, 0, 1)
     acts = act[:, arcs:]
     size[:, arcs:] = np.where(acts == Act.SLIP, level, size[:, arcs:])
     part = slice(arcs, None)
@@ -417,12 +417,7 @@ def _pairs(
     lateral = sign * np.minimum(across, softest * most[:, None])
     free = np.maximum(BOUND.yielding * most[:, None], 100.0 * np.abs(lateral))
     along = np.where(act == Act.SLIP, free, yields)
-    springs = np.where(act == Act.STICK, 1.0, 0.0)
-    stiffness = np.concatenate(
-        [np.ones((count, arcs)), np.where(np.isinf(stick) | (stick > 0.0), stick_stiffness, last)],
-        axis=1,
-    )
-    spring = np.where(springs > 0.0, 1.0 / stiffness, 0.0)
+    spring = _first_pieces(claim, act)
     along, lateral = (np.where(lined, v, spring) for v in (along, lateral))
     x, y = line[:, :, 0], line[:, :, 1]
     diagonal = np.stack([along * x * x + lateral * y * y, along * y * y + lateral * x * x], axis=2)
@@ -452,6 +447,15 @@ def _pairs(
     _follow(claim, acts, yields[:, part], found.follows[:, part], found.shrinks[:, part])
     if found.follows.any() or found.shrinks.any():
         _lose_torque(claim, found)
+
+
+def _first_pieces(claim: Claim, act: Acts) -> Array:
+    """Compliance of pairs on the first piece of their graph [m/N], (S, pairs); 0 of others."""
+    first, stick, _, _, last = claim.graphs.transpose(2, 0, 1)
+    spring, radials = np.zeros(act.shape), slice(act.shape[1] - stick.shape[1], None)
+    stiffness = np.where(np.isinf(stick) | (stick > 0.0), first, last)
+    spring[:, radials] = np.where(act[:, radials] == Act.STICK, 1.0 / stiffness, 0.0)
+    return spring
 
 
 def _lose_torque(claim: Claim, found: Elements) -> None:
