@@ -113,6 +113,19 @@ def test_a_change_is_reported_and_made(command, cases):
     assert "Input torque 100 N·m" in result.stdout
 
 
+def test_a_change_may_give_what_the_file_leaves_open(command, cases, tmp_path):
+    text = (cases / "star/floating_sun_4.toml").read_text()
+    open_one = tmp_path / "template.toml"
+    open_one.write_text(text.replace('torque = "1000 N*m"', ""))
+    assert command("run", open_one).exit_code == 2
+    change = ("--set", "operating.torque=1000 N*m")
+    assert "Input torque 1000 N·m" in command("run", open_one, *change).stdout
+    assert "OK" in command("check", open_one, *change).stdout
+    assert "1 certified" in command("batch", open_one, *change, "-o", tmp_path / "o").stdout
+    for name, file in (("report", "page.html"), ("draw", "train.svg")):
+        assert command(name, open_one, *change, "-o", tmp_path / file).exit_code == 0, name
+
+
 @pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("method", METHODS)
 def test_every_solver_and_method_prints_the_same_shares(command, cases, solver, method):

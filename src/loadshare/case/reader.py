@@ -46,7 +46,11 @@ def opened(case: Case | str | FilePath) -> Case:
     return case if isinstance(case, Case) else load_case(case)
 
 
-def load_case(path: str | FilePath, allow_outside: bool = False) -> Case:
+def load_case(
+    path: str | FilePath,
+    allow_outside: bool = False,
+    changes: Mapping[str, Any] | None = None,
+) -> Case:
     """Read a case file, with all that it inherits.
 
     Parameters
@@ -56,6 +60,9 @@ def load_case(path: str | FilePath, allow_outside: bool = False) -> Case:
     allow_outside : bool
         Whether the case may name files outside of its folder: what it extends, laws and teeth of
         meshes. So may all cases where the environment variable ``LOADSHARE_ALLOW_OUTSIDE`` is set.
+    changes : mapping of str to object, optional
+        New values by dotted key path, as `Case.replace` takes them. They are made before the case
+        is checked, so that they may give what the file leaves open, or correct it.
 
     Returns
     -------
@@ -74,10 +81,9 @@ def load_case(path: str | FilePath, allow_outside: bool = False) -> Case:
         wanted = "a Case or the path of a case file is wanted; Case(data) makes one of a dictionary"
         raise TypeError(f"{wanted}, not {kind}")
     path = FilePath(path)
-    origin = _origin(path, allow_outside)
-    data, files, problems = _read(path, (), origin)
+    data, origin, problems = _changed(path, _origin(path, allow_outside), changes)
     try:
-        case = Case(data, name=path.stem, origin=replace(origin, files=files))
+        case = Case(data, name=path.stem, origin=origin)
     except CaseError as error:
         raise CaseError((*problems, *error.problems)) from None
     if problems:
@@ -106,17 +112,27 @@ def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -
         If the file, or one that it extends, cannot be read at all, or a change does not exist.
     """
     path = FilePath(path)
-    origin = _origin(path)
-    data, files, problems = _read(path, (), origin)
-    data, origin = with_copies(as_data(data, str(path)), replace(origin, files=files))
-    data, origin = revise(data, origin, changes or {})
-    draft = read_draft(data, origin)
+    data, origin, problems = _changed(path, _origin(path), changes)
+    draft = read_draft(*with_copies(as_data(data, str(path)), origin))
     draft.problems[:] = [*problems, *draft.problems, *check(draft)]
     return draft
 
 
 def _origin(path: FilePath, allow_outside: bool = False) -> Origin:
     return Origin(str(path), outside=allow_outside or bool(os.environ.get(OUTSIDE)))
+
+
+def _changed(
+    path: FilePath, origin: Origin, changes: Mapping[str, Any] | None
+) -> tuple[dict[str, Any], Origin, list[Problem]]:
+    """Return the data of a file as changed, where its keys are, and problems to be outlived."""
+    data, files, problems = _read(path, (), origin)
+    origin = replace(origin, files=files)
+    if changes:
+        # Changes name single copies.
+        data, origin = with_copies(as_data(data, str(path)), origin)
+        data, origin = revise(data, origin, changes)
+    return data, origin, problems
 
 
 def _read(

@@ -34,9 +34,9 @@ def open_case(file: Path, settings: Iterable[str] | None) -> Case:
 
     changes = read_changes(settings or ())
     keep_inputs([file])
-    case = load_case(file)
+    case = load_case(file, changes=changes)
     keep_inputs(case.files)
-    return case.replace(changes) if changes else case
+    return case
 
 
 def read_changes(settings: Iterable[str]) -> dict[str, Any]:

@@ -70,7 +70,10 @@ def check_loaded_meshes(draft: Draft) -> Iterator[Problem]:
     for name, (first, last) in ends.items():
         if first not in ahead or last not in behind or name in back:
             message = "carries no torque: it is on no path from the input to the output"
-            hint = "Is it named driver-driven?"
+            hint = (
+                "Is it named driver-driven? If it only idles, give the gear at its end a torque of "
+                '"0 N*m" in operating.external.'
+            )
             yield draft.problem(("meshes", name), message, hint=hint)
 
 

@@ -125,8 +125,7 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     from loadshare.train import build_train
 
     try:
-        loaded = load_case(task.case)
-        case = resolve(loaded.replace(task.changes) if task.changes else loaded)
+        case = resolve(load_case(task.case, changes=task.changes))
         count = build_train(case).count
         kept, notes = (None, ()) if task.force else _kept(task, case, count)
         if kept is not None:

@@ -115,9 +115,7 @@ def chapter_of_file(file: str | Path, changes: Mapping[str, Any] | None = None) 
         To the case, as `Case.replace` takes them.
     """
     try:
-        case = load_case(file)
-        case = case.replace(changes) if changes else case
-        return chapter(case, str(file))
+        return chapter(load_case(file, changes=changes), str(file))
     except CaseError as error:
         return _unusable(str(file), error)
 
