@@ -65,6 +65,9 @@ def test_units_that_engineers_write(kind, text, si):
     [
         (q.Length, 45.9, '45.9 has no unit. Allowed: a length such as "45.9 mm". '),
         (q.Length, 0, '0 has no unit. Allowed: a length such as "0 mm". '),
+        (q.Length, "nan", 'nan has no unit. Allowed: a length such as "45.9 mm". '),
+        (q.Radius, -5, '-5 has no unit. Allowed: a length such as "45.9 mm". '),
+        (q.Length, -5, '-5 has no unit. Allowed: a length such as "-5 mm". '),
         (q.Length, "45.9", '45.9 has no unit. Allowed: a length such as "45.9 mm". '),
         (
             q.TorsionalStiffness,

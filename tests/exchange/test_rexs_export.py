@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from tests.cli.conftest import on_a_screen_of
 from tests.exchange.units import at, bearing, joint, planetary, rexsj, two_stages, xml
 
 import loadshare as ls
@@ -119,3 +120,15 @@ def test_a_mesh_that_jams_has_the_stiffness_of_its_flank(written) -> None:
     found = read_model(written(export_rexs(result, unit).encode(), "copy.rexs")).components
     (stiffness,) = found["40"].attributes["meshing_stiffness_characteristic"]
     assert stiffness == pytest.approx(force / flank.compression(force), rel=1e-9)
+
+
+def test_a_copy_is_not_named_as_another_form(written, tmp_path) -> None:
+    command = on_a_screen_of(200)
+    unit, case = written(xml(*planetary())), tmp_path / "unit.toml"
+    case.write_text(import_rexs(unit).text, encoding="utf-8")
+    for name in ("found.rexsz", "found.rexsj", "found.doc"):
+        done = command("export", case, unit, "-o", tmp_path / name)
+        assert done.exit_code == 2
+        assert "give it that ending, .rexs" in done.stderr
+        assert not (tmp_path / name).exists()
+    assert command("export", case, unit, "-o", tmp_path / "found.REXS").exit_code == 0

@@ -166,3 +166,16 @@ def test_what_gears_and_speeds_do_not_give_is_reported(written) -> None:
     found = import_rexs(written(xml(*changed(two_stages(), _20=left)))).assumed
     for why in ("gear_20: no helix angle", "no speed is given"):
         assert any(why in line for line in found)
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.7", "1.1.0", "2.0.0", "2.0"])
+def test_a_known_version_is_nothing_to_report(written, version) -> None:
+    assert not any(
+        "version" in s for s in import_rexs(written(xml(*two_stages(), version))).assumed
+    )
+
+
+@pytest.mark.parametrize("version", ["9.7", "1.71", "latest", ""])
+def test_an_unknown_version_is_reported(written, version) -> None:
+    found = import_rexs(written(xml(*two_stages(), version))).assumed
+    assert any((version or "no version") in s and "read as one from 1.1 to 2.0" in s for s in found)

@@ -160,10 +160,17 @@ class Dimension:
         if self.at_most is not None and si > self.at_most.si:
             raise self._problem(f"is above {self.at_most}")
 
+    def _takes(self, si: float) -> bool:
+        try:
+            self._check(si)
+        except PydanticCustomError:
+            return False
+        return True
+
     def _allowed(self, number: str | None = None) -> str:
-        example = self.example
-        if number is not None:
-            example = f"{number} {self.example.partition(' ')[2]}"
+        example, unit = self.example, self.example.partition(" ")[2]
+        if number is not None and self._takes(float(number) * (si_factor(unit, self.unit) or 1.0)):
+            example = f"{number} {unit}"
         words = "".join(f'"{word}", ' for word in self.words)
         return f'{words}{"or " if words else ""}{self.kind} such as "{example}"'
 

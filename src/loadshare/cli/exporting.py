@@ -27,6 +27,9 @@ def export(
     from loadshare.job import solve
 
     keep_inputs([unit])
+    if to.suffix and to.suffix.lower() != unit.suffix.lower():
+        message = f"{to}: it will be what {unit.name} is; give it that ending, {unit.suffix}"
+        raise typer.BadParameter(message, param_hint="--output")
     with reporting_problems():
         loaded = open_case(case, change)
         try:

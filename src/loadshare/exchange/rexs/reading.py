@@ -6,6 +6,7 @@ import base64
 import binascii
 import json
 import lzma
+import re
 import struct
 import zipfile
 import zlib
@@ -51,6 +52,8 @@ DAMAGED = (
 )
 """What reading an archive raises that is damaged, or packed in a way that Python does not know."""
 ENDINGS = (".rexs", ".rexsj")
+VERSIONS = re.compile(r"(1(\.[0-7])?|2(\.0)?)(\.0)?")
+"""Of REXS, that are known."""
 ENCRYPTED = 1
 """Flag of a file in an archive."""
 
@@ -281,8 +284,11 @@ def _loaded(
 ) -> Model:
     """Return a model with what its first load case says of components laid over them."""
     notes: tuple[str, ...] = ()
+    if not VERSIONS.fullmatch(version):
+        given = f"version {version} is not known" if version else "no version is given"
+        notes = (f"{given}: read as one from 1.1 to 2.0",)
     if cases:
-        notes = (f"loads are those of the first of {len(cases)} load cases",)
+        notes += (f"loads are those of the first of {len(cases)} load cases",)
         for id_, changed in cases[0].items():
             if id_ in whole:
                 one = whole[id_]
