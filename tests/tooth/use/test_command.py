@@ -104,3 +104,18 @@ def test_a_folder_of_cases_may_hold_pairs_and_laws(command, spur, tmp_path):
     broken = written(tmp_path, "kind = 'pump'", "broken.toml")
     assert find_cases([tmp_path]) == [broken, case]
     assert find_cases([spur]) == [spur]
+
+
+@pytest.mark.parametrize("kind", [SPUR, FACE])
+def test_torques_under_which_teeth_are_crushed(command, tmp_path, kind):
+    """Teeth of 3 and 4 mm modules yield by some nanometres per newton and mm of width."""
+    file, law = tmp_path / "pair.toml", tmp_path / "law.toml"
+    file.write_text(kind, encoding="utf-8")
+    words = ("ltca", file, "--compliance", "slices", "-o", law)
+    assert "of their height" not in command(*words).output
+    assert "of their height, too much for linear" in command(*words, "--torque", "80 kN*m").output
+    law.unlink()
+    done = command(*words, "--torque", "1 MN*m")
+    assert done.exit_code == 1
+    assert "times their height" in " ".join(done.output.split())
+    assert not law.exists()

@@ -21,6 +21,7 @@ from loadshare.case.reader import read_toml
 from loadshare.case.translate import translate
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Refused
+from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.pair.file import PairFile
@@ -163,7 +164,24 @@ class MeshLaw(Element):
                 "Slices leave out that helical teeth on so narrow a face bend sideways: the mesh "
                 f"yields some {100.0 * self.sideways:.0f} % more. Finite elements follow it."
             )
+        if self.yielding > CERTIFY.compressed:
+            lines.append(
+                f"Under T the teeth yield by {100.0 * self.yielding:.0f} % of their height, too "
+                "much for linear elasticity to follow."
+            )
         return (*lines, *self._most_loaded())
+
+    @property
+    def yielding(self) -> float:
+        """By how much the teeth yield under T, over their height [-]; 0 where it is not known."""
+        gears, torque = self.computed.gears, self.computed.torque.si
+        if gears is None or gears.driver.module is None:
+            return 0.0
+        turned = (
+            b.si * torque + c.si * torque ** (2 / 3) for b, c in zip(self.b, self.c, strict=True)
+        )
+        height = CERTIFY.height * gears.driver.module.si
+        return float(max(turned) * gears.driver.base_radius.si / height)
 
     @property
     def sideways(self) -> float:

@@ -20,6 +20,7 @@ from loadshare.case.translate import translate
 from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.one_thread import one_thread
+from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.analysis.sampling import cells
@@ -148,14 +149,14 @@ class PairFile:
         ------
         Refused
             If a position has no contact, or one that its certificate does not pass, or the face is
-            wider than the model can follow.
+            wider than the model can follow, or the teeth yield by all of their height.
         """
         chosen = self.analysis
         try:
             compliance = pair_compliance(
                 self.geometry, chosen.compliance, teeth=chosen.teeth, layers=chosen.layers
             )
-            return ltca(
+            found = ltca(
                 self.geometry,
                 self.torque,
                 chosen.positions,
@@ -165,8 +166,26 @@ class PairFile:
                 progress,
                 means=chosen.sampling == "means",
             )
+            self._refuse_crushed(found)
         except Refused as refusal:
             raise Refused(f"{self.name}: {refusal}", refusal.figures) from refusal
+        return found
+
+    def _refuse_crushed(self, found: Ltca) -> None:
+        """Refuse an analysis of which linear elasticity cannot say anything.
+
+        Raises
+        ------
+        Refused
+            If the teeth yield by all of their height, as an answer of a train is refused.
+        """
+        module = self.geometry.driver.gear.module
+        part = float(found.approach.max()) / (CERTIFY.height * module)
+        if part >= CERTIFY.meaningless:
+            raise Refused(
+                f"under {self.torque:.4g} N·m the teeth yield by {part:.3g} times their height, "
+                "of which linear elasticity says nothing; check torque, face width and elasticity"
+            )
 
 
 def load_pair(path: str | Path) -> PairFile:
