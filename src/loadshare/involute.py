@@ -117,6 +117,17 @@ class InvoluteTooth:
         """Helix angle on the base cylinder β_b [rad]."""
         return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
 
+    @cached_property
+    def pointed(self) -> float:
+        """Radius at which the flanks of a tooth meet, below the tip where it is pointed [m].
+
+        Raises
+        ------
+        ValueError
+            If they do not meet outside the base circle.
+        """
+        return self.base_radius / math.cos(inverse_inv(self.kind * self.base_half_angle))
+
     def half_angle_at(self, pressure_angle: float) -> float:
         """Half the angle of a tooth where it has a transverse pressure angle [rad]."""
         return self.base_half_angle - self.kind * inv(pressure_angle)

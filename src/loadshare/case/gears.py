@@ -38,7 +38,7 @@ from loadshare.case.quantity import (
     Stiffness,
     Temperature,
 )
-from loadshare.involute import InvoluteTooth, inv
+from loadshare.involute import InvoluteTooth
 from loadshare.settings import ALLOWED
 
 OF_TEETH = (
@@ -109,6 +109,11 @@ class Tooth(InvoluteTooth):
     def root(self) -> float:
         """Root radius, as the rack leaves it [m]."""
         return self.radius - self.kind * (self.dedendum - self.profile_shift) * self.module
+
+
+def shortened(length: float) -> str:
+    """Return a tip alteration [m] as a case file would have it, rounded down to a micrometre."""
+    return f'"{math.floor(1e6 * length) / 1e3:.7g} mm"'
 
 
 class Polar(Element):
@@ -379,17 +384,25 @@ class Gear(Element):
             if abs(given - follows) > RADIUS_TOLERANCE * follows:
                 teeth = f"that of the teeth is {1e3 * follows:.8g} mm"
                 yield Rule(f"contradicts module and teeth: {teeth}", ("base_radius",))
-        if tooth.base_half_angle <= tooth.kind * inv(tooth.transverse_angle):
+        there = tooth.half_angle_at(tooth.transverse_angle) > 0.0
+        if not there:
             key = next(iter(self.given("thickness_allowance", "profile_shift")), "module")
             yield Rule("leaves no tooth at the reference circle", (key,))
         if self.type == "external" and self.bore is not None and self.bore.si >= 2.0 * tooth.root:
             root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
             yield Rule(f"leaves no body below the teeth: {root}", ("bore",))
+        tip, base = 1e3 * tooth.tip, 1e3 * tooth.base_radius
+        keys = ("tip_alteration", "addendum", "profile_shift", "thickness_allowance")
+        key = next(iter(self.given(*keys)), "module")
         if tooth.tip <= tooth.base_radius:
-            tip, base = 1e3 * tooth.tip, 1e3 * tooth.base_radius
-            key = next(iter(self.given("tip_alteration", "addendum", "profile_shift")), "module")
             inside = f"with a tip radius of {tip:.6g} mm inside the base circle of {base:.6g} mm"
             yield Rule(f"leaves teeth {inside}", (key,))
+        elif there and tooth.half_angle_at(math.atan(tooth.tip_roll)) <= 0.0:
+            meet = f"the flanks meet at a radius of {1e3 * tooth.pointed:.6g} mm"
+            lower = tooth.addendum_to(tooth.pointed) - (self.addendum or 1.0)
+            hint = f"tip_alteration = {shortened(lower * tooth.module)} would do."
+            why = f"leaves pointed teeth: {meet}, before the tip at {tip:.6g} mm"
+            yield Rule(why, (key,), hint=hint)
 
     @cached_property
     def tooth(self) -> Tooth | None:

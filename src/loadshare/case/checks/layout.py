@@ -9,7 +9,7 @@ from itertools import combinations
 
 from loadshare.case.checks.fit import OVERLAP, SQUARE, mm, parallel, toothed_pairs
 from loadshare.case.draft import Draft
-from loadshare.case.gears import Polar, Tooth
+from loadshare.case.gears import Polar, Tooth, shortened
 from loadshare.case.line_of_action import centre_distance
 from loadshare.case.place import Vector, along_z, axis_of, dot, minus, on_axis
 from loadshare.case.quantity import LENGTH
@@ -105,13 +105,8 @@ def _too_high(draft: Draft, mesh: str, one: str, two: str, other: Tooth, room: f
     side = "at least" if other.internal else "at most"
     what = f"the tip of gear {two}, at a radius of {mm(other.tip)}, finds no room in gear {one}"
     lower = other.addendum_to(room) - (draft.gears[two].addendum or 1.0)
-    hint = f"gears.{two}.tip_alteration = {_shortened(lower * other.module)} would do."
+    hint = f"gears.{two}.tip_alteration = {shortened(lower * other.module)} would do."
     return draft.problem(("meshes", mesh), what, f"a tip radius of {side} {mm(room)}", hint)
-
-
-def _shortened(length: float) -> str:
-    """A length as a case file would have it, rounded down to a micrometre."""
-    return f'"{math.floor(1e6 * length) / 1e3:.7g} mm"'
 
 
 def _passing(pinion: Tooth, ring: Tooth, distance: float) -> float:

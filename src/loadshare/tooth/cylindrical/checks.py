@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 
 from loadshare.errors import Problem
-from loadshare.involute import inverse_inv
 from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.body import fillet_angle, rack_tip_half_width
 from loadshare.tooth.cylindrical.gear import HelicoidGear
@@ -100,8 +99,7 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     elif gear.base_half_angle <= 0.0 or gear.half_angle(gear.tip) <= 0.0:
         largest = -math.inf
         if gear.base_half_angle > 0.0:
-            pointed = gear.base_radius / math.cos(inverse_inv(gear.base_half_angle))
-            largest = gear.addendum_to(pointed)
+            largest = gear.addendum_to(gear.pointed)
         yield problem(
             addendum,
             gear.addendum,
