@@ -165,3 +165,32 @@ def test_planets_that_errors_unload_are_not_warned_of():
     (found,) = ls.solve(case).positions
     assert found.torque["s2-p21"] == pytest.approx(0.0, abs=1e-6)
     assert not found.validity.warned
+
+
+def loop(stiffness: float, **mesh: str) -> ls.Case:
+    """Two sets that can only turn as a block: power may go round through both, either way."""
+    shafts = {"r1-s2": 1e6, "c1-c2": 1e6, "s1-r2": 1e6, "s1-c1": stiffness}
+    case = two_sets().to_dict()
+    for name in ("r1", "r2"):
+        case["gears"][name]["held"] = False
+    case["operating"] = {"input": "r1", "output": "c1", "torque": "100 N*m"}
+    case["shafts"] = {name: {"stiffness": f"{k} N*m/rad"} for name, k in shafts.items()}
+    case["meshes"] = {name: {**given, **mesh} for name, given in case["meshes"].items()}
+    return ls.Case(case)
+
+
+@pytest.mark.parametrize(("stiffness", "wrong"), [(2e4, True), (1e9, False)])
+def test_power_that_goes_round_may_press_either_flank(stiffness, wrong):
+    """X and Y on the suns, -T - 5 X = Y, share the least energy; 3 planets yield 1 / 6e5 there."""
+    # Each part passes on a X + b T.
+    sets, shafts = [(1, 0, 6e5), (5, 1, 6e5)], [(5, 1, 1e6), (30, 6, 1e6), (25, 5, 1e6)]
+    parts = [*sets, *shafts, (24, 5, stiffness)]
+    sun = -100.0 * sum(a * b / k for a, b, k in parts) / sum(a * a / k for a, _, k in parts)
+    (exact,) = ls.solve(loop(stiffness, backlash="0 um")).positions
+    assert abs(exact.torque["s1-p11"]) == pytest.approx(-sun / 3.0, rel=1e-6)
+    assert abs(exact.torque["s2-p21"]) == pytest.approx(abs(100.0 + 5.0 * sun) / 3.0, rel=1e-6)
+    (found,) = ls.solve(loop(stiffness)).positions
+    assert bool(found.validity.warned) is wrong
+    expected = {"s1-p11": -100.0 / 15.0, "s2-p21": 0.0} if wrong else exact.torque
+    for name in ("s1-p11", "s2-p21"):
+        assert found.torque[name] == pytest.approx(expected[name], rel=1e-6, abs=1e-9)

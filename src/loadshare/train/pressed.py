@@ -2,8 +2,9 @@
 
 Loads may be arrays of samples, so that those that press the same flanks can be told from others.
 
-Where several loads press both flanks of a mesh in parallel branches, statics of rigid gears cannot
-tell which one carries. The flank of the even share is taken, and the mesh is marked as unsure: if
+Where several loads reach parallel branches, or power may go round a loop of sets and shafts,
+statics of rigid gears cannot tell which flank carries. That of the even share is taken, and a mesh
+of which stiffness may press either flank is marked as unsure (`Links.pressed`): if
 it carries in the answer, the other flank would not touch whatever the play, and the choice was
 right; if it is open there, the play decides, and the answer is warned of (`certify.validity`). To
 refuse all such meshes would refuse most for nothing.

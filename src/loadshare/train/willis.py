@@ -29,6 +29,9 @@ LOCKED = 1e-3
 """How far speeds may contradict each other for rounding of radii, over the input's [-]."""
 NOISE = 1e-9
 """Share of the largest force, or of the input's speed, that is round-off [-]."""
+DRAWS, SPREAD = 32, 2.0
+"""How many stiffnesses of all links are tried, and the decades to either side of the roots of them:
+wide enough that a link is now next to rigid, now next to absent beside the others."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,9 +109,10 @@ class Links:
     ) -> dict[str, tuple[NDArray[np.intp], NDArray[np.bool_]]]:
         """Tell which flank of every mesh loads press, and whether it may be the other one.
 
-        It may where statics leaves open how a load is shared, and the loads one by one press both
-        flanks: which share prevails is a matter of stiffness. Where each load presses the same
-        flank, their sum does too, in whatever way parallel branches share it.
+        It may where statics leaves open how loads are shared, and some stiffnesses of the links
+        would press the one flank, others the other. Parallel branches that pass on a single load
+        press the same flanks in whatever way they share it; several loads, or power that may go
+        round a loop, need not.
 
         Parameters
         ----------
@@ -136,28 +140,17 @@ class Links:
 
     def _either(self, balance: Array, response: Array, load: Array) -> NDArray[np.bool_]:
         """Whether links may pass on loads (gears, ...) either way, (links, ...)."""
-        # What statics leaves open: forces in balance without a load.
-        idle = np.eye(len(response)) - response @ balance
-        left = np.abs(balance @ response - np.eye(len(balance))).max(axis=0, initial=0.0)
-        loaded = np.array([torque.any() for torque in load], dtype=bool)
-        alone, together = loaded & (left <= NOISE), loaded & (left > NOISE)
-        # Where two speeds are free, loads balance one another: none of those acts without the rest.
-        parts = [np.multiply.outer(response[:, k], load[k]) for k in np.flatnonzero(alone)]
-        if together.any():
-            parts.append(np.tensordot(response[:, together], load[together], 1))
         either = np.zeros((len(response), *load.shape[1:]), dtype=bool)
-        least = NOISE * max((np.abs(part).max() for part in parts), default=0.0)
-        for own in idle if len(parts) > 1 else ():
-            block = np.flatnonzero(np.abs(own) > NOISE)
-            if not len(block):
-                continue
-            here = np.array([part[block] for part in parts])
-            flat = here.swapaxes(0, 1).reshape(len(block), -1)
-            sizes = np.linalg.svd(flat, compute_uv=False)
-            # Loads that reach parallel branches through one link are a single load to them.
-            if (sizes[1:] > NOISE * sizes[:1]).any():
-                either[block] |= (here.max(axis=0) > least) & (here.min(axis=0) < -least)
-        return either
+        # Forces in balance without a load are what statics leaves open.
+        idle = np.abs(np.eye(len(response)) - response @ balance).max(axis=1, initial=0.0)
+        if not (idle > NOISE).any():
+            return either
+        # Loads are shared with the least energy, whatever the stiffness of each link.
+        root = 10.0 ** np.random.default_rng(0).uniform(-SPREAD, SPREAD, (DRAWS, len(response)))
+        drawn = root[:, :, None] * np.linalg.pinv(balance * root[:, None, :], rcond=1e-9)
+        force = np.tensordot(drawn, load, 1)
+        least = NOISE * np.abs(force).max(axis=1, keepdims=True)
+        return np.asarray((force > least).any(axis=0) & (force < -least).any(axis=0))
 
 
 def seen_from(gears: Mapping[str, Gear], driver: str, driven: str) -> str | None:
