@@ -73,6 +73,13 @@ def test_the_name_of_all_copies_is_none_of_them() -> None:
         Case(changed()).replace({"operating.output": "planet"})
 
 
+def test_a_change_of_all_copies_is_told_their_names() -> None:
+    case = Case(changed())
+    for key, name in (("gears.planet.teeth", "gears.planet1"), ("gears.planet.copies", "planet2")):
+        with pytest.raises(CaseError, match=rf"names of their own: .*{name}.*\."):
+            case.replace({key: 4})
+
+
 def test_angles_may_be_given_one_by_one() -> None:
     data = changed()
     data["gears"]["planet"]["copies"] = ["0 deg", "1.7 rad", "240 deg"]

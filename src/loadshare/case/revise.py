@@ -11,7 +11,7 @@ from loadshare.case.content import Content
 from loadshare.case.draft import as_data
 from loadshare.case.keys import Path, covers, dotted, look_up, parse, walk
 from loadshare.case.origin import CHANGES, Origin
-from loadshare.case.words import as_given, did_you_mean
+from loadshare.case.words import DIGITS, as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem
 
 BY_GEAR = (("operating", "external"), ("operating", "forces"))
@@ -200,6 +200,10 @@ def nearest(data: Mapping[str, Any], path: Path) -> str:
         if isinstance(above, Mapping) and path[length] not in above:
             if "*" in str(path[length]):
                 return "A star is no name here: give one key for each."
+            copies = [key for key in above if DIGITS.sub("", str(key)) == path[length]]
+            if copies:
+                names = choices(dotted((*path[:length], key)) for key in copies)
+                return f"Copies have names of their own: {names}."
             options = {dotted((*path[:length], key)): key for key in above}
             wrong = dotted(path[: length + 1])
             near = did_you_mean(wrong, options)

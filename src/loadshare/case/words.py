@@ -16,7 +16,7 @@ BITS = 4 * LONGEST
 """Of a whole number that is shown in decimals."""
 SHOWN = 24
 """Choices that are listed; more would bury the message."""
-_DIGITS = re.compile(r"\d+")
+DIGITS = re.compile(r"\d+")
 
 
 def did_you_mean(word: object, known: Iterable[str]) -> str:
@@ -57,7 +57,7 @@ MOST = 4
 
 def _is_slip(word: str, option: str) -> bool:
     """Whether two words differ as by a slip: not in digits alone, and not in a third of them."""
-    if _DIGITS.sub("", word) == _DIGITS.sub("", option):
+    if DIGITS.sub("", word) == DIGITS.sub("", option):
         return False
     blocks = SequenceMatcher(None, word, option).get_matching_blocks()
     differing = len(word) + len(option) - 2 * sum(block.size for block in blocks)

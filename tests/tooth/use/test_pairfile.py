@@ -253,3 +253,16 @@ def test_every_key_of_a_pair_file_is_described():
         for table in (schema, *schema["$defs"].values()):
             for key, about in table.get("properties", {}).items():
                 assert about.get("description") or "$ref" in about, key
+
+
+@pytest.mark.parametrize(
+    ("angle", "allowed"),
+    [
+        ("44 deg", "0, with a dedendum of at most 0.813304"),
+        ("25 deg", "at most 0.317883 with this dedendum"),
+    ],
+)
+def test_a_rack_without_room_for_a_tip_is_told_what_has(tmp_path, angle, allowed):
+    """A quarter of the pitch, π/4, over tan 44° is 0.813."""
+    found = problems_in(written(tmp_path, SPUR.replace("20 deg", angle)))
+    assert found["driver.tip_radius"].allowed == allowed

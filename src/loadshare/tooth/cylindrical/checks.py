@@ -78,11 +78,12 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     if rack_tip_half_width(gear) < 0.0:
         room = math.pi / 4 - gear.dedendum * slope
         largest = room / (1.0 / math.cos(gear.pressure_angle) - slope)
+        lower = f"0, with a dedendum of at most {digits(math.pi / 4 / slope)}"
         yield problem(
             f"{key}.tip_radius",
             gear.tip_radius,
             "the tip of the generating rack has no room for this radius",
-            f"at most {digits(largest)} with this dedendum",
+            f"at most {digits(largest)} with this dedendum" if room >= 0.0 else lower,
         )
     if gear.profile_shift < gear.least_profile_shift - TEETH.fits:
         yield problem(
