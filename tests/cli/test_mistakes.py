@@ -138,6 +138,7 @@ WORDS = {
     ("run", ""): "Invalid value for 'CASE': an empty text names no file; is a variable",
     ("check", RING, ""): "Invalid value for 'CASES': an empty text names no file",
     ("batch", "", "-o", "out"): "Invalid value for 'CASES': an empty text names no file",
+    ("batch", RING, "-o", "-"): "into a folder; --json prints its summary",
     ("batch", RING, "-o", ""): "Invalid value for '-o' / '--output': an empty text names no file",
     ("import", ""): "Invalid value for 'UNIT': an empty text names no file",
 }

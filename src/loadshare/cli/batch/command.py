@@ -29,7 +29,7 @@ from loadshare.cli.options import CasePaths, Changes, Method, Solver, Tolerance
 from loadshare.cli.stop import Stop
 from loadshare.cli.waiting import echo
 from loadshare.errors import LoadshareError
-from loadshare.output import clear, make_folder
+from loadshare.output import STANDARD, clear, make_folder
 
 
 def batch(
@@ -64,6 +64,9 @@ def batch(
 
     from loadshare.lock import alone_in
 
+    if folder == STANDARD:
+        message = "-: a batch writes many files, into a folder; --json prints its summary"
+        raise typer.BadParameter(message, param_hint="--output")
     changes = read_changes(change or ())
     found = find_cases(cases)
     tasks = [
