@@ -496,6 +496,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"0\.135 % lie beyond",
         r"blocks of (?:at least )?4096",
         r"an eighth and at most 640\b",
+        r"\bin 512 parts\b",
         r"about 1e-12 of the value|round-off, 1e-12 of the largest",
         r"After 120 passes",
         r"is used from 300 equilibria on",
