@@ -296,8 +296,11 @@ class Structure:
     def gaps_of_flanks(self, situations: Situations) -> Array:
         """Gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
         flat = situations.offset.reshape(len(situations.offset), -1)
-        nearer = self.nearer if len(flat) < STATICS.samples else self._nearer_sparse
-        return np.asarray(situations.gap - self.at_rest - (nearer @ flat.T).T)
+        is_small = len(flat) < STATICS.samples or self.nearer.size <= STATICS.dense
+        nearer = self.nearer if is_small else self._nearer_sparse
+        near = np.asarray(flat @ nearer.T)
+        near += self.at_rest
+        return np.asarray(situations.gap - near)
 
     @cached_property
     def _nearer_sparse(self) -> Any:

@@ -126,6 +126,8 @@ class Statics(NamedTuple):
     longer as they are."""
     samples: int = 256
     """From which on SciPy is loaded, for products with matrices that are all but empty."""
+    dense: int = 8192
+    """Entries of a matrix up to which its product takes no longer if the empty ones take part."""
     uneven: float = 1.0
     """Logarithm of the ratio of their forces there up to which that is done: next to nothing is
     lost in the differences."""
