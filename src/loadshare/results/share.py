@@ -134,10 +134,11 @@ def torques_of_flanks(train: Train, force: Array) -> Array:
 
 def mesh_torques(train: Train, force: Array) -> MeshTorques:
     """Return the torques that forces of flanks, (S, flanks) [N], exert on the drivers."""
-    flanks = np.array([*map(len, train.driving.values())])
-    torque, last = torques_of_flanks(train, force), flanks.cumsum() - 1
-    net = torque[:, last]
-    net[:, flanks == 2] += torque[:, last[flanks == 2] - 1]
+    flanks, torque = [*map(len, train.driving.values())], torques_of_flanks(train, force)
+    if len(set(flanks)) == 1:
+        net = sum((torque[:, k :: flanks[0]] for k in range(1, flanks[0])), torque[:, :: flanks[0]])
+    else:
+        net = np.add.reduceat(torque, np.cumsum([0, *flanks[:-1]]), axis=1)
     return MeshTorques(tuple(train.meshes), net, np.abs(torque).max(axis=1, initial=0.0))
 
 
