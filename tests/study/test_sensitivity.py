@@ -435,6 +435,19 @@ def test_differences_state_an_error_that_covers(number):
     assert abs(found.falling.value[0] - exact) <= found.falling.error[0]
 
 
+def test_differences_are_as_fine_as_what_they_difference():
+    """An input that is zero tells no step; a law δ^(3/2) at a thousandth of the usual one does."""
+    before = 1e-7
+    value = Value(0.0, "rad")
+
+    def soft(at: float) -> np.ndarray:
+        return np.array([math.copysign(abs(before + at) ** 1.5, before + at)])
+
+    found = differentiate(soft, value, np.array([2e-16 * before**1.5]))
+    exact = 1.5 * math.sqrt(before)
+    assert abs(found.rising.value[0] - exact) <= found.rising.error[0] < 1e-6 * exact
+
+
 def test_friction_of_a_torque_that_is_round_off_has_no_sign():
     """No shaft and no load turns gear r1; its spline's friction follows a torque of zero."""
     case = draw(2, 22)

@@ -123,8 +123,11 @@ class Sensitivity(NamedTuple):
     1e-12."""
     shorter: tuple[float, ...] = (1.0, 1.0 / 16.0, 1.0 / 256.0)
     """Shares of the step that are tried until the input may take it."""
-    other: tuple[float, ...] = (1.0 / 16.0, 1.0 / 256.0, 16.0)
-    """Steps, over the usual one, that are tried where it leaves a large error."""
+    other: tuple[float, ...] = (1.0 / 16.0, 1.0 / 256.0, 1.0 / 4096.0, 1.0 / 65536.0, 16.0)
+    """Steps, over the usual one, that are tried where it leaves a large error: shorter ones until
+    they leave round-off, a longer one if none of them leaves less."""
+    regular: float = 1e-3
+    """Relative error of a derivative below which a larger one at a shorter step is round-off."""
     close: float = 1e-8
     """Relative error of a derivative that calls for no other step."""
     kink: float = 1e-7

@@ -106,15 +106,23 @@ def differentiate(of: Callable[[float], Array], value: Value, rounding: Array) -
         If the input can be varied on neither side.
     """
     usual = max(SENSITIVITY.step * abs(value.number), LEAST[value.si_unit] / value.factor)
-    best = _differentiated(of, value, rounding, usual)
-    if _relative(best) <= SENSITIVITY.close:
-        return best
+    first = best = _differentiated(of, value, rounding, usual)
+    # A shorter step leaves less, unless what it leaves is round-off; then a longer one may.
+    rounded = False
     for share in SENSITIVITY.other:
+        least = _relative(best)
+        if least <= SENSITIVITY.close or (share > 1.0 and best is not first):
+            break
+        if rounded and share < 1.0:
+            continue
         try:
             found = _differentiated(of, value, rounding, share * usual)
         except (CaseError, ValueError, BranchLost):
             continue
-        if _sides(found) == _sides(best) and _relative(found) < _relative(best):
+        if _sides(found) != _sides(best):
+            continue
+        rounded = least < SENSITIVITY.regular and _relative(found) > 4.0 * least
+        if _relative(found) < least:
             best = found
     return best
 
