@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -13,6 +13,7 @@ from loadshare.scene.loading import loading_of
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure, structure_of
 from loadshare.train import Train
+from loadshare.train.gear import Gear
 from loadshare.train.shape import shape_of
 from loadshare.train.situations import Situations
 
@@ -101,14 +102,35 @@ def _idle(structure: Structure, situations: Situations) -> list[int]:
 def structure_like(base: Structure, train: Train) -> Structure:
     """Return the elements of a train that differs from another in an input, in its units.
 
+    Where a support's matrix changes, the directions in which it acts turn; coordinates stay those
+    of the other.
+
     Raises
     ------
     ValueError
         If it has other elements.
     """
-    if shape_of(train) == shape_of(base.train):
-        return base
-    mine = structure_of(train)
-    if mine.kinds != base.kinds or mine.coordinates.names != base.coordinates.names:
-        raise ValueError("the parameter changes which elements there are")
-    return replace(mine, force=base.force, length=base.length)
+    turned = dict(_turned(base.train, train))
+    seen = replace(train, gears={**train.gears, **turned}) if turned else train
+    found = base
+    if shape_of(seen) != shape_of(base.train):
+        found = structure_of(seen)
+        if found.kinds != base.kinds or found.coordinates.names != base.coordinates.names:
+            raise ValueError("the parameter changes which elements there are")
+        found = replace(found, force=base.force, length=base.length)
+    if not turned:
+        return found
+    vectors, gears = found.vectors.copy(), list(train.gears)
+    for column, (gear, axis) in enumerate(found.supports, found.columns.supports.start):
+        if (name := gears[gear]) in turned:
+            where = found.coordinates.displacement[name]
+            vectors[column, where] = turned[name].frame @ train.gears[name].frame[axis]
+    return replace(found, vectors=vectors)
+
+
+def _turned(base: Train, train: Train) -> Iterator[tuple[str, Gear]]:
+    """Yield gears whose support acts in other directions of the same plane, in those before."""
+    for (name, before), now in zip(base.gears.items(), train.gears.values(), strict=True):
+        same = before.frame is now.frame or np.array_equal(before.frame, now.frame)
+        if not same and np.array_equal(before.plane, now.plane):
+            yield name, replace(now, frame=before.frame)

@@ -105,9 +105,6 @@ class Corner:
 
     def _side(self, varied: Variation, sign: float, key: str, side: str) -> tuple[Rates, bool]:
         """Return the derivatives to one side, and whether they are those to the other as well."""
-        if (turning := varied.turning_step) is not None:
-            why = "the directions in which the support acts turn with it"
-            return self._by_differences(varied, sign, turning, key, side, why)
         place = self.neighbourhood.own
         step, kinked = None, True
         if place is not None:
@@ -138,17 +135,11 @@ class Corner:
             if motion.one_sided and step is not None:
                 floating = self._floating(varied, sign * step)
             return self._rates(self._moved(motion, floating)), shared
-        return self._by_differences(varied, sign, step, key, side, "no active set was proved")
-
-    def _by_differences(
-        self, varied: Variation, sign: float, step: float | None, key: str, side: str, why: str
-    ) -> tuple[Rates, bool]:
-        """Return the derivatives to one side by differences, and say why they are."""
         try:
             motions = self._differenced(varied, sign, step)
-        except NoDifference as none:
-            return self._without(key, side, none), False
-        self._remark(key, side, f"differenced when it is {_word(side)}: {why}")
+        except NoDifference as why:
+            return self._without(key, side, why), False
+        self._remark(key, side, f"differenced when it is {_word(side)}: no active set was proved")
         return self._rates(motions), False
 
     def _without(self, key: str, side: str, why: Exception) -> Rates:

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from loadshare.case import Case
-from loadshare.case.keys import parse
 from loadshare.scene.structure import Structure
-from loadshare.settings import SENSITIVITY
 from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.sensitivity.inputs import twin_of
 from loadshare.study.sensitivity.result import Input
@@ -62,20 +60,6 @@ class Trains:
         changes = {key: text} if (twin := twin_of(key)) is None else {key: text, twin: text}
         changed = with_laws(self._case.replace(changes))
         return train_alike(changed, self._base) or build_train(changed)
-
-    @property
-    def turning_step(self) -> float | None:
-        """Small step [N/m] of an entry of a support's matrix; None of any other input.
-
-        The directions along which the support acts, and in which equations are written, turn with
-        it.
-        """
-        match parse(self._item.key):
-            case ("gears", name, "support", int(), int()):
-                support = self._base[2].gears[str(name)].support
-                assert support is not None
-                return SENSITIVITY.first * float(support.min())
-        return None
 
     def numbers(self, train: Train, position: int, base: Structure) -> Numbers:
         """Return the numbers of one of them, or of one with other laws, in the units of others.

@@ -44,11 +44,6 @@ class Variation:
         self._setting = lru_cache(maxsize=None)(self._at)
         self._changes: dict[tuple[WorkingSet, bytes], Derivative] = {}
 
-    @property
-    def turning_step(self) -> float | None:
-        """As that of its trains."""
-        return self._trains.turning_step
-
     def _number(self, amount: float) -> float:
         return self.value.number + amount / self.value.factor
 
