@@ -12,6 +12,7 @@ from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from loadshare.cli.study.sensitivity import good
 from loadshare.errors import CaseError
 from loadshare.job import machine
+from loadshare.study.answers import certified
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity import SIDES, Sensitivity, sensitivity
 from loadshare.study.sensitivity.differences import differentiate
@@ -166,6 +167,25 @@ def test_a_gear_that_comes_to_float_has_no_displacement_to_that_side():
 
 
 @pytest.mark.slow
+def test_inputs_on_the_verge_are_differentiated_without_solves(monkeypatch):
+    """The set of one side, once found, tells for every input what moves and what floats."""
+    key = "errors.8.eccentricity.amount"
+    put = shipped("fgfbstts/tolerance").replace({key: "0.8570800282942369 um"})
+    asked = []
+    monkeypatch.setattr(
+        "loadshare.study.sensitivity.variation.certified",
+        lambda *a: asked.append(a) or certified(*a),
+    )
+    counts = []
+    for keys in ([key], [key, "errors.*.eccentricity.amount", "meshes.*.stiffness"]):
+        asked.clear()
+        found = sensitivity(put, keys, positions=[1])
+        counts.append(len(asked))
+    assert found.kinks
+    assert len(found.inputs) > 10
+    assert counts[1] <= counts[0] + 1
+
+
 def test_drawn_and_critical_cases():
     rows = [{"number": k, **one(7, k)} for k in range(2, 4)]
     found_outcomes = outcomes(rows)

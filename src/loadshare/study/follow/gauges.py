@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -47,35 +47,45 @@ class Gauge(NamedTuple):
         return clear if self.instead is None else clear | self.instead.clear(verge)
 
 
-def gauges_at(s: Stretches) -> list[Gauge]:
-    """Return the gauges of all elements on the chords themselves."""
+def gauges_at(s: Stretches, only: Collection[int] | None = None) -> list[Gauge]:
+    """Return the gauges of elements, all by default, on the chords themselves."""
     nothing = np.zeros((s.count, s.width))
-    return list(gauges(s, nothing, nothing))
+    return list(gauges(s, nothing, nothing, only))
 
 
-def gauges(s: Stretches, dev: Array, bend: Array) -> Iterator[Gauge]:
-    """Yield the gauges of all elements.
+def gauges(
+    s: Stretches, dev: Array, bend: Array, only: Collection[int] | None = None
+) -> Iterator[Gauge]:
+    """Yield the gauges of elements.
 
     Parameters
     ----------
     s : Stretches
     dev, bend : ndarray, shape (B, width)
         Deviations from the chord of the quantities on which laws depend, and of their derivatives.
+    only : collection of int, optional
+        Their numbers in an active set; all by default.
     """
     e = s.equations
-    for k in range(e.arcs.start):
-        yield from _contact_gauges(s, k, dev, bend)
-    for k in e.arcs:
-        where = e.polar_at.get(k)
-        if where is not None:
-            yield Gauge(k, at.OPEN, s.unknown(where, dev, bend))
+    for k in range(e.radials.stop):
+        if only is not None and k not in only:
+            continue
+        if k < e.arcs.start:
+            yield from _contact_gauges(s, k, dev, bend)
+        elif k in e.arcs:
+            yield _arc_gauge(s, k, dev, bend)
         else:
-            margin = _radius(s, k, dev, bend)
-            closed = k in e.polar_at
-            yield Gauge(k, at.OPEN if closed else at.CLOSED, -margin if closed else margin)
-    for k in e.radials:
-        for to, value, *instead in _radial_gauges(s, k, dev, bend):
-            yield Gauge(k, to, value, *instead)
+            for to, value, *instead in _radial_gauges(s, k, dev, bend):
+                yield Gauge(k, to, value, *instead)
+
+
+def _arc_gauge(s: Stretches, k: int, dev: Array, bend: Array) -> Gauge:
+    where = s.equations.polar_at.get(k)
+    if where is not None:
+        return Gauge(k, at.OPEN, s.unknown(where, dev, bend))
+    margin = _radius(s, k, dev, bend)
+    closed = k in s.equations.polar_at
+    return Gauge(k, at.OPEN if closed else at.CLOSED, -margin if closed else margin)
 
 
 def _contact_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[Gauge]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -191,12 +192,19 @@ class Branch:
         levers = self.setting.levers[None]
         return np.asarray(self.equations.along_forces(levers, state, self.numbers)[0])
 
-    def gauges(self, z: Array) -> dict[tuple[int, int], Gauge]:
-        """Return the gauge of every element, by what it is and the state to which it would go."""
+    def gauges(self, z: Array, only: Collection[int] | None = None) -> dict[tuple[int, int], Gauge]:
+        """Return the gauges of elements, by what each is and the state to which it would go.
+
+        Parameters
+        ----------
+        z : ndarray, shape (size,)
+        only : collection of int, optional
+            Numbers of elements in an active set; all by default.
+        """
         e = self.equations
         with np.errstate(all="ignore"):
             here = Stretches.at_points(e, z[None], self.numbers)
-            found = gauges_at(here)
+            found = gauges_at(here, only)
         gauges = {}
         for gauge in found:
             k, gradient = gauge.switch, None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -131,10 +131,7 @@ class Corner:
         if motion is not None:
             self._caught |= dict.fromkeys(motion.elements)
             shared = not motion.one_sided and not kinked
-            floating: tuple[str, ...] = ()
-            if motion.one_sided and step is not None:
-                floating = self._floating(varied, sign * step)
-            return self._rates(self._moved(motion, floating)), shared
+            return self._rates(self._moved(motion)), shared
         try:
             motions = self._differenced(varied, sign, step)
         except NoDifference as why:
@@ -165,8 +162,8 @@ class Corner:
             error,
         )
 
-    def _moved(self, motion: Motion, floating: Iterable[str]) -> Motions:
-        """Torques and displacements of a motion, beside which some coordinates float."""
+    def _moved(self, motion: Motion) -> Motions:
+        """Torques and displacements of a motion."""
         branch, size = motion.branch, motion.branch.size
         gradients = branch.torque_gradients(motion.z)
         direct_error = motion.change.error[size:]
@@ -177,7 +174,7 @@ class Corner:
             found = motion.bound(weights @ gradients) + np.abs(weights) @ direct_error
             return np.asarray(found + _largest([weights @ change for change in off]))
 
-        loose = self._loose(floating)
+        loose = self._loose(motion)
         moved = {g: np.zeros(2) for g in self.train.gears}
         error = {g: np.zeros(2) for g in self.train.gears}
         for gear, where in self.structure.coordinates.displacement.items():
@@ -228,24 +225,22 @@ class Corner:
                 row[order.index(m)] += 1.0
             yield group, weights / mean
 
-    def _loose(self, beside: Iterable[str] = ()) -> dict[str, Array]:
-        """Which components of each gear's displacement are left undetermined, here or beside."""
-        free = {*self._answer.undetermined, *beside}
+    def _loose(self, motion: Motion | None = None) -> dict[str, Array]:
+        """Which components of each gear's displacement are left undetermined, here or beside.
+
+        A gear that is held here may come to float as it moves to a side.
+        """
+        free = set(self._answer.undetermined)
         loose = {g: np.array([f"gear {g} {c}" in free for c in "xy"]) for g in self.train.gears}
-        place = self.neighbourhood.own
-        if place is not None:
-            moves = np.abs(place.tangent.loose).max(axis=1, initial=0.0) > SENSITIVITY.loose
+        own = self.neighbourhood.own
+        tangents = [] if own is None else [own.tangent]
+        if motion is not None:
+            tangents += [m.tangent for m in (motion, *motion.beside)]
+        for tangent in tangents:
+            moves = np.abs(tangent.loose).max(axis=1, initial=0.0) > SENSITIVITY.loose
             for gear, where in self.structure.coordinates.displacement.items():
                 loose[gear] = loose[gear] | moves[where]
         return loose
-
-    @staticmethod
-    def _floating(varied: Variation, amount: float) -> tuple[str, ...]:
-        """Coordinates that float a little way to a side, though they may be held at the value."""
-        try:
-            return tuple(varied.answer(amount).undetermined)
-        except (CaseError, ValueError, Refused):
-            return ()
 
     def _nothing(self) -> Rates:
         """Not a number, wherever something might move."""

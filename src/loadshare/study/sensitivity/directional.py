@@ -14,6 +14,7 @@ directional derivative of a complementarity problem.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from typing import Protocol
 
@@ -67,12 +68,13 @@ class Neighbourhood:
         self.own: Point | None = None
         self.verge: tuple[str, ...] = ()
         self._points: list[Point] = []
+        self._others: dict[tuple[Point, tuple[tuple[int, int], ...]], Point | None] = {}
         try:
             self.own = Point(*setting.branch_of(found))
         except BranchLost:
             return
         names = switch_names(setting.structure)
-        near = [g for g in self.own.gauges().values() if abs(g.value) <= SENSITIVITY.verge]
+        near = [g for g in self.own.gauges.values() if abs(g.value) <= SENSITIVITY.verge]
         loose = self.own.tangent.loose
         self.verge = tuple(dict.fromkeys(names[g.switch] for g in near if g.closing(loose) is None))
         self._points.append(self.own)
@@ -107,7 +109,7 @@ class Neighbourhood:
             > SENSITIVITY.loose
             for k in free
         )
-        return not caught and all(g.closing(loose) is None for g in self.own.gauges().values())
+        return not caught and all(g.closing(loose) is None for g in self.own.gauges.values())
 
     @staticmethod
     def _unbalanced(point: Point, slope: Slope, step: float) -> tuple[bool, Array]:
@@ -153,7 +155,7 @@ class Neighbourhood:
     @staticmethod
     def _verge(point: Point) -> Gauges | None:
         """Gauges that are on the verge, undetermined ones with them; None if one is violated."""
-        gauges = {key: g for key, g in point.gauges().items() if g.switch not in point.idle}
+        gauges = {key: g for key, g in point.gauges.items() if g.switch not in point.idle}
         if any(g.value < -10.0 * SENSITIVITY.verge for g in gauges.values()):
             return None
         return {key: g for key, g in gauges.items() if g.value <= 10.0 * SENSITIVITY.verge}
@@ -162,17 +164,12 @@ class Neighbourhood:
         self, point: Point, still: tuple[tuple[int, int], ...], sign: float, varied: Varied
     ) -> Iterator[Motion]:
         """Yield motions with elements in their other states, together and alone, if these hold."""
-        elements, numbers = self._setting.structure, self._setting.numbers
-        x = point.z[: point.branch.n]
         for changes in (still, *((one,) for one in still if len(still) > 1)) if still else ():
-            states = list(point.branch.active.states)
-            for switch, to in changes:
-                states[switch] = to
-            pieces = read_pieces(elements, numbers, tuple(states), x)
+            other = self._beside(point, changes)
+            if other is None:
+                continue
+            branch = other.branch
             try:
-                active = WorkingSet(tuple(states), pieces, point.branch.active.tied)
-                branch = Branch(self._setting, active)
-                other = Point(branch, branch.solve(x), point.idle)
                 change = varied.change(branch, other.z)
             except _NOTHING:
                 continue
@@ -183,6 +180,22 @@ class Neighbourhood:
             if self._still(other, sign, rate, change.step, varied, verge, later=True) is not None:
                 error = slope.error[: branch.size]
                 yield Motion(branch, other.z, other.tangent, rate, error, slope)
+
+    def _beside(self, point: Point, changes: tuple[tuple[int, int], ...]) -> Point | None:
+        """Return a point with elements in other states, if there is one: the same for any input."""
+        if (point, changes) not in self._others:
+            states = list(point.branch.active.states)
+            for switch, to in changes:
+                states[switch] = to
+            setting, x = self._setting, point.z[: point.branch.n]
+            other = None
+            with suppress(BranchLost, ValueError):
+                pieces = read_pieces(setting.structure, setting.numbers, tuple(states), x)
+                tied = point.branch.active.tied
+                branch = Branch(setting, WorkingSet(tuple(states), pieces, tied))
+                other = Point(branch, branch.solve(x), point.idle)
+            self._others[point, changes] = other
+        return self._others[point, changes]
 
     def _still(
         self,
@@ -208,7 +221,7 @@ class Neighbourhood:
         try:
             for k in (1.0, 2.0):
                 there = Branch(varied.setting(k * sign * step), branch.active)
-                along.append(there.gauges(z + k * sign * step * rate))
+                along.append(there.gauges(z + k * sign * step * rate, [k for k, _ in verge]))
         except _NOTHING:
             return None
         slack = SENSITIVITY.slides * fastest + SENSITIVITY.round_off / step

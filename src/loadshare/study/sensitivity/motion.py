@@ -151,6 +151,7 @@ class Point:
         """Its linearised equations."""
         return Tangent(self.branch, self.z)
 
+    @cached_property
     def gauges(self) -> Gauges:
-        """Return the gauges of all elements there."""
+        """The gauges of all elements there."""
         return self.branch.gauges(self.z)
