@@ -38,7 +38,7 @@ from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
 from loadshare.study.positions import loaded
 from loadshare.study.sensitivity import SIDES, Input, Sensitivity
-from loadshare.study.sensitivity.inputs import inputs_of
+from loadshare.study.sensitivity.inputs import inputs_of, twin_of
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
 
@@ -116,7 +116,12 @@ def differenced(
     written = WRITTEN * max(widths, default=0.0) if is_height else 0.0
 
     def laid(number: float) -> Array | None:
-        change = {item.key: value.at(number).text}
+        text = value.at(number).text
+        change = (
+            {item.key: text}
+            if (twin := twin_of(item.key)) is None
+            else {item.key: text, twin: text}
+        )
         try:
             # Laws from teeth or pair files are inputs as well, of the case as it is solved.
             changed = solved.replace(change) if is_computed else loaded(case.replace(change))
@@ -178,17 +183,19 @@ def _relative_error(error: Array, value: Array) -> float:
 
 
 def figures(train: Train, position: int, fine: bool) -> Array:
-    """Torques on drivers, then displacements in the gears' frames."""
+    """Torques on drivers, then displacements in the planes of the gears."""
     found = answered(train, position)
     if fine:
         exact = reference(train, position, found)
-        moved = [exact.displacement.get(g, np.zeros(2)) for g in train.gears]
+        moved = [
+            gear.in_plane(exact.displacement.get(g, np.zeros(2))) for g, gear in train.gears.items()
+        ]
         return np.concatenate([list(exact.torque.values()), *moved])
     torque = [
         sum(m.lever(d) * found.flank_force[m.flank_name(d)] for d in m.flanks)
         for m in train.meshes.values()
     ]
-    moved = [g.frame @ found.displacement[n] for n, g in train.gears.items()]
+    moved = [g.plane @ found.displacement[n] for n, g in train.gears.items()]
     return np.concatenate([torque, *moved])
 
 

@@ -455,6 +455,13 @@ def test_differences_state_an_error_that_covers(number):
     assert abs(found.falling.value[0] - exact) <= found.falling.error[0]
 
 
+def test_the_judge_sees_a_matrix_as_results_do() -> None:
+    """Displacements in the gear's plane, and entries across the diagonal as one input."""
+    case = on_a_matrix(2e8, 1e8, 3e8)
+    found = sensitivity(case, "gears.a.support[0][1]")
+    assert judged(case, found, found.inputs[0], 1, "rising").outcome == "agrees"
+
+
 def test_differences_are_as_fine_as_what_they_difference():
     """An input that is zero tells no step; a law δ^(3/2) at a thousandth of the usual one does."""
     before = 1e-7
