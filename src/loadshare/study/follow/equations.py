@@ -191,14 +191,7 @@ class Equations:
             force[:, k] = start[:, 0] + slope[:, k] * (approach[:, k] - start[:, 1])
         force[:, self.rigid] = z[:, self.rigid_at]
         transmitted = (numbers.carried[:, :, : self.scalars] @ force[:, :, None])[:, :, 0]
-        laws = {
-            k: at.graph(
-                np.broadcast_to(numbers.radial[:, j], (len(z), numbers.radial.shape[2])),
-                transmitted[:, j],
-                np.sqrt((self._offset(k, z, numbers) ** 2).sum(axis=1)),
-            )
-            for j, k in enumerate(self.radials)
-        }
+        laws = self._laws(z, numbers, transmitted)
         polars, margin = {}, {}
         for k in (*self.arcs, *self.radials) if every else self.polar_at:
             if k in self.arcs:
@@ -206,6 +199,18 @@ class Equations:
             else:
                 polars[k] = self._radial(k, laws[k], z, numbers)
         return Evaluation(approach, force, slope, polars, margin, laws, transmitted)
+
+    def _laws(self, z: Array, numbers: Numbers, transmitted: Array) -> dict[int, at.Graph]:
+        """Return the laws of the radial elements, all found at once."""
+        if not self.radials:
+            return {}
+        offsets = np.stack([self._offset(k, z, numbers) for k in self.radials], axis=1)
+        shape = transmitted.shape
+        given = np.broadcast_to(numbers.radial, (*shape, numbers.radial.shape[2]))
+        radii = np.sqrt((offsets * offsets).sum(axis=2))
+        found = at.graph(given.reshape(-1, given.shape[2]), transmitted.ravel(), radii.ravel())
+        parts = [part.reshape(shape) for part in found]
+        return {k: at.Graph(*(p[:, j] for p in parts)) for j, k in enumerate(self.radials)}
 
     def _arc(self, k: int, z: Array, numbers: Numbers) -> tuple[Polar, Array]:
         a, matrix = k - self.arcs.start, self.matrix(k, numbers)

@@ -133,13 +133,14 @@ class Branch:
     """
 
     def __init__(self, setting: Setting, active: WorkingSet) -> None:
-        self.setting, self.active, self.numbers = setting, active, setting.numbers
-        e = self.equations = Equations(setting.structure, active, setting.numbers)
+        self.setting, self.active = setting, active
+        self.numbers = numbers = setting.numbers
+        e = self.equations = Equations(setting.structure, active, numbers)
         self.size, self.n = e.size, e.n
+        law = at.graph(numbers.radial[0], np.zeros(len(e.radials)))
         for j, k in enumerate(e.radials):
-            law = at.graph(self.numbers.radial[:, j], np.zeros(1))
-            rigid = bool(np.isinf(law.last[0]))
-            play = float((law.reach if rigid else law.stick)[0])
+            rigid = bool(np.isinf(law.last[j]))
+            play = float((law.reach if rigid else law.stick)[j])
             on_step = {at.PINNED: play == 0.0, at.WALL: play > 0.0}
             if not on_step.get(int(e.states[k]), True):
                 raise BranchLost("a limit without play is another element than one with some")

@@ -13,6 +13,7 @@ directional derivative of a complementarity problem.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -216,7 +217,9 @@ class Neighbourhood:
             return ()
         branch, z = point.branch, point.z
         fastest = float(np.abs(rate).max(initial=0.0))
-        step = min(step, SENSITIVITY.way / fastest) if fastest else step
+        if step * fastest > SENSITIVITY.way:
+            # By a power of 2, so that sets that move about as fast share their trains.
+            step *= 2.0 ** math.floor(math.log2(SENSITIVITY.way / (step * fastest)))
         along = []
         try:
             for k in (1.0, 2.0):
