@@ -462,6 +462,29 @@ def test_the_judge_sees_a_matrix_as_results_do() -> None:
     assert judged(case, found, found.inputs[0], 1, "rising").outcome == "agrees"
 
 
+def test_a_ring_that_gains_play() -> None:
+    """As far as it has play, its gear goes where it is pushed; nothing else is one-sided."""
+    matrix = on_a_matrix(2e8, 1e8, 3e8).to_dict()
+    del matrix["gears"]["a"]["support"]
+    case = ls.Case({**matrix, "rings": {"a": {"radius": "0 m"}}})
+    found = sensitivity(case)
+    assert not found.kinks
+    assert not [r for r in found.remarks if "differenced" in r.message]
+    moved = found.rates[1, "rings.a.radius", "rising"].displacement["a"]
+    assert np.linalg.norm(moved) == pytest.approx(1.0, rel=1e-9)
+    played = case.replace({"rings.a.radius": "1 um"})
+    there = np.array(ls.solve(played).positions[0].displacement["a"])
+    assert moved == pytest.approx(there / 1e-6, abs=1e-6)
+
+
+def test_a_bearing_without_clearance_is_on_no_verge() -> None:
+    matrix = on_a_matrix(2e8, 1e8, 3e8).to_dict()
+    del matrix["gears"]["a"]["support"]
+    bearing = {"clearance": "0 m", "stiffness": "3e8 N/m"}
+    case = ls.Case({**matrix, "bearings": {"a": bearing}})
+    assert not sensitivity(case, "operating.torque").kinks
+
+
 def test_differences_are_as_fine_as_what_they_difference():
     """An input that is zero tells no step; a law δ^(3/2) at a thousandth of the usual one does."""
     before = 1e-7

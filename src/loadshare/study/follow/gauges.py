@@ -135,7 +135,9 @@ def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[tu
             yield at.STOP, reach - radius
     elif states == at.STOP:
         yield at.SLIP, radius - reach
-        yield at.STICK, reach - stick
+        # What has no shaft to bend first has no such piece, even without clearance.
+        if given[:, :, 0].any():
+            yield at.STICK, reach - stick
     elif states == at.WALL and where is not None:
         yield at.OPEN, s.unknown(where, dev, bend)
     elif states == at.CORNER and where is not None:

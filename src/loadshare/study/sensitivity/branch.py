@@ -126,6 +126,11 @@ class Branch:
     setting : Setting
     active : WorkingSet
 
+    Attributes
+    ----------
+    pins : mapping of switch to float
+        Rigid rings that pin their gears without play, and the play that they have at this value.
+
     Raises
     ------
     BranchLost
@@ -138,11 +143,13 @@ class Branch:
         e = self.equations = Equations(setting.structure, active, numbers)
         self.size, self.n = e.size, e.n
         law = at.graph(numbers.radial[0], np.zeros(len(e.radials)))
+        self.pins: dict[int, float] = {}
         for j, k in enumerate(e.radials):
             rigid = bool(np.isinf(law.last[j]))
             play = float((law.reach if rigid else law.stick)[j])
-            on_step = {at.PINNED: play == 0.0, at.WALL: play > 0.0}
-            if not on_step.get(int(e.states[k]), True):
+            if rigid and e.states[k] == at.PINNED:
+                self.pins[k] = play
+            elif not {at.PINNED: play == 0.0, at.WALL: play > 0.0}.get(int(e.states[k]), True):
                 raise BranchLost("a limit without play is another element than one with some")
 
     def figures(self, z: Array) -> Array:
@@ -157,7 +164,24 @@ class Branch:
         if not all(law.valid.all() for law in state.laws.values()):
             raise BranchLost("a spline's force would drop where it starts to slip")
         residual = self.equations.residual(z[None], self.numbers, state)[0]
+        for k, play in self.pins.items():
+            if play > 0.0:
+                residual[self._pinned(k)] -= play * self._way(k, z)
         return np.concatenate([residual, self.setting.levers @ state.force[0]])
+
+    def _pinned(self, k: int) -> slice:
+        """Where the two forces of a pin are among the unknowns."""
+        where = self.equations.polar_at[k]
+        assert where is not None
+        return slice(where, where + 2)
+
+    def _way(self, k: int, z: Array) -> Array:
+        """Return the direction in which a pin is pushed: as far as it has play, its gear goes."""
+        force = z[self._pinned(k)]
+        size = float(np.linalg.norm(force))
+        if size <= SENSITIVITY.verge:
+            raise BranchLost("a gear that nothing pushes floats as soon as its limit has play")
+        return np.asarray(force / size)
 
     def jacobians(self, z: Array) -> Array:
         """Return the derivative of G at points z (S, size)."""
@@ -209,6 +233,9 @@ class Branch:
         gauges = {}
         for gauge in found:
             k, gradient = gauge.switch, None
+            if k in self.pins:
+                # Its play is that of the input alone.
+                continue
             if k in e.arcs and k not in e.polar_at:
                 gradient = -here.frames[k][0, 0] @ e.matrix(k, self.numbers)[0]
             elif k < e.arcs.start and e.states[k] == at.OPEN:
