@@ -149,7 +149,8 @@ class Neighbourhood:
         elements: tuple[str, ...] = ()
         if self.own is not None:
             elements = self.own.branch.active.changes(branch.active, self._setting.structure)
-        one_sided = bool(verge or elements)
+        # What an input leaves where it is, on the verge or not, is so to the other side as well.
+        one_sided = bool(elements) or len(still) < len(verge)
         beside = tuple(self._with(point, still, sign, varied))
         return Motion(branch, z, tangent, rate, error, slope, elements, one_sided, beside)
 

@@ -99,8 +99,8 @@ class Motion:
     elements : tuple of str
         What is in another state than at the value itself.
     one_sided : bool
-        Whether anything stands on the verge, or is in another state: then it says nothing of the
-        other side.
+        Whether anything on the verge leaves it, or is in another state: then it says nothing of
+        the other side.
     beside : tuple of Motion
         On sets that differ in what stands on the verge, in either state for all that is known: any
         of them may be that of this side.
