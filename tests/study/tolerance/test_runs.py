@@ -544,3 +544,26 @@ def test_torques_of_a_drive_that_brakes_are_the_largest(tmp_path):
     (part,) = (tmp_path / "study").glob("part-*.parquet")
     found = parquet.read_table(part)["torque.sun-planet2 [N*m]"].to_numpy()
     np.testing.assert_allclose(found, -300.0, rtol=1e-9)
+
+
+def test_a_case_without_stages_has_torques_but_no_shares():
+    pair = ls.Case(
+        {
+            "operating": {"input": "a", "output": "b", "torque": "1000 N*m"},
+            "gears": {
+                "a": {"base_radius": "50 mm", "centre": ["0 mm", "0 mm"]},
+                "b": {"base_radius": "100 mm", "centre": ["160 mm", "0 mm"]},
+            },
+            "meshes": {"a-b": {"stiffness": "5e5 N*m/rad"}},
+        }
+    )
+    spread = {"distribution": "uniform", "low": "900 N*m", "high": "1100 N*m"}
+    found = ls.tolerance(pair, {"operating.torque": spread}, samples=8, indices=4, workers=1)
+    table = found.to_frame()
+    assert found.omega == ()
+    torque, given = (
+        table[f"{name} [N*m]"].to_numpy() for name in ("torque.a-b", "operating.torque")
+    )
+    assert torque == pytest.approx(given, rel=1e-12)
+    with pytest.raises(ls.LoadshareError, match="without stages"):
+        found.plot()

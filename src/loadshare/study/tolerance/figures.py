@@ -148,7 +148,9 @@ def _at_position(answers: Equilibria) -> dict[str, Array]:
         omega = shares(torques, train.stages, pairs=kind == "pair_omega")
         of = {s.name: _largest(omega, [order[m] for m in s.meshes]) for s in train.stages}
         found |= {f"{kind}.{stage}": values for stage, values in of.items()}
-        found[f"{kind}.{SYSTEM}"] = np.fmax.reduce(list(of.values()))
+        # Without stages there are torques, but no shares.
+        none = np.full(len(torques.net), np.nan)
+        found[f"{kind}.{SYSTEM}"] = np.fmax.reduce([none, *of.values()])
     found |= {f"torque.{mesh} [N*m]": torques.net[:, m] for mesh, m in order.items()}
     gears = {gear: g for g, gear in enumerate(train.gears)}
     for gear in train.floating:

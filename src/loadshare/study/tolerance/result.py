@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
+from loadshare.errors import LoadshareError
 from loadshare.pictures import picture
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.indices import Share
@@ -181,10 +182,12 @@ class Tolerance(Viewed):
         Raises
         ------
         LoadshareError
-            If there is no such stage.
+            If there is no such stage, or none at all.
         ValueError
             If Ω is over no such mean.
         """
+        if not self.omega:
+            raise LoadshareError("a case without stages has torques, but no Ω to draw")
         drawn: Figure = picture(self, stage, over)
         return drawn
 
