@@ -49,7 +49,7 @@ def test_draw_nothing_of_a_case_that_could_not_be_read_just_then(command, monkey
     """A file that is there again for the second look would give half a picture, or another."""
     from loadshare.errors import CaseError, Problem
 
-    def missing(file):
+    def missing(file, **_):
         raise CaseError([Problem(str(file), "", "", "input/output error")])
 
     monkeypatch.setattr("loadshare.case.load_case", missing)
