@@ -33,9 +33,9 @@ from loadshare.train.situations import Situations, situation_of, situations_of, 
 
 Some = NDArray[np.bool_] | None
 """Samples (S,) to solve; None for all."""
-Outcome = TypeVar("Outcome")
 Way = Callable[[Some], tuple[Iterate, Found]]
 """How samples are solved."""
+Outcome = TypeVar("Outcome")
 
 
 def _compiling(engine: Engine, act: Callable[[Engine], Outcome]) -> Outcome:

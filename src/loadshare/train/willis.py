@@ -131,7 +131,7 @@ class Links:
         every = np.broadcast_arrays(*(torques.get(name, 0.0) for name in self.gears))
         load = np.stack(every)[turning]
         balance = self.matrix[:, turning].T
-        response: Array = np.linalg.pinv(balance, rcond=1e-9).astype(float, copy=False)
+        response: Array = np.linalg.pinv(balance, rcond=NOISE).astype(float, copy=False)
         force = response @ load.reshape(len(turning), -1)
         either = self._either(balance, response, load)
         force[np.abs(force) <= NOISE * np.abs(force).max(axis=0, initial=0.0)] = 0.0
@@ -147,7 +147,7 @@ class Links:
             return either
         # Loads are shared with the least energy, whatever the stiffness of each link.
         root = 10.0 ** np.random.default_rng(0).uniform(-SPREAD, SPREAD, (DRAWS, len(response)))
-        drawn = root[:, :, None] * np.linalg.pinv(balance * root[:, None, :], rcond=1e-9)
+        drawn = root[:, :, None] * np.linalg.pinv(balance * root[:, None, :], rcond=NOISE)
         force = np.tensordot(drawn, load, 1)
         least = NOISE * np.abs(force).max(axis=1, keepdims=True)
         return np.asarray((force > least).any(axis=0) & (force < -least).any(axis=0))

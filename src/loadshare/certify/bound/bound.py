@@ -28,9 +28,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array, Flags
+from loadshare.certify.bound.acts import Acts
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import Acts, Elements, elements
+from loadshare.certify.bound.elements import Elements
+from loadshare.certify.bound.laws import elements
 from loadshare.certify.bound.response import Part, Response, yielding
 from loadshare.certify.bound.signs import doubts
 from loadshare.settings import BOUND

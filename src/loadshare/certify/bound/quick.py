@@ -25,9 +25,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array, Flags
+from loadshare.certify.bound.acts import Act, Acts
 from loadshare.certify.bound.bound import Box, aside, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import Act, Acts, Elements, elements
+from loadshare.certify.bound.elements import Elements
+from loadshare.certify.bound.laws import elements
 from loadshare.certify.bound.signs import doubts
 from loadshare.certify.bound.statics import Statics, free_moves, held_moves
 from loadshare.settings import BOUND

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from loadshare.array_types import Array
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import Elements
+from loadshare.certify.bound.elements import Elements
 from loadshare.settings import BOUND
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array, Flags
+from loadshare.certify.bound.acts import Act, Acts
 from loadshare.certify.bound.claim import Claim
-from loadshare.certify.bound.laws import Act, Acts, Elements
+from loadshare.certify.bound.elements import Elements
 
 
 def doubts(

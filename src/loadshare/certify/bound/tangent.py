@@ -22,8 +22,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.certify.bound.acts import Act, first_acts
 from loadshare.certify.bound.claim import Claim
-from loadshare.certify.bound.laws import Act, Elements, elements, first_acts
+from loadshare.certify.bound.elements import Elements
+from loadshare.certify.bound.laws import elements
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.bound.statics import Statics
 from loadshare.settings import BOUND

@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array
+from loadshare.certify.bound.acts import Act, Acts
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import Act, Acts, elements
+from loadshare.certify.bound.laws import elements
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.settings import BOUND
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.by_reference import by_reference, set_apart
+from loadshare.certify.bound.acts import CLOSED, ENDLESS, LIGHT
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.kernel.laws import flank_law
 from loadshare.certify.bound.kernel.options import compiled, within
-from loadshare.certify.bound.laws import CLOSED, ENDLESS, LIGHT
 from loadshare.settings import BOUND
 
 FORCE, WAY, TORQUE, ARC, ARC_WAY = range(5)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.by_reference import by_reference, set_apart
+from loadshare.certify.bound.acts import CLOSED, ENDLESS, LIGHT, OPEN
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.kernel.abreast import fill, put_largest, put_rows, take_row, take_rows
 from loadshare.certify.bound.kernel.forces import (
@@ -18,7 +19,6 @@ from loadshare.certify.bound.kernel.forces import (
 from loadshare.certify.bound.kernel.lengths import put_gaps, put_lengths, put_limits, put_places
 from loadshare.certify.bound.kernel.options import compiled, inlined, within
 from loadshare.certify.bound.kernel.residuals import put_displaced, put_worst
-from loadshare.certify.bound.laws import CLOSED, ENDLESS, LIGHT, OPEN
 from loadshare.extremes import larger, smaller
 from loadshare.settings import BOUND, CERTIFY
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.by_reference import set_apart
+from loadshare.certify.bound.acts import CLOSED, ENDLESS, OPEN
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.kernel.abreast import (
     fill,
@@ -25,7 +26,6 @@ from loadshare.certify.bound.kernel.laws import (
     stiffest,
 )
 from loadshare.certify.bound.kernel.options import inlined, within
-from loadshare.certify.bound.laws import CLOSED, ENDLESS, OPEN
 from loadshare.extremes import larger, smaller
 from loadshare.settings import BOUND
 

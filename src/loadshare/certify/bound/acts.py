@@ -1,0 +1,114 @@
+"""Which elements act at a claim, and how."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.array_types import Array, Flags
+from loadshare.certify.bound.claim import EPS, Claim
+from loadshare.settings import BOUND
+
+Acts = NDArray[np.int8]
+
+
+class Act:
+    """How an element acts.
+
+    Plain numbers: arrays are compared with members of an enumeration in ten times the time.
+    """
+
+    OPEN = 0
+    """Not at all."""
+    STICK = 1
+    """As a spring about its centre."""
+    PINNED = 2
+    """Rigidly."""
+    STEP = 3
+    """Rigidly along its line, at the radius S1 where the force steps up to the level."""
+    SLIP = 4
+    """With a given force along its line."""
+    STOP = 5
+    """Along its line: a closed flank, stop or arc, a ring, a spline at its clearance."""
+    WAYS = 6
+    """How many there are."""
+
+
+OPEN, CLOSED, LIGHT, ENDLESS = range(4)
+"""How an element acts in large batches.
+
+Not at all; by its law; by that of a light Hertz contact, which is soft; without force, where it
+yields without end.
+"""
+
+
+def first_acts(claim: Claim, noise: float = BOUND.noise) -> Acts:
+    """How the elements act by the claim's own forces, shape (S, elements).
+
+    Parameters
+    ----------
+    claim : Claim
+    noise : float
+        Friction, over the largest force, that is put aside.
+    """
+    columns = claim.columns
+    force = claim.forces
+    contacts = np.concatenate(
+        [force[:, columns.flanks], force[:, columns.stops], force[:, columns.arcs][:, ::2]], axis=1
+    )
+    length = claim.lengths[0].value
+    gap = np.concatenate(
+        [-length[:, columns.flanks], -length[:, columns.stops], claim.arcs[1]], axis=1
+    )
+    largest = np.abs(force[:, columns.flanks]).max(axis=1, initial=0.0)[:, None]
+    deflection = length[:, columns.flanks].max(axis=1, initial=0.0)[:, None]
+    faint = (np.abs(contacts) <= BOUND.noise * largest) & (gap > BOUND.apart * deflection)
+    closed = (contacts != 0.0) & ~faint
+    scalar = np.where(closed, Act.STOP, Act.OPEN).astype(np.int8)
+    radials = np.zeros((claim.count, 0), np.int8)
+    if claim.radial_gears:
+        radials = _radial_acts(claim, noise * largest)
+    return np.concatenate([scalar, radials], axis=1)
+
+
+def unmoved(claim: Claim, distance: Array) -> Flags:
+    """Splines with memory, among the radial elements, whose slip has changed by rounding only."""
+    train, columns = claim.columns.train, claim.columns
+    found = np.zeros(distance.shape, dtype=bool)
+    for k, gear in enumerate(train.splines if train.slip is not None else ()):
+        before = np.linalg.norm((train.slip or {})[gear])
+        place = np.abs(claim.answers.displacement[:, columns.order[gear]]).max(axis=1)
+        at = len(train.rounds) + k
+        found[:, at] = distance[:, at] <= EPS * (before + place)
+    return found
+
+
+def _radial_acts(claim: Claim, noise: Array) -> Acts:
+    columns = claim.columns
+    pair = claim.forces[:, columns.radials].reshape(claim.count, -1, 2)
+    where = claim.lengths[0].value[:, columns.radials].reshape(claim.count, -1, 2)
+    size, distance = (np.sqrt((v**2).sum(axis=2)) for v in (pair, where))
+    distance = np.where(unmoved(claim, distance), 0.0, distance)
+    first, stick, level, reach, last = claim.graphs.transpose(2, 0, 1)
+    with np.errstate(invalid="ignore"):
+        end = np.where(stick > 0.0, first * stick, 0.0)
+    held = np.where(np.isinf(last), Act.PINNED, Act.STICK)
+    below = size < level * (1.0 - BOUND.corner)
+    steps = end < level * (1.0 - BOUND.corner)
+    ways = (
+        (np.isinf(stick), Act.STICK),
+        ((level <= noise) & (size <= noise) & (distance < reach), Act.OPEN),
+        ((level == 0.0) & (stick == 0.0) & (reach == 0.0), held),
+        ((level == 0.0) & (size == 0.0), Act.OPEN),
+        (steps & below & (stick == 0.0), Act.PINNED),
+        (steps & below & (size > end), Act.STEP),
+        ((distance < stick) & (stick > 0.0), Act.STICK),
+        ((size <= end) & steps & (stick > 0.0), Act.STICK),
+        ((distance < reach) & (distance > 0.0) & (level > 0.0), Act.SLIP),
+        ((distance == 0.0) & (level > 0.0) & (stick == 0.0), Act.PINNED),
+    )
+    found = np.full(size.shape, Act.STOP)
+    # The first that holds counts.
+    for there, way in reversed(ways):
+        found = np.where(there, way, found)
+    return found.astype(np.int8)
