@@ -185,20 +185,20 @@ class Range(Element):
     """A float range to either side."""
 
     up: Distance
-    """Float outwards [length]."""
+    """Float up, to the left of the way from the first neighbour to the second [length]."""
 
     down: Distance
-    """Float inwards [length]."""
+    """Float down, to the right of it [length]."""
 
 
 class Backlashes(Element):
     """A float range as the backlashes that the float has to take up."""
 
     upward: Annotated[tuple[str, ...], Field(min_length=1)]
-    """Meshes whose backlashes the float takes up outwards."""
+    """Meshes whose backlashes the float takes up on its way up."""
 
     downward: Annotated[tuple[str, ...], Field(min_length=1)]
-    """Meshes whose backlashes the float takes up inwards."""
+    """Meshes whose backlashes the float takes up on its way down."""
 
 
 class Ring(Element):
@@ -227,7 +227,8 @@ class Ring(Element):
         ]
         | None
     ) = Field(default=None, alias="float")
-    """Drum: float across the line of the neighbours [length], or the meshes that set it."""
+    """Drum: float across the line of the neighbours, as much up as down [length]; or each of them,
+    or the meshes that set them."""
 
     radius: Distance | None = None
     """Circle: radius of the disc in which the centre may move [length]."""
