@@ -194,3 +194,59 @@ def test_power_that_goes_round_may_press_either_flank(stiffness, wrong):
     expected = {"s1-p11": -100.0 / 15.0, "s2-p21": 0.0} if wrong else exact.torque
     for name in ("s1-p11", "s2-p21"):
         assert found.torque[name] == pytest.approx(expected[name], rel=1e-6, abs=1e-9)
+
+
+def one_set(force: str) -> ls.Case:
+    """A set 18/36/90 on rigid pins, its carrier driven; a force acts on the first planet in y."""
+    case = two_sets().to_dict()
+    loads = {"input": "c1", "output": "s1", "torque": "100 N*m", "forces": {"p11": ["0 N", force]}}
+    first = {
+        part: {name: given for name, given in case[part].items() if name[1] == "1"}
+        for part in ("gears", "meshes")
+    }
+    return ls.Case({"operating": loads, **first})
+
+
+@pytest.mark.parametrize("force", [4.0, -1.0, -10.0])
+def test_a_force_on_a_planet_turns_its_carrier(force):
+    """Pins stand 81 mm from the axis, the carrier brings six times what the sun takes."""
+    (found,) = ls.solve(one_set(f"{force} kN")).positions
+    each = -(100.0 + 81.0 * force) / 18.0
+    assert found.torque == pytest.approx(
+        {f"s1-p1{k}": each for k in (1, 2, 3)} | {f"p1{k}-r1": 2.0 * each for k in (1, 2, 3)}
+    )
+    samples = {"operating.forces.p11[1] [kN]": [4.0, force, -1.0, force]}
+    many = ls.solve_many(one_set("0 N"), samples)
+    assert many.certified.all()
+    np.testing.assert_allclose(many.torque.sel(mesh="s1-p12").values[[1, 3], 0], each)
+
+
+def test_a_force_that_turns_a_carrier_both_ways_needs_a_backlash():
+    case = one_set("-10 kN").replace({"march": {"gear": "c1", "revolutions": 1.0, "steps": 4}})
+    with pytest.raises(ls.CaseError, match=r"s1-p11.*backlash: is missing: .* now the other"):
+        ls.solve(case)
+    (still,) = ls.solve(case.replace({"operating.forces.p11[1]": "-1 kN", "march": None})).positions
+    turned = ls.solve(case.replace({"operating.forces.p11[1]": "-1 kN"})).positions
+    # At half a turn, the pin stands on the other side of the axis.
+    assert turned[0].torque["s1-p11"] == pytest.approx(still.torque["s1-p11"])
+    assert turned[2].torque["s1-p11"] == pytest.approx(-(100.0 + 81.0) / 18.0)
+
+
+def pushed(force: str, **mesh: str) -> ls.Case:
+    """Two branches, with a force on idler 2, on an elastic bearing, in place of a torque."""
+    case = two_branches(0.0, **mesh)
+    support = {"gears.2.support": "1e8 N/m"}
+    return case.replace(
+        {**support, "operating.external": None, "operating.forces": {"2": ["0 N", force]}}
+    )
+
+
+@pytest.mark.parametrize(("force", "wrong"), [("-20 kN", True), ("-0.5 kN", False)])
+def test_a_mesh_that_a_force_opens_is_warned_of(force, wrong):
+    """The force turns one idler on along its partners, and the other one back."""
+    (without,) = ls.solve(pushed(force, backlash="0 um")).positions
+    assert (min(without.torque.values()) < -1.0) is wrong
+    (found,) = ls.solve(pushed(force)).positions
+    assert (found.validity.verdict == "large") is wrong
+    if not wrong:
+        assert found.torque == pytest.approx(without.torque, rel=1e-9)

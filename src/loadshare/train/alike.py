@@ -52,7 +52,7 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
             return None
     loaded = any(path[0] == "operating" for path, _, _ in differences)
     if loaded and not _runs_alike(case.operating, base[0].operating, case.gears):
-        found = pressed_flanks(case, base[1].gears)
+        found = pressed_flanks(case, base[1].gears, base[1].period)
         pairs = base[1].pairs.items()
         if any([bool(f) for f in found[n]] != [pair.turned, pair.unsure] for n, pair in pairs):
             return None

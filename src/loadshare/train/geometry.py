@@ -101,8 +101,8 @@ def geometry_of(case: spec.Case) -> Geometry:
         problems.append(case.problem("march.gear", "does not turn", "a gear that turns"))
     if problems:
         raise CaseError(problems)
-    pairs = _pairs(case, kinematics.gears)
     period = _period(case, kinematics.gears) if common else None
+    pairs = _pairs(case, kinematics.gears, period)
     return Geometry(kinematics.gears, in_phase(case, pairs), period)
 
 
@@ -196,9 +196,9 @@ def _gear(
     )
 
 
-def _pairs(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pair]:
+def _pairs(case: spec.Case, gears: Mapping[str, Gear], period: Period | None) -> dict[str, Pair]:
     """Meshes with the flanks that the torque presses, whichever way it runs through them."""
-    every = pressed_flanks(case, gears)
+    every = pressed_flanks(case, gears, period)
     found, centres = {}, case.centres()
     for name, mesh in case.meshes.items():
         line = line_of_action(mesh, case.gears, centres)

@@ -8,6 +8,9 @@ of which stiffness may press either flank is marked as unsure (`Links.pressed`):
 it carries in the answer, the other flank would not touch whatever the play, and the choice was
 right; if it is open there, the play decides, and the answer is warned of (`certify.validity`). To
 refuse all such meshes would refuse most for nothing.
+
+A force from outside turns a carrier if it acts on a planet. If it acts on what yields, it pushes
+gears against their partners as well, where stiffness may press either flank again.
 """
 
 from __future__ import annotations
@@ -23,7 +26,9 @@ from loadshare import case as spec
 from loadshare.case.power_flow import from_the_other_end, has_sets
 from loadshare.errors import CaseError
 from loadshare.train.gear import Gear
-from loadshare.train.willis import Links
+from loadshare.train.operation import forces_of
+from loadshare.train.period import Period
+from loadshare.train.willis import NOISE, Links
 
 Flags = NDArray[np.bool_]
 
@@ -43,7 +48,9 @@ class Pressed(NamedTuple):
     unsure: Flags
 
 
-def pressed_flanks(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pressed]:
+def pressed_flanks(
+    case: spec.Case, gears: Mapping[str, Gear], period: Period | None = None
+) -> dict[str, Pressed]:
     """Tell which flank the meshes without a backlash have.
 
     Parameters
@@ -52,6 +59,8 @@ def pressed_flanks(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pres
         Its loads may be arrays of S samples.
     gears : mapping of str to Gear
         With their speeds.
+    period : Period, optional
+        Common period of all meshes, where the positions go through it.
 
     Returns
     -------
@@ -68,11 +77,16 @@ def pressed_flanks(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pres
     against = _against_the_names(case, torque)
     # Elsewhere the torque of the input runs through all meshes alike.
     by_load = has_sets(case.gears) or case.operating.external
-    pressed = _pressed(case, gears, torque) if names and by_load else {}
+    pressed = _pressed(case, gears, torque, period) if names and by_load else {}
+    pushed = _open_to_forces(case, gears) & names if names else set()
     problems = []
     # Where statics does not tell, the names do.
     none = np.zeros_like(against)
-    found = {n: Pressed(against & (n in names), none) for n in case.meshes if n not in pressed}
+    found = {
+        n: Pressed(against & (n in names), none | (n in pushed))
+        for n in case.meshes
+        if n not in pressed
+    }
     for name, (signs, either) in pressed.items():
         coast, drive = (signs < 0).any(axis=0), (signs > 0).any(axis=0)
         if name in names and (coast & drive).any():
@@ -81,7 +95,8 @@ def pressed_flanks(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pres
             problems.append(case.problem(("meshes", name, "backlash"), message, "a length", hint))
         # As where the load presses neither.
         turned = np.where(coast | drive, coast, against) & (name in names)
-        found[name] = Pressed(turned, np.asarray(either.any(axis=0) & (name in names)))
+        unsure = either.any(axis=0) | (name in pushed)
+        found[name] = Pressed(turned, np.asarray(unsure & (name in names)))
     if problems:
         raise CaseError(problems)
     return found
@@ -95,18 +110,85 @@ def _against_the_names(case: spec.Case, torque: NDArray[np.float64]) -> Flags:
 
 
 def _pressed(
-    case: spec.Case, gears: Mapping[str, Gear], torque: NDArray[np.float64]
+    case: spec.Case, gears: Mapping[str, Gear], torque: NDArray[np.float64], period: Period | None
 ) -> dict[str, tuple[NDArray[np.intp], Flags]]:
     """Signs of the torques of meshes (positions, S), by statics (see `Links.pressed`)."""
-    links = Links.of(
-        gears,
-        {name: mesh.ends for name, mesh in case.meshes.items()},
-        {name: shaft.ends for name, shaft in case.shafts.items()},
-    )
     operating = case.operating
     torques: dict[str, Any] = {
         n: t.si * math.copysign(1.0, gears[n].ratio) for n, t in operating.external.items()
     }
     torques[operating.input] = torques.get(operating.input, 0.0) + torque
-    free = [n for n, g in gears.items() if not g.held and n != operating.output]
-    return links.pressed(torques, free)
+    for carrier, moment in _moments(case, gears, len(torque), period).items():
+        torques[carrier] = torques.get(carrier, 0.0) + moment
+    return _links(case, gears).pressed(torques, _turning(case, gears))
+
+
+def _links(case: spec.Case, gears: Mapping[str, Gear]) -> Links:
+    return Links.of(
+        gears,
+        {name: mesh.ends for name, mesh in case.meshes.items()},
+        {name: shaft.ends for name, shaft in case.shafts.items()},
+    )
+
+
+def _turning(case: spec.Case, gears: Mapping[str, Gear]) -> list[str]:
+    return [n for n, g in gears.items() if not g.held and n != case.operating.output]
+
+
+def _open_to_forces(case: spec.Case, gears: Mapping[str, Gear]) -> set[str]:
+    """Return the links that forces from outside may load either way, as stiffness shares them."""
+    felt = {name for n in forces_of(case) for name in (n, gears[n].carrier) if name is not None}
+    if not any(case.floats(n) or case.gears[n].support not in (None, "rigid") for n in felt):
+        return set()
+    left = _links(case, gears).open_to_stiffness(_turning(case, gears))
+    return {name for name, is_open in left.items() if is_open}
+
+
+def _moments(
+    case: spec.Case, gears: Mapping[str, Gear], count: int, period: Period | None
+) -> dict[str, NDArray[np.float64]]:
+    """Moments of forces from outside about carriers [N·m], in their senses.
+
+    At all positions where the torque has `count` of them; else where they are least and largest.
+    """
+    found: dict[str, Any] = {}
+    size: dict[str, Any] = {}
+    forces = forces_of(case)
+    turned = _turned(case, gears, period) if forces else np.zeros(1)
+    for name, force in forces.items():
+        if (hub := gears[name].carrier) is None:
+            continue
+        carrier = gears[hub]
+        arm = gears[name].centre - carrier.centre
+        across = np.atleast_1d(force @ np.cross(carrier.axis, arm))
+        along = np.atleast_1d(force @ (arm - (arm @ carrier.axis) * carrier.axis))
+        # What is fixed in the housing turns backwards about the carrier.
+        angle = (carrier.sense * carrier.ratio * turned)[:, None]
+        moment = carrier.sense * (np.cos(angle) * across - np.sin(angle) * along)
+        found[hub] = found.get(hub, 0.0) + moment
+        size[hub] = size.get(hub, 0.0) + np.hypot(across, along)
+    rows: Any = slice(None)
+    if count == 1:
+        ends = [end(m[:, 0]) for m in found.values() for end in (np.argmin, np.argmax)]
+        rows = sorted(set(map(int, ends)))
+    # Weights of planets that are evenly spaced leave round-off.
+    return {n: np.where(np.abs(m) > NOISE * size[n], m, 0.0)[rows] for n, m in found.items()}
+
+
+def _turned(
+    case: spec.Case, gears: Mapping[str, Gear], period: Period | None
+) -> NDArray[np.float64]:
+    """Angles [rad] by which the input has turned at all positions."""
+    operating, march = case.operating, case.march
+    if march is not None:
+        whole = 2.0 * math.pi * march.revolutions / abs(gears[march.gear].ratio)
+        return whole * np.arange(march.steps) / march.steps
+    if period is not None:
+        steps = period.steps(operating.positions)
+        return 2.0 * math.pi * float(period.revolutions) * np.arange(steps) / steps
+    toothed = (g for g in gears.values() if g.teeth is not None and g.relative)
+    gear = next(toothed, None) if operating.rotation == "teeth" else None
+    if gear is None or gear.teeth is None:
+        return np.zeros(operating.positions)
+    whole = 2.0 * math.pi / (gear.teeth * abs(gear.relative))
+    return whole * np.arange(operating.positions) / operating.positions

@@ -163,7 +163,7 @@ def _pressed_alike(
     loads = {path: si for path, si in values.items() if path[0] == "operating"}
     alike = np.ones(count, dtype=bool)
     if loads and count > 1:
-        found = pressed_flanks(_with(case, loads), geometry.gears)
+        found = pressed_flanks(_with(case, loads), geometry.gears, geometry.period)
         for name, pair in geometry.pairs.items():
             alike &= found[name].turned == pair.turned
             alike &= found[name].unsure == pair.unsure

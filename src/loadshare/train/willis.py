@@ -126,24 +126,37 @@ class Links:
         dict of str to (ndarray, ndarray)
             1 for drive, −1 for coast, 0 for neither; and whether it may be the other one.
         """
-        order = {name: k for k, name in enumerate(self.gears)}
-        turning = [order[name] for name in free]
+        turning, balance, response = self._statics(free)
         every = np.broadcast_arrays(*(torques.get(name, 0.0) for name in self.gears))
         load = np.stack(every)[turning]
-        balance = self.matrix[:, turning].T
-        response: Array = np.linalg.pinv(balance, rcond=NOISE).astype(float, copy=False)
         force = response @ load.reshape(len(turning), -1)
         either = self._either(balance, response, load)
         force[np.abs(force) <= NOISE * np.abs(force).max(axis=0, initial=0.0)] = 0.0
         signs = np.sign(force).astype(np.intp).reshape(-1, *load.shape[1:])
         return dict(zip(self.names, zip(signs, either, strict=True), strict=True))
 
+    def open_to_stiffness(self, free: Iterable[str]) -> dict[str, bool]:
+        """Tell the force of which links statics leaves open, whatever the torques are.
+
+        Parameters
+        ----------
+        free : iterable of str
+            As in `pressed`.
+        """
+        _, balance, response = self._statics(free)
+        return dict(zip(self.names, _idle(balance, response).tolist(), strict=True))
+
+    def _statics(self, free: Iterable[str]) -> tuple[list[int], Array, Array]:
+        """Gears that turn, their balance of torques, and the least forces that serve them."""
+        order = {name: k for k, name in enumerate(self.gears)}
+        turning = [order[name] for name in free]
+        balance = self.matrix[:, turning].T
+        return turning, balance, np.linalg.pinv(balance, rcond=NOISE).astype(float, copy=False)
+
     def _either(self, balance: Array, response: Array, load: Array) -> NDArray[np.bool_]:
         """Whether links may pass on loads (gears, ...) either way, (links, ...)."""
         either = np.zeros((len(response), *load.shape[1:]), dtype=bool)
-        # Forces in balance without a load are what statics leaves open.
-        idle = np.abs(np.eye(len(response)) - response @ balance).max(axis=1, initial=0.0)
-        if not (idle > NOISE).any():
+        if not _idle(balance, response).any():
             return either
         # Loads are shared with the least energy, whatever the stiffness of each link.
         root = 10.0 ** np.random.default_rng(0).uniform(-SPREAD, SPREAD, (DRAWS, len(response)))
@@ -151,6 +164,12 @@ class Links:
         force = np.tensordot(drawn, load, 1)
         least = NOISE * np.abs(force).max(axis=1, keepdims=True)
         return np.asarray((force > least).any(axis=0) & (force < -least).any(axis=0))
+
+
+def _idle(balance: Array, response: Array) -> NDArray[np.bool_]:
+    """Whether forces in balance without a load may run through links: statics leaves those open."""
+    left = np.abs(np.eye(len(response)) - response @ balance)
+    return np.asarray(left.max(axis=1, initial=0.0) > NOISE)
 
 
 def seen_from(gears: Mapping[str, Gear], driver: str, driven: str) -> str | None:
