@@ -250,3 +250,23 @@ def test_a_mesh_that_a_force_opens_is_warned_of(force, wrong):
     assert (found.validity.verdict == "large") is wrong
     if not wrong:
         assert found.torque == pytest.approx(without.torque, rel=1e-9)
+
+
+def test_a_refusal_names_meshes_whose_other_flanks_would_hold():
+    """A sun of weight on planets that press it on one flank each, under next to no torque."""
+    case = one_set("0 N").replace(
+        {
+            "operating": {
+                "input": "s1",
+                "output": "c1",
+                "torque": "0.01 N*m",
+                "forces": {"s1": ["0 N", "-20 N"]},
+            },
+            "gears.s1.support": "free",
+        }
+    )
+    with pytest.raises(ls.Refused, match=r"give meshes .*s1-p1\d.* a backlash: their") as refusal:
+        ls.solve(case)
+    assert "nothing limits the float of gear s1" in str(refusal.value)
+    backlash = {f'meshes."s1-p1{k}".backlash': "50 um" for k in (1, 2, 3)}
+    assert ls.solve(case.replace(backlash)).passed

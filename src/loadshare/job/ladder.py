@@ -14,6 +14,8 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
 
+import numpy as np
+
 from loadshare.certify import Certificate, certify
 from loadshare.certify.validity import LABELS, Validity, refusal_text
 from loadshare.contact.findings import Work
@@ -32,6 +34,7 @@ from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.balancing import balancing
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.position import Known
+from loadshare.train.mesh import approach_of
 from loadshare.train.placed import standing
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
@@ -182,10 +185,35 @@ def _refuse_if_driven(scene: Scene) -> None:
             named = f"{', '.join(turning[:_NAMED])}{', …' if len(turning) > _NAMED else ''}"
             hint = _balancing_torque(scene, moves) or "hold one (held = true) or give it a torque"
             also = f"; gears {named} turn together: {hint}"
+        closing = _other_flanks(scene, moves)
+        if closing:
+            named = f"{', '.join(closing[:_NAMED])}{', …' if len(closing) > _NAMED else ''}"
+            one = f"mesh {named} a backlash: its other flank"
+            more = f"meshes {named} a backlash: their other flanks"
+            also += f"; give {more if closing[1:] else one} could stop it"
         raise Refused(
             f"position {scene.position}: nothing balances the load on {first}: no contact, "
             f"support or limit holds it{also}"
         )
+
+
+def _other_flanks(scene: Scene, moves: Mapping[str, float]) -> list[str]:
+    """Return the meshes whose other flank a move closes, where they have one flank only."""
+    train = standing(scene.train, scene.position)
+    move = np.array([moves.get(name, 0.0) for name in scene.coordinates])
+    found = []
+    for name, mesh in train.meshes.items():
+        if len(mesh.flanks) > 1:
+            continue
+        approach = approach_of(mesh, False, train.gears)
+        parts = [float(push @ scene.moved(g, move)) for g, push in approach.shifting.items()]
+        for gear, lever in approach.turning.items():
+            turning = scene.rotation[gear]
+            if turning.index is not None:
+                parts.append(lever * turning.rate * float(move[turning.index]))
+        if math.fsum(parts) > PLACES.named * max(map(abs, parts), default=0.0):
+            found.append(name)
+    return found
 
 
 def _balancing_torque(scene: Scene, moves: Mapping[str, float]) -> str:
