@@ -169,11 +169,30 @@ def chromium(profile: Path, offline: bool = True) -> Iterator[Any]:
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     found = webdriver.Chrome(options=options, service=Service(driver))
+    yield as_new(found, offline)
+    found.quit()
+
+
+def as_new(browser: Any, offline: bool = True) -> Any:
+    """A browser that has forgotten the screens, downloads and complaints of those before."""
+    browser.get("about:blank")
+    browser.get_log("browser")
+    browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "default"})
     if offline:
         # Pages must do without a network; the browser has none either.
-        found.set_network_conditions(offline=True, latency=0, throughput=0)
-    yield found
-    found.quit()
+        browser.set_network_conditions(offline=True, latency=0, throughput=0)
+    else:
+        browser.delete_network_conditions()
+    return browser
+
+
+def waiting(browser: Any, seconds: float) -> Any:
+    """What waits for a page so long at most, and looks often enough to lose no time itself."""
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    return WebDriverWait(browser, seconds, 0.02)
 
 
 def on_screen(browser: Any, width: int, height: int = 900, dark: bool = False) -> None:

@@ -5,9 +5,11 @@ import random
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
+from tests.chromium import chromium
 from tests.reproducible import SAME
 
 from loadshare.job import engines, hot
@@ -65,6 +67,13 @@ def _shuffle(config: pytest.Config, items: list[pytest.Item]) -> None:
     for file in files:
         order.shuffle(file)
     items[:] = [item for file in files for item in file]
+
+
+@pytest.fixture(scope="session")
+def chrome(tmp_path_factory) -> Iterator[Any]:
+    """The one browser of a worker; who uses it makes it as new first."""
+    with chromium(tmp_path_factory.mktemp("profile")) as found:
+        yield found
 
 
 @pytest.fixture(autouse=True)

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 from selenium.webdriver.common.by import By
-from selenium.webdriver.support.ui import WebDriverWait
-from tests.chromium import CONTRAST, NAMES, chromium, on_screen, too_wide
+from tests.chromium import CONTRAST, NAMES, as_new, on_screen, too_wide, waiting
 from tests.support import mostly_slow
 
 ROOT = Path(__file__).parents[2]
@@ -39,9 +38,8 @@ def site(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    with chromium(tmp_path_factory.mktemp("profile")) as found:
-        yield found
+def browser(chrome):
+    return as_new(chrome, offline=True)
 
 
 @pytest.mark.parametrize(
@@ -55,7 +53,7 @@ def test_the_search_works_from_a_folder(browser, site, page):
     field = browser.find_element(By.CSS_SELECTOR, "input.md-search__input")
     field.click()
     field.send_keys("backlash")
-    found = WebDriverWait(browser, 30).until(
+    found = waiting(browser, 30).until(
         lambda b: b.find_elements(By.CSS_SELECTOR, ".md-search-result__link")
     )
     browser.get(found[0].get_attribute("href"))

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 import uvicorn
-from tests.chromium import chromium
+from tests.chromium import as_new
 from tests.support import CASES
 
 from loadshare.case import load_case
@@ -54,8 +54,7 @@ def served():
     return serving
 
 
-@pytest.fixture(scope="session")
-def browser(tmp_path_factory) -> Iterator[Any]:
+@pytest.fixture(scope="module")
+def browser(chrome) -> Any:
     """A headless Chromium that reaches this machine; there is no other network here."""
-    with chromium(tmp_path_factory.mktemp("profile"), offline=False) as found:
-        yield found
+    return as_new(chrome, offline=False)

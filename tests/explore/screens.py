@@ -10,8 +10,7 @@ import tempfile
 from pathlib import Path
 
 from selenium.webdriver.common.by import By
-from selenium.webdriver.support.ui import WebDriverWait
-from tests.chromium import chromium, on_screen
+from tests.chromium import chromium, on_screen, waiting
 from tests.explore.conftest import SEED, serving
 from tests.explore.walks import opened, settled
 from tests.support import CASES
@@ -56,7 +55,7 @@ def _along(browser) -> None:
         button.click()
     _waits(browser, "#trace svg")
     status = "return document.querySelector('.control[data-name] [role=status]').textContent"
-    WebDriverWait(browser, 300).until(lambda b: "on the slider" in b.execute_script(status))
+    waiting(browser, 300).until(lambda b: "on the slider" in b.execute_script(status))
 
 
 def _studied(browser) -> None:
@@ -67,7 +66,7 @@ def _studied(browser) -> None:
         browser.find_element(By.ID, field).send_keys(str(text))
     browser.find_element(By.ID, "tolerance").click()
     _waits(browser, "#mattering table")
-    WebDriverWait(browser, 900).until(lambda b: not b.find_element(By.ID, "stop").is_enabled())
+    waiting(browser, 900).until(lambda b: not b.find_element(By.ID, "stop").is_enabled())
 
 
 def _rested(browser) -> None:
@@ -76,7 +75,7 @@ def _rested(browser) -> None:
 
 
 def _waits(browser, selector) -> None:
-    WebDriverWait(browser, 300).until(lambda b: b.find_elements(By.CSS_SELECTOR, selector))
+    waiting(browser, 300).until(lambda b: b.find_elements(By.CSS_SELECTOR, selector))
 
 
 if __name__ == "__main__":

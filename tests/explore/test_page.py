@@ -10,8 +10,7 @@ import pytest
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
-from selenium.webdriver.support.ui import WebDriverWait
-from tests.chromium import CONTRAST, NAMES, badly_set, on_screen, too_wide
+from tests.chromium import CONTRAST, NAMES, badly_set, on_screen, too_wide, waiting
 from tests.explore.conftest import SEED
 from tests.explore.test_server import partly_refused, tables_of
 from tests.explore.walks import contradicted, opened, settled, walked
@@ -56,7 +55,7 @@ def test_a_planetary_set_opens_with_what_may_vary(browser, served):
     """With the error of its pin, and with no number of teeth."""
     with served(shipped("planetary/four_planets")) as address:
         opened(browser, address, names=[])
-        WebDriverWait(browser, 10).until(lambda b: len(settled(b)["fields"]) == 6)
+        waiting(browser, 10).until(lambda b: len(settled(b)["fields"]) == 6)
         names = set(settled(browser)["fields"])
         browser.get("about:blank")
     supports = {f"gears.planet{k}.support" for k in (1, 2, 3, 4)}
@@ -164,11 +163,11 @@ def test_inputs_are_found_by_search(browser, seed):
     name = "return document.activeElement.closest('.control').dataset.name"
     assert browser.execute_script(name) == 'shafts."2-4".stiffness'
     field.send_keys("rings.4.float=rings.5.clearance", Keys.ENTER)
-    WebDriverWait(browser, 10).until(
+    waiting(browser, 10).until(
         lambda b: len(b.find_elements(By.CSS_SELECTOR, ".control[data-name]")) == 3
     )
     field.send_keys("rings.*.flaot*", Keys.ENTER)
-    note = WebDriverWait(browser, 10).until(lambda b: b.find_element(By.ID, "done").text)
+    note = waiting(browser, 10).until(lambda b: b.find_element(By.ID, "done").text)
     assert "matches no key" in note
 
 
@@ -245,7 +244,7 @@ def test_a_link_opens_the_view_again(browser, seed, inputs):
     view = {"changes": {"rings.4.float": "2 um"}, "names": ["rings.4.float"], "position": 2}
     number = after["number"]
     browser.execute_script("location.hash = arguments[0]", quote(json.dumps(view)))
-    WebDriverWait(browser, 10).until(lambda b: settled(b)["number"] != number)
+    waiting(browser, 10).until(lambda b: settled(b)["number"] != number)
     assert settled(browser)["fields"] == {"rings.4.float": "2 um"}
     assert _position(browser) == ("2", "2 of 5")
 
@@ -266,7 +265,7 @@ def test_all_positions_replace_the_figures_of_one(browser, served):
         assert "Ω at position 1: I = " in browser.find_element(By.ID, "summary").text
         assert "1 of 15 positions" in browser.find_element(By.ID, "note").text
         browser.find_element(By.ID, "pin").click()
-        WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        waiting(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
         says = settled(browser)
         compared, note, summary, bars = (
             browser.find_element(By.CSS_SELECTOR, place).text
@@ -302,8 +301,8 @@ def test_what_is_saved(browser, seed, tmp_path):
     for button, name in names.items():
         browser.find_element(By.ID, button).click()
         file = tmp_path / name
-        WebDriverWait(browser, 20).until(lambda _, file=file: file.exists())
-        WebDriverWait(browser, 20).until(lambda _, file=file: file.stat().st_size > 0)
+        waiting(browser, 20).until(lambda _, file=file: file.exists())
+        waiting(browser, 20).until(lambda _, file=file: file.stat().st_size > 0)
     written = tomllib.loads((tmp_path / names["toml"]).read_text())
     assert written == {"extends": "limit_ring.toml", "rings": {"5": {"float": "3.21 um"}}}
     assert (tmp_path / names["png"]).read_bytes().startswith(b"\x89PNG\r\n")
@@ -322,7 +321,7 @@ def test_hostile_texts_do_nothing(browser, served):
         field.send_keys("stiffness")
         assert browser.find_elements(By.CSS_SELECTOR, "#found button")
         field.send_keys("<img src=x onerror=window.pwned=1>*", Keys.ENTER)
-        WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        waiting(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
         assert browser.execute_script("return window.pwned") is None
         assert browser.find_elements(By.CSS_SELECTOR, "main img, main script, main b, main i") == []
         assert browser.get_log("browser") == []
@@ -339,7 +338,7 @@ def test_nothing_is_compiled_and_no_other_script_runs(browser, seed):
           catch (error) { window.compiling = "refused"; }
         }, 0);"""
     )
-    found = WebDriverWait(browser, 10).until(lambda b: b.execute_script("return window.compiling"))
+    found = waiting(browser, 10).until(lambda b: b.execute_script("return window.compiling"))
     assert found == "refused"
     assert browser.execute_script("return window.pwned") is None
     browser.get_log("browser")
@@ -358,7 +357,7 @@ def test_the_page_fits_every_screen(browser, served, name, width):
     with served(shipped(name)) as address:
         browser.get(address)
         settled(browser)
-        WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        waiting(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
         browser.find_element(By.ID, "pin").click()
         assert too_wide(browser, width) <= 0
         pictures = browser.find_elements(By.CSS_SELECTOR, PICTURES)

@@ -13,8 +13,7 @@ from urllib.parse import urlsplit
 import pytest
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
-from selenium.webdriver.support.ui import WebDriverWait
-from tests.chromium import badly_set
+from tests.chromium import badly_set, waiting
 from tests.explore.asking import ask
 from tests.explore.conftest import SEED
 from tests.explore.walks import opened, settled
@@ -275,12 +274,10 @@ def test_ticks_trace_and_a_study_on_the_page(browser, seed):
         end.send_keys(value, Keys.ENTER)
     buttons = browser.find_elements(By.CSS_SELECTOR, ".control[data-name] .row button")
     buttons[0].click()
-    ticks = WebDriverWait(browser, 120).until(
-        lambda b: b.find_elements(By.CSS_SELECTOR, ".ticks button")
-    )
+    ticks = waiting(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, ".ticks button"))
     assert any("gear 5 leaves its ring" in one.get_attribute("aria-label") for one in ticks)
     buttons[1].click()
-    WebDriverWait(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trace svg"))
+    waiting(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trace svg"))
     ticks[0].send_keys(Keys.ENTER)
     says = settled(browser)
     assert says["fields"]["rings.*.float"].startswith("2.976")
@@ -299,7 +296,7 @@ def begin(browser, samples):
     shown(browser, "samples").clear()
     shown(browser, "samples").send_keys(str(samples))
     shown(browser, "tolerance").click()
-    WebDriverWait(browser, 120).until(
+    waiting(browser, 120).until(
         lambda b: (
             b.find_elements(By.CSS_SELECTOR, "#histogram svg")
             and b.find_elements(By.CSS_SELECTOR, "#statistics table")
@@ -315,7 +312,7 @@ def test_a_tolerance_study_grows_is_stopped_and_says_of_what_it_is(browser, seed
     assert "[study.explorer]" in shown(browser, "scatter-toml").get_attribute("textContent")
     assert badly_set(browser, "#histogram svg") == []
     before = shown(browser, "sampled").text
-    WebDriverWait(browser, 120).until(lambda b: shown(b, "sampled").text != before)
+    waiting(browser, 120).until(lambda b: shown(b, "sampled").text != before)
     shown(browser, "stop").click()
     label = shown(browser, "sampled").text
     assert label.startswith("stopped: ")
@@ -346,7 +343,7 @@ def test_a_tolerance_study_comes_to_its_end(browser, served):
         fields = [shown(browser, name).get_attribute("value") for name in ("samples", "seed")]
         assert fields == ["4096", "1"]
         begin(browser, 32)
-        WebDriverWait(browser, 120).until(lambda b: not shown(b, "stop").is_enabled())
+        waiting(browser, 120).until(lambda b: not shown(b, "stop").is_enabled())
         assert shown(browser, "sampled").text == "32 of 32 samples"
         rows = browser.execute_script(
             """return [...document.querySelectorAll("#statistics tbody tr")].map((row) =>
@@ -360,7 +357,7 @@ def test_a_tolerance_study_comes_to_its_end(browser, served):
 def test_what_matters_on_the_page(browser, seed):
     opened(browser, seed, names=["rings.5.float", "operating.power"])
     shown(browser, "slopes").click()
-    WebDriverWait(browser, 120).until(
+    waiting(browser, 120).until(
         lambda b: (
             b.find_elements(By.CSS_SELECTOR, "#mattering tr") and not shown(b, "slopes-status").text
         )

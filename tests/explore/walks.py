@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from urllib.parse import quote
 
-from selenium.webdriver.support.ui import WebDriverWait
+from tests.chromium import waiting
 
 from loadshare.errors import CaseError, Refused
 
@@ -85,15 +85,13 @@ def opened(browser, address, names=NAMES, changes=None, timeout=60):
     browser.get(f"{address}#{quote(json.dumps(view))}")
     settled(browser, timeout)
     controls = "return document.querySelectorAll('.control[data-name]').length"
-    WebDriverWait(browser, timeout, 0.02).until(
-        lambda b: not names or b.execute_script(controls) == len(names)
-    )
+    waiting(browser, timeout).until(lambda b: not names or b.execute_script(controls) == len(names))
     return browser
 
 
 def settled(browser, timeout=60):
     """What the page says when it is done."""
-    WebDriverWait(browser, timeout, 0.02).until(lambda b: b.execute_script(STATE) in SETTLED)
+    waiting(browser, timeout).until(lambda b: b.execute_script(STATE) in SETTLED)
     return browser.execute_script(f"{SAYS} return says();")
 
 

@@ -5,7 +5,7 @@ from functools import cache
 from typing import Any
 
 import pytest
-from tests.chromium import chromium
+from tests.chromium import as_new
 from tests.support import CASES, round_ring, shipped
 
 import loadshare as ls
@@ -14,10 +14,9 @@ from loadshare.report.page import Chapter, chapter_of_file
 
 
 @pytest.fixture(scope="module")
-def browser(tmp_path_factory) -> Iterator[Any]:
+def browser(chrome) -> Any:
     """A headless Chromium without a network."""
-    with chromium(tmp_path_factory.mktemp("profile")) as found:
-        yield found
+    return as_new(chrome, offline=True)
 
 
 @pytest.fixture(scope="session")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from tests.chromium import waiting
 from tests.report.pages import EVIL_CASE
 
 from loadshare.report.page import chapter_of_file, save_report
@@ -36,12 +37,10 @@ def page(tmp_path_factory, ring_chapter):
 @pytest.fixture
 def opened(browser, page):
     """The page as it opens, with all figures drawn."""
-    from selenium.webdriver.support.ui import WebDriverWait
-
     browser.get(page.as_uri())
     figures = browser.execute_script(PLACES)
     assert figures >= 8
-    WebDriverWait(browser, 60).until(lambda b: b.execute_script(DRAWN) == figures)
+    waiting(browser, 60).until(lambda b: b.execute_script(DRAWN) == figures)
     return browser
 
 
@@ -58,7 +57,6 @@ def test_hostile_texts_do_nothing(opened):
 
 def test_hovering_over_a_float_tells_its_figures(opened):
     from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.support.ui import WebDriverWait
 
     point = opened.execute_script(
         """const figure = document.querySelector('[data-name="floats"]');
@@ -67,7 +65,7 @@ def test_hovering_over_a_float_tells_its_figures(opened):
         return marks[7];"""
     )
     ActionChains(opened).move_to_element(point).perform()
-    tip = WebDriverWait(opened, 10).until(
+    tip = waiting(opened, 10).until(
         lambda b: b.execute_script(
             "const t = document.querySelector('#vg-tooltip-element.visible');"
             "return t && t.innerText;"
@@ -118,11 +116,9 @@ def test_the_page_prints(opened):
 
 
 def test_a_single_figure_opens_as_well(browser, picture, tmp_path):
-    from selenium.webdriver.support.ui import WebDriverWait
-
     file = picture("all_elements", "share").save(tmp_path / "share.html")
     browser.get(file.as_uri())
-    WebDriverWait(browser, 60).until(lambda b: b.execute_script(DRAWN) == 1)
+    waiting(browser, 60).until(lambda b: b.execute_script(DRAWN) == 1)
     assert browser.get_log("browser") == []
 
 
@@ -140,13 +136,9 @@ setTimeout(() => {
 
 def test_no_script_runs_but_those_of_the_page(browser, page):
     """Its policy names them by their hashes, and lets nothing be compiled. Leaves complaints."""
-    from selenium.webdriver.support.ui import WebDriverWait
-
     browser.get(page.as_uri())
     browser.execute_script(INTRUDER)
-    compiling = WebDriverWait(browser, 60).until(
-        lambda b: b.execute_script("return window.compiling")
-    )
+    compiling = waiting(browser, 60).until(lambda b: b.execute_script("return window.compiling"))
     assert compiling == "refused"
     assert browser.execute_script("return window.pwned") is None
     complaints = [entry["message"] for entry in browser.get_log("browser")]

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 import pytest
 from selenium.webdriver.common.by import By
-from selenium.webdriver.support.ui import WebDriverWait
-from tests.chromium import CONTRAST, NAMES, badly_set, badly_set_file, on_screen, too_wide
+from tests.chromium import (
+    CONTRAST,
+    NAMES,
+    badly_set,
+    badly_set_file,
+    on_screen,
+    too_wide,
+    waiting,
+)
 from tests.support import CASES, mostly_slow
 
 from loadshare.report.figures.train import train
@@ -31,7 +38,7 @@ def pages(tmp_path_factory, ring_chapter):
 def opened(browser, page, width, dark=False):
     on_screen(browser, width, dark=dark)
     browser.get(page.as_uri())
-    WebDriverWait(browser, 60).until(lambda b: b.execute_script(DRAWN))
+    waiting(browser, 60).until(lambda b: b.execute_script(DRAWN))
 
 
 SCREENS = [(name, width) for name in ("one.html", "two.html") for width in (390, 1280, 1920)]
