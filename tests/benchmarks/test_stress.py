@@ -28,7 +28,7 @@ def test_there_are_enough_problems():
 
 
 @pytest.mark.parametrize("family", FAMILIES.values(), ids=lambda f: f.name)
-@pytest.mark.quick(5)
+@pytest.mark.quick(3)
 def test_a_slice_of_the_map(family):
     for number in SLICE:
         verdict = judge(family.problem(number), ours)

@@ -43,7 +43,7 @@ def places(data, above=()):
             yield from places(value, (*above, step))
 
 
-@settings(max_examples=100, suppress_health_check=list(HealthCheck))
+@settings(max_examples=50, suppress_health_check=list(HealthCheck))
 @given(st.data())
 def test_no_damage_ends_in_anything_but_problems(cases, data):
     everything = load_case(cases / "fgfbstts" / "all_elements.toml").to_dict()

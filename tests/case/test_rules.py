@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from tests.support import CASES
+from tests.support import CASES, mostly_slow
 
 from loadshare.case import Case, load_case
 from loadshare.case.checks import CHECKS
@@ -44,7 +44,9 @@ SEVERAL = [
 ]
 
 
-@pytest.mark.parametrize("file", SEVERAL)
+@pytest.mark.parametrize(
+    "file", mostly_slow(SEVERAL, {*SEVERAL} - {"fgfbstts/spline_clearance.toml"})
+)
 def test_a_changed_value_is_judged_as_in_a_case_that_is_new(file):
     """Rules that a value does not concern are left out where one case is made from another."""
     case = load_case(CASES / file)

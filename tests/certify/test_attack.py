@@ -62,12 +62,12 @@ def test_the_right_answers_pass(some):
 
 @pytest.fixture(scope="module")
 def found():
-    return list(attacks(SEED, 150, each=8))
+    return list(attacks(SEED, 76, each=4))
 
 
 def test_every_way_is_tried_and_most_are_wrong(found):
     assert {a.way for a in found} == set(WAYS)
-    assert sum(a.error > ALLOWED for a in found) > 50
+    assert sum(a.error > ALLOWED for a in found) > 25
     assert len({a.train for a in found}) == 19
 
 
@@ -108,7 +108,7 @@ def test_a_contact_that_is_left_out_is_no_rounding(seed, number):
 
 
 def test_attacks_depend_on_their_seed_alone(found):
-    again = list(attacks(SEED, 8, each=8))
+    again = list(attacks(SEED, 8, each=4))
     assert [(a.train, a.way, a.passed) for a in again] == [
         (a.train, a.way, a.passed) for a in found[:8]
     ]

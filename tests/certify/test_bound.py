@@ -111,7 +111,7 @@ def test_bound_holds_against_fifty_digits(family: str, number: int) -> None:
         ("soft-supports", 188),
     ],
 )
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_bounds_hold_of_what_all_but_idles(family: str, number: int) -> None:
     (found,) = judged(FAMILIES[family].problem(number).case)["positions"]
     assert found["outcome"] == "agrees"

@@ -211,7 +211,7 @@ def test_right_answers(name):
 
 
 @pytest.mark.parametrize("name", mostly_slow(WAYS, QUICK))
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 def test_wrong_answers(name):
     """Thirty answers, each damaged in one to three places; most are refused, all alike."""
     train = build_train(WAYS[name]())

@@ -62,7 +62,7 @@ def covered(claimed: ls.Case, *others: ls.Case) -> None:
 
 @pytest.mark.parametrize("torque", [1e-3, 10.0, 15.0])
 @pytest.mark.parametrize("stiffness", ["2e6 N/m", "2e7 N/m", "1e9 N/m"])
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 def test_both_ends_of_a_slip_lie_within_the_bound(torque, stiffness):
     given = {"torque": torque, "bending_stiffness": stiffness, "clearance": "1 mm", "gap": 200.0}
     found = ls.solve(used_up(**given)).positions[0]

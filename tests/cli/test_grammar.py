@@ -80,7 +80,7 @@ RESULTS = {
 
 
 @pytest.mark.parametrize("name", mostly_slow(RESULTS, RESULTS.keys() - {"tolerance"}))
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 def test_every_result_is_written_in_every_form(command, tmp_path, name):
     words, forms = RESULTS[name]
     files = [tmp_path / f"found.{form}" for form in forms]

@@ -12,13 +12,17 @@ HEAVY = (
 )
 
 
-def imported(words, environment):
-    """Return which heavy packages a command has imported by its end."""
+def imported(words, environment, *others):
+    """Return which heavy packages a command, and others after it, have imported by their end."""
     script = f"""
 import sys
 from loadshare.cli.main import main
 try:
-    main({[str(word) for word in words]!r})
+    for words in {[[str(word) for word in one] for one in (words, *others)]!r}:
+        try:
+            main(words)
+        except SystemExit as end:
+            assert not end.code
 finally:
     print("IMPORTED", *[name for name in {HEAVY!r} if name in sys.modules])
 """
@@ -40,19 +44,14 @@ finally:
         *(["draw", "-h"], ["report", "-h"], ["sweep", "-h"], ["tolerance", "-h"], ["schema"]),
     ],
 )
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 def test_the_help_imports_nothing_heavy(environment, words):
     assert imported(words, environment) == set()
 
 
-def test_a_run_imports_only_what_it_uses(environment, cases):
-    found = imported(["run", cases / "fgfbstts/limit_ring.toml"], environment)
-    assert found == {"numpy"}
-
-
-def test_a_check_solves_and_draws_nothing(environment, cases):
-    found = imported(["check", cases / "fgfbstts/limit_ring.toml"], environment)
-    assert found == {"numpy"}
+def test_a_check_and_a_run_import_only_what_they_use(environment, cases):
+    case = cases / "fgfbstts/limit_ring.toml"
+    assert imported(["check", case], environment, ["run", case]) == {"numpy"}
 
 
 @pytest.mark.slow
@@ -103,7 +102,7 @@ CLOSED = {
 @pytest.mark.skipif(sys.platform == "win32", reason="streams that are closed by a shell")
 @pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)], ids=str)
 @pytest.mark.parametrize(("words", "code"), CLOSED.items(), ids=str)
-@pytest.mark.quick(6)
+@pytest.mark.quick(4)
 def test_streams_may_be_closed(environment, tmp_path, words, code, closed):
     """As by `2>&-`, by cron and by some services."""
     given = [str(word).replace("{}", str(tmp_path)) for word in words]

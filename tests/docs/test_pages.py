@@ -26,7 +26,7 @@ blocks = _load("blocks")
     "page",
     [
         "docs/index.md",
-        "docs/tutorial.md",
+        pytest.param("docs/tutorial.md", marks=pytest.mark.slow),
         pytest.param("docs/gearbox.md", marks=pytest.mark.slow),
         pytest.param("docs/spreadsheets.md", marks=pytest.mark.slow),
         pytest.param("docs/pictures.md", marks=pytest.mark.slow),

@@ -47,7 +47,18 @@ def misfits(rule, text: str) -> list[str]:
     return wrong
 
 
-@pytest.mark.parametrize("rule", figures.RULES, ids=lambda rule: f"{rule.page}: {rule.text}"[:60])
+SLOW = ("| CVXPY |", "| Picard |")
+"""Rows of solvers that take seconds; all solvers are compared in `tests/solver`."""
+
+
+@pytest.mark.parametrize(
+    "rule",
+    [
+        pytest.param(rule, marks=[pytest.mark.slow] if rule.text.startswith(SLOW) else [])
+        for rule in figures.RULES
+    ],
+    ids=lambda rule: f"{rule.page}: {rule.text}"[:60],
+)
 def test_a_number_in_prose_is_what_is_computed(rule):
     assert misfits(rule, read(rule.page)) == []
 

@@ -166,7 +166,7 @@ def test_a_study_of_the_case_is_the_one_that_its_file_describes(served):
         first, *parts = study(address, "tolerance", {"study": "pins", "samples": 32, "seed": 1})
     assert set(offered) == {"pins", "teeth"}
     assert first["begun"]["limit"] == 1.1
-    found = ls.tolerance(case, study="pins", samples=32, indices=0, worst=False)
+    found = ls.tolerance(case, study="pins", samples=8, indices=0, worst=False)
     assert parts[-1]["table"]["rows"] == figures(found, 1.1)
     assert first["begun"]["inputs"] == [[i.name, str(i.distribution)] for i in found.inputs.every]
 
@@ -342,9 +342,9 @@ def test_a_tolerance_study_comes_to_its_end(browser, served):
         opened(browser, address, names=[])
         fields = [shown(browser, name).get_attribute("value") for name in ("samples", "seed")]
         assert fields == ["4096", "1"]
-        begin(browser, 32)
+        begin(browser, 8)
         waiting(browser, 120).until(lambda b: not shown(b, "stop").is_enabled())
-        assert shown(browser, "sampled").text == "32 of 32 samples"
+        assert shown(browser, "sampled").text == "8 of 8 samples"
         rows = browser.execute_script(
             """return [...document.querySelectorAll("#statistics tbody tr")].map((row) =>
             [...row.cells].map((cell) => cell.textContent));"""

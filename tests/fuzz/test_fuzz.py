@@ -20,7 +20,7 @@ def compiled():
 
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("part", range(8))
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 def test_no_input_ends_in_anything_but_words(tmp_path, part, monkeypatch):
     """No traceback, no warning, no hang, no figure that is no number, no result that fails."""
     # As for anybody else, who may not read files outside of the case's folder.

@@ -344,7 +344,7 @@ def test_the_number_of_workers_does_not_matter(monkeypatch):
 
 @pytest.mark.parametrize("block", [3, 23])
 @pytest.mark.parametrize("name", ["drums", "every element"])
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_the_size_of_blocks_does_not_matter(name, block, monkeypatch):
     case, samples = varied(name, 24, seed=2)
     whole = ls.solve_many(case, samples, positions=[1], keep=KEPT)

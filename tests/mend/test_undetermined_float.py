@@ -104,6 +104,7 @@ def test_a_branch_without_contact_turns_from_flank_to_flank(name):
 
 
 @pytest.mark.parametrize("name", FILES)
+@pytest.mark.quick(1)
 def test_it_is_reported_in_every_form(name, tmp_path):
     result = ls.solve(case_of(name))
     expected = [-PLAY, PLAY]

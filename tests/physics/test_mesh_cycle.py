@@ -181,7 +181,7 @@ def carried(case: ls.Case) -> np.ndarray:
 @pytest.mark.parametrize("sampling", SAMPLED)
 @pytest.mark.parametrize("phases", PLACES)
 @pytest.mark.parametrize("engine", ["vectorised", "compiled"])
-@pytest.mark.quick(5)
+@pytest.mark.quick(3)
 def test_batches_and_marches_over_both_senses_of_torque_are_their_single_solves(
     sampling, phases, engine
 ):

@@ -182,25 +182,27 @@ def test_a_sun_of_two_sets_is_seen_from_the_housing() -> None:
         assert position.torque == pytest.approx(again.torque, rel=1e-9)
 
 
+TORQUES = np.array([500.0, 1000.0, 2000.0])
+OFFSETS = np.array([4.0, 0.0, -4.0])
+
+
+@pytest.fixture(scope="module")
+def alone() -> list[ls.Result]:
+    """One solve of a marched set for each torque and offset of its carrier."""
+    case, load, place = marched(mounted()), "operating.torque", "bearings.carrier.offset[0]"
+    values = zip(TORQUES, OFFSETS, strict=True)
+    return [ls.solve(case.replace({load: f"{t} N*m", place: f"{x} um"})) for t, x in values]
+
+
 @pytest.mark.parametrize("engine", ["compiled", "vectorised"])
-def test_batches_have_it(engine: str) -> None:
+def test_batches_have_it(alone: list[ls.Result], engine: str) -> None:
     case = marched(mounted())
-    torque = np.array([500.0, 1000.0, 2000.0])
-    offset = np.array([4.0, 0.0, -4.0])
-    samples = {"operating.torque [N*m]": torque, "bearings.carrier.offset[0] [um]": offset}
+    samples = {"operating.torque [N*m]": TORQUES, "bearings.carrier.offset[0] [um]": OFFSETS}
     keep = "torque", "displacement"
     batch = ls.solve_many(case, samples, keep=keep, engine=engine, least_norm=True)
     assert batch.certified.all()
-    for k in range(3):
-        alone = ls.solve(
-            case.replace(
-                {
-                    "operating.torque": f"{torque[k]} N*m",
-                    "bearings.carrier.offset[0]": f"{offset[k]} um",
-                }
-            )
-        )
-        for p, position in enumerate(alone.positions):
+    for k, single in enumerate(alone):
+        for p, position in enumerate(single.positions):
             for mesh, value in position.torque.items():
                 got = float(batch.torque.sel(sample=k, mesh=mesh).values[p])
                 assert got == pytest.approx(value, rel=1e-8, abs=1e-6)

@@ -14,6 +14,7 @@ PROGRAM = Path(__file__).with_name("consumer.py")
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.slow
 def test_the_program_runs(tmp_path, capsys):
     spec = importlib.util.spec_from_file_location("consumer", PROGRAM)
     module = importlib.util.module_from_spec(spec)

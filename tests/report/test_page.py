@@ -207,7 +207,9 @@ def test_the_page_is_the_same_again(ring_page, ring_chapter):
 
 def test_the_scripts_are_kept_and_a_damaged_copy_is_made_anew(tmp_path, monkeypatch):
     monkeypatch.setenv("LOADSHARE_CACHE", str(tmp_path))
+    monkeypatch.setattr("vl_convert.javascript_bundle", lambda *_, **__: "made </script>")
     made = offline.scripts.__wrapped__()
+    assert made == "made <\\/script>"
     (kept,) = (tmp_path / "scripts").iterdir()
     monkeypatch.setattr("vl_convert.javascript_bundle", lambda *_, **__: "made anew </script>")
     assert offline.scripts.__wrapped__() == made

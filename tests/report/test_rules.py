@@ -40,7 +40,7 @@ def test_words_take_the_side_that_has_room(places, expected):
     assert sides(places) == expected
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(st.lists(st.floats(0.0, 400.0), min_size=1, max_size=8, unique=True).map(sorted))
 def test_no_words_lie_on_others_or_on_a_rule(places):
     found = sides(places)

@@ -64,9 +64,15 @@ def scatter(case):
 
 
 @pytest.fixture(scope="module")
-def one(case, scatter):
+def bare(case):
+    """Chapter without studies."""
+    return chapter(case)
+
+
+@pytest.fixture(scope="module")
+def one(case, bare, scatter):
     """Chapter with all studies of the case but the long one, which is handed in."""
-    made = replace(chapter(case), studies=[study_part("scatter", scatter, case)])
+    made = replace(bare, studies=[study_part("scatter", scatter, case)])
     parts = [run_part(case, name) for name in quick_studies(case)]
     return replace(made, studies=[*parts, *made.studies])
 
@@ -78,11 +84,11 @@ def page(one, tmp_path_factory):
     return file
 
 
-def test_every_kind_is_shown_but_a_long_one_only_on_request(case, one):
+def test_every_kind_is_shown_but_a_long_one_only_on_request(case, bare, one):
     assert quick_studies(case) == [n for n in HELD["study"] if n != "scatter"]
     assert [part.name for part in one.studies] == list(HELD["study"])
     assert one.left_out == {}
-    assert chapter(case).left_out == {name: b["kind"] for name, b in HELD["study"].items()}
+    assert bare.left_out == {name: b["kind"] for name, b in HELD["study"].items()}
     assert one.unanswered == []
     assert all(part.figures and part.facts for part in one.studies)
     assert [p.name for p in one.studies if not p.tables] == ["turning"]  # no spline slips
@@ -107,12 +113,12 @@ def test_studies_come_after_the_inputs(page):
 
 
 @pytest.mark.slow
-def test_a_study_without_an_answer_is_part_of_the_page(case):
+def test_a_study_without_an_answer_is_part_of_the_page(case, bare):
     lost = {"kind": "sweep", "over": {"rings.77.float": "0:1:2"}}
     broken = case.replace({"study": {"lost": lost}})
     part = run_part(broken, "lost")
     assert "rings.77" in part.problems[0]
-    one = replace(chapter(case), studies=[part])
+    one = replace(bare, studies=[part])
     assert one.unanswered[0].startswith("study lost: ")
     assert "rings.77" in Reader(report_page([one])).text
 

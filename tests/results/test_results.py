@@ -74,7 +74,7 @@ def test_labelled_arrays_hold_the_same_figures(result):
     assert all(v.attrs["units"] and v.attrs["long_name"] for v in data.data_vars.values())
 
 
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_labelled_arrays_do_not_change_the_result(result, tmp_path):
     arrays = result.dataset
     with pytest.raises(ValueError, match="read-only"):

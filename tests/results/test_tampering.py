@@ -139,12 +139,14 @@ def test_every_claim_is_looked_at(result):
     """The quick twin of the slow tests: claims and derived figures of the first position."""
     document = json.loads(result.to_json())
     for field in ("claim", "torque", "share", "floats", "displacement", "rotation"):
-        for path in leaves(document["positions"][0][field], ("positions", 0, field)):
-            value = at(document, path)
-            if isinstance(value, float) and value != 0.0:
-                assert harmless(changed(document, path, value * 1.5), result), path
-                assert loads(changed(document, path, math.nan)) is None
-                assert loads(without(document, path)) is None
+        paths = leaves(document["positions"][0][field], ("positions", 0, field))
+        figures = [p for p in paths if isinstance(at(document, p), float) and at(document, p)]
+        for path in figures:
+            assert harmless(changed(document, path, at(document, path) * 1.5), result), path
+        # Whatever the name of a gear or mesh is, it is read in the same way.
+        for path in figures[::4]:
+            assert loads(changed(document, path, math.nan)) is None
+            assert loads(without(document, path)) is None
 
 
 def test_what_a_result_holds_certifies_again(result):
@@ -282,7 +284,7 @@ def test_a_result_of_some_positions_is_whole_if_no_more_were_requested(small):
         lambda a: a.assign_attrs({DOCUMENT: 1.0}),
     ],
 )
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_arrays_that_do_not_agree_with_their_result_are_refused(small, tmp_path, change):
     file, changed_file = tmp_path / "good.nc", tmp_path / "changed.nc"
     small.to_netcdf(file)

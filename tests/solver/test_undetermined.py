@@ -178,7 +178,7 @@ def polygon(region: Region, sides: int = 720) -> tuple[np.ndarray, np.ndarray]:
     return np.vstack(rows), np.concatenate(bounds)
 
 
-@settings(TRAINS, max_examples=60)
+@settings(TRAINS, max_examples=25)
 @given(regions())
 def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
     region, _ = given_region
@@ -197,7 +197,7 @@ def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
         assert reached >= -outer.fun - 1e-2 * max(1.0, abs(outer.fun))
 
 
-@settings(TRAINS, max_examples=150)
+@settings(TRAINS, max_examples=60)
 @given(regions())
 def test_the_least_point_is_nearer_than_all_others(given_region):
     """Least in a convex region: (v − u)·u ≥ 0 for all of its v."""

@@ -58,7 +58,7 @@ def star(seed: int) -> ls.Case:
 
 
 @pytest.mark.parametrize("seed", range(40))
-@pytest.mark.quick(10)
+@pytest.mark.quick(5)
 def test_floats_that_nothing_places_do_not_keep_the_whole_programme_from_an_answer(seed):
     case = star(seed)
     usual, whole = (ls.solve(case, reduce=reduce).positions[0] for reduce in (True, False))

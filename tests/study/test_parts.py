@@ -132,7 +132,9 @@ def test_a_body_at_rest_elsewhere_is_followed_across_its_room(solves):
     assert solves == []
 
 
-@pytest.mark.parametrize("changed", [{}, idlers()], ids=["loop", "idlers"])
+@pytest.mark.parametrize(
+    "changed", [{}, pytest.param(idlers(), marks=pytest.mark.slow)], ids=["loop", "idlers"]
+)
 def test_events_at_which_a_body_loses_all_its_forces_are_proved(changed, solves):
     """The forces that hold a float vanish with the mesh; idlers that turn freely do not blur it."""
     search = searched(loop().replace(changed), "meshes.g1-h1.backlash", 0.0, 0.3, "mm")

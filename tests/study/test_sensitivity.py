@@ -187,7 +187,7 @@ def test_inputs_on_the_verge_are_differentiated_without_solves(monkeypatch):
 
 
 def test_drawn_and_critical_cases():
-    rows = [{"number": k, **one(7, k)} for k in range(2, 4)]
+    rows = [{"number": k, **one(7, k)} for k in range(2, 3)]
     found_outcomes = outcomes(rows)
     assert set(found_outcomes) <= set(FINE)
     assert found_outcomes.count("agrees") >= 4

@@ -177,7 +177,7 @@ def test_compiled_code_that_finds_no_room_is_used_all_the_same(disk, tmp_path):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
 @pytest.mark.parametrize("words", [("run", SUN), ("schema",), ("--help",), ("--version",)])
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_a_full_disk_behind_standard_output_is_reported(words):
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(

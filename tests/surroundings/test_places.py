@@ -80,21 +80,32 @@ for words in {[[str(w) for w in words] for words in commands]!r}:
 
 def test_an_output_folder_that_cannot_be_written_is_reported(read_only, tmp_path):  # noqa: F811
     home = read_only["HOME"]
-    for words, file in (
-        (("run", RING, "-o", f"{home}/a.json"), f"{home}/a.json"),
-        (("new", "own", "-o", f"{home}/own.toml"), f"{home}/own.toml"),
-        (("batch", CASES / "star", "-o", f"{home}/out"), f"{home}/out"),
-        ((*SWEEP, "-o", f"{home}/new/a.csv"), f"{home}/new/a.csv"),
-    ):
-        done = subprocess.run(
-            [*as_a_user(), sys.executable, "-B", "-m", "loadshare", *map(str, words)],
-            capture_output=True,
-            text=True,
-            check=False,
-            env=plain_environment(),
-        )
-        assert done.returncode == 2
-        assert done.stderr.splitlines()[-1] == f"{file}: cannot be written: Permission denied"
+    commands = {
+        f"{home}/a.json": ("run", RING, "-o", f"{home}/a.json"),
+        f"{home}/own.toml": ("new", "own", "-o", f"{home}/own.toml"),
+        f"{home}/out": ("batch", CASES / "star", "-o", f"{home}/out"),
+        f"{home}/new/a.csv": (*SWEEP, "-o", f"{home}/new/a.csv"),
+    }
+    script = f"""
+import sys
+from loadshare.cli.main import main
+for words in {[[str(w) for w in words] for words in commands.values()]!r}:
+    try:
+        main(words)
+    except SystemExit as end:
+        print("\\nended with", end.code, file=sys.stderr, flush=True)
+"""
+    done = subprocess.run(
+        [*as_a_user(), sys.executable, "-B", "-c", script],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=plain_environment(),
+    )
+    said = done.stderr.split("\nended with 2\n")
+    assert [part.splitlines()[-1] for part in said[:-1]] == [
+        f"{file}: cannot be written: Permission denied" for file in commands
+    ]
 
 
 @pytest.fixture

@@ -136,7 +136,7 @@ def test_random_samples(name):
     "family", mostly_slow((stars, split_torques), (stars,)), ids=["star", "split torque"]
 )
 def test_random_trains(family):
-    @settings(TRAINS, max_examples=30)
+    @settings(TRAINS, max_examples=10)
     @given(family())
     def run(case: ls.Case) -> None:
         note(case.to_toml())

@@ -339,6 +339,7 @@ def test_a_folder_of_something_else_is_left_alone(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_is_replaced(reference, tmp_path, monkeypatch, processes):
     """The process of the first part is killed; the next one solves it."""
     solve, killed = local.solve_there, tmp_path / "killed"

@@ -109,16 +109,17 @@ def to_space(body, points, rotation):
 
 
 @pytest.mark.parametrize(
-    "mesh",
+    "made",
     [
-        pair(helix=0.3),
-        pair(z2=80, ring="driven", helix=-0.2),
-        pair(z1=80, z2=24, ring="driver"),
-        face_pair(),
-        face_pair(angle=85.0),
+        lambda: pair(helix=0.3),
+        lambda: pair(z2=80, ring="driven", helix=-0.2),
+        lambda: pair(z1=80, z2=24, ring="driver"),
+        face_pair,
+        lambda: face_pair(angle=85.0),
     ],
 )
-def test_contact_lines_lie_on_the_outlines(mesh):
+def test_contact_lines_lie_on_the_outlines(made):
+    mesh = made()
     # Ties frames, rotations, tooth numbers, sides and flank coordinates together.
     at = positions(mesh, [0.3], 7)[0]
     for line in at.lines:

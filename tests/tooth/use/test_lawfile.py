@@ -124,7 +124,7 @@ def test_the_cache_gives_back_what_it_was_given(own_cache, spur):
         lambda b: b"\xff" + b,
     ],
 )
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_a_damaged_entry_is_not_believed(own_cache, spur, spoil):
     pair = load_pair(spur)
     law = computed_law(pair)
