@@ -85,6 +85,7 @@ def test_the_printed_sizes_of_fig_8_lie_within_what_the_direction_leaves_open(di
         assert low < printed.OMEGA_INSTALLATION[stage] < high
 
 
+@pytest.mark.slow
 def test_fig_8_is_linear_in_the_error(displaced):
     """No contact is lost, so torques are linear in the error: Ω I to round-off. Ω II is over the
     torque of a pinion, which the error changes by up to 5.3 % (gear 10: Ω I of 1.0528).
@@ -95,12 +96,14 @@ def test_fig_8_is_linear_in_the_error(displaced):
             assert rise / rise[-1] == pytest.approx(np.arange(1, 6) / 5, rel=tolerance)
 
 
+@pytest.mark.slow
 def test_gears_2_and_3_are_alike_in_every_direction(displaced):
     """The layout is symmetric: to round-off."""
     two, three = (displaced.turned["I"][gear] for gear in "23")
     assert two == pytest.approx(three, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_common_direction_gives_the_printed_picture_of_fig_8(displaced):
     """Gear 6 as printed; where it leads, 7 to 10 are alike (within a factor of 2) and far less."""
     led = [omega for omega in displaced.matching.values() if order(omega)[0] == ["6"]]
@@ -114,6 +117,7 @@ def test_a_common_direction_gives_the_printed_picture_of_fig_8(displaced):
         assert omega["6"] - 1 > 1.5 * max(rest)
 
 
+@pytest.mark.slow
 def test_mirrored_gears_reach_the_same_largest_coefficient(displaced):
     """Over a whole turn. Directions 5° apart miss the largest Ω − 1 by 1 − cos 2.5°, 0.1 %."""
     for here, there in (("6", "8"), ("7", "9")):

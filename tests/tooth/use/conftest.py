@@ -10,6 +10,24 @@ def own_cache(tmp_path, monkeypatch):
     return folder
 
 
+@pytest.fixture(scope="module")
+def laws(tmp_path_factory):
+    return tmp_path_factory.mktemp("laws")
+
+
+@pytest.fixture
+def shared_cache(own_cache, laws, monkeypatch):
+    """Laws that other tests of the module have computed are known."""
+    monkeypatch.setenv("LOADSHARE_CACHE", str(laws))
+
+
+@pytest.fixture
+def empty_cache(shared_cache, own_cache, monkeypatch):
+    """No law is known, also where others share theirs."""
+    monkeypatch.setenv("LOADSHARE_CACHE", str(own_cache))
+    return own_cache
+
+
 @pytest.fixture
 def spur(tmp_path):
     """A small spur pair that slices solve in a moment."""

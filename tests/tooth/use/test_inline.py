@@ -112,6 +112,9 @@ law = "ltca"
 """
 
 
+pytestmark = pytest.mark.usefixtures("shared_cache")
+
+
 @pytest.fixture
 def case(tmp_path):
     text = CASE + 'law = "ltca"\nrated_torque = "112.5 N*m"\n'
@@ -145,7 +148,7 @@ def test_it_is_the_law_of_a_pair_file_bit_for_bit(case, tmp_path, word, model):
     assert stated == [f"LTCA, {model}, means over the cycle"] * 2
 
 
-def test_it_is_computed_once_for_all_planets(planetary, monkeypatch):
+def test_it_is_computed_once_for_all_planets(empty_cache, planetary, monkeypatch):
     reported = []
     found = resolve(planetary, lambda *now: reported.append(now))
     assert reported[-1] == (6, 6)  # sun and planet, planet and ring, three positions each

@@ -12,6 +12,8 @@ from loadshare.tooth.law.file import law_text
 from loadshare.tooth.law.folder import known_law
 from loadshare.tooth.pair.file import PairFile, load_pair
 
+pytestmark = pytest.mark.usefixtures("shared_cache")
+
 
 @pytest.fixture
 def case(spur, tmp_path):
@@ -62,7 +64,7 @@ def test_the_positions_are_those_of_the_case(case):
     assert len(law.a) == 3
 
 
-def test_what_was_computed_is_not_computed_again(case, monkeypatch):
+def test_what_was_computed_is_not_computed_again(empty_cache, case, monkeypatch):
     reported = []
     first = resolve(case, lambda done, total: reported.append((done, total)))
     assert reported == [(1, 2), (2, 2)]
@@ -74,7 +76,7 @@ def test_what_was_computed_is_not_computed_again(case, monkeypatch):
     assert resolve(case, fail) == first
 
 
-def test_meshes_that_share_a_pair_are_computed_once(spur, tmp_path):
+def test_meshes_that_share_a_pair_are_computed_once(empty_cache, spur, tmp_path):
     text = CASE + 'geometry = "spur.toml"\n'
     text += '[gears.c]\ncentre = ["-112.5 mm", "0 mm"]\nbase_radius = "70.476 mm"\n'
     text += '[gears.d]\ncentre = ["-112.5 mm", "0 mm"]\nbase_radius = "5 mm"\n'
@@ -90,9 +92,9 @@ def test_meshes_that_share_a_pair_are_computed_once(spur, tmp_path):
     assert found.meshes["a-b"].law == found.meshes["a-c"].law
 
 
-def test_a_damaged_cache_is_computed_again(case, own_cache):
+def test_a_damaged_cache_is_computed_again(case, empty_cache):
     first = resolve(case)
-    for file in (own_cache / "laws").iterdir():
+    for file in (empty_cache / "laws").iterdir():
         file.write_text("damaged", encoding="utf-8")
     assert resolve(case) == first
 

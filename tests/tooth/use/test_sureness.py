@@ -95,7 +95,10 @@ def narrow(modules: float, compliance: str) -> str:
     return text.replace('compliance = "slices"', f'compliance = "{compliance}"')
 
 
-@pytest.mark.parametrize(("modules", "noted"), [(2.0, True), (6.0, True), (12.0, False)])
+@pytest.mark.parametrize(
+    ("modules", "noted"),
+    [(2.0, True), pytest.param(6.0, True, marks=pytest.mark.slow), (12.0, False)],
+)
 def test_what_slices_leave_out_of_narrow_helical_teeth_is_noted(tmp_path, modules, noted):
     pair = load_pair(written(tmp_path, narrow(modules, "slices")))
     law = law_of(pair, pair.analyse())
