@@ -135,8 +135,8 @@ def test_marks_for_a_picture():
 
 def test_positions_that_differ_in_nothing_have_the_same_events(rings):
     case = shipped("fgfbstts/limit_ring")
-    found = ls.critical(case, "rings.5.float", "2 um", "4 um")
-    assert {e.position for e in found.events} == {1, 2, 3, 4, 5}
+    found = ls.critical(case, "rings.5.float", "2 um", "4 um", positions=[1, 3])
+    assert {e.position for e in found.events} == {1, 3}
     assert len({e.value for e in found.events if "stop" in e.element}) == 1
 
 
