@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from hypothesis import settings
+from tests import reproducible
 from tests.chromium import chromium
 from tests.reproducible import SAME
 
@@ -24,6 +25,10 @@ os.environ[OUTSIDE] = "1"
 
 settings.register_profile("same", SAME)
 settings.load_profile("same")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    reproducible.QUICK = "not slow" in config.getoption("markexpr")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

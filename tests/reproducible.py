@@ -20,3 +20,11 @@ SAME = settings(backend="reproducible", deadline=None, derandomize=True, databas
 """Every test of a property has this profile."""
 TRAINS = settings(SAME, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 """For what draws whole trains."""
+
+QUICK = False
+"""Whether slow tests are left out; `conftest` finds it in the options of the run."""
+
+
+def examples(quick: int, every: int) -> int:
+    """How many examples a property is tried on: every one where slow tests run."""
+    return quick if QUICK else every

@@ -2,6 +2,7 @@ import contextlib
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.reproducible import examples
 
 from loadshare.case import Case, load_case
 from loadshare.case.keys import look_up
@@ -43,7 +44,7 @@ def places(data, above=()):
             yield from places(value, (*above, step))
 
 
-@settings(max_examples=50, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(50, 100), suppress_health_check=list(HealthCheck))
 @given(st.data())
 def test_no_damage_ends_in_anything_but_problems(cases, data):
     everything = load_case(cases / "fgfbstts" / "all_elements.toml").to_dict()

@@ -75,6 +75,11 @@ def test_no_wrong_torque_passes(found):
     assert [a for a in found if a.slipped] == []
 
 
+@pytest.mark.slow
+def test_no_wrong_torque_of_twice_as_many_passes():
+    assert [a for a in attacks(SEED, 150, each=8) if a.slipped] == []
+
+
 def test_every_bound_holds_of_wrong_answers_too(found):
     bounded = [a for a in found if a.margin < math.inf]
     assert len(bounded) > 50

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Set
 import pytest
 from hypothesis import currently_in_test_context, given, note, reject, settings
 from hypothesis import strategies as st
-from tests.reproducible import TRAINS
+from tests.reproducible import TRAINS, examples
 from tests.support import answer, forces, furthest, mostly_slow
 
 import loadshare as ls
@@ -226,7 +226,7 @@ def is_solved_and_agreed(case: ls.Case) -> None:
     "family", mostly_slow((stars, split_torques), (stars,)), ids=["star", "split torque"]
 )
 def test_a_random_train_is_solved(family):
-    @settings(TRAINS, max_examples=10)
+    @settings(TRAINS, max_examples=examples(10, 20))
     @given(family())
     def run(case: ls.Case) -> None:
         is_solved_and_agreed(case)

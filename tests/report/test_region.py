@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.reproducible import examples
 from tests.support import round_ring, shipped
 
 import loadshare as ls
@@ -78,7 +79,7 @@ def test_a_narrow_drum_is_a_line_across_the_neighbours():
     assert {b.name for b in found.boundaries} == {"upper stop", "lower stop", "arc 6", "arc 7"}
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20, 40))
 @given(
     st.floats(2.0, 60.0),
     st.tuples(st.floats(2.0, 40.0), st.floats(2.0, 40.0)),

@@ -5,6 +5,7 @@ from itertools import pairwise
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.reproducible import examples
 
 from loadshare.report.figures.marks import BREADTH, rules
 
@@ -40,7 +41,7 @@ def test_words_take_the_side_that_has_room(places, expected):
     assert sides(places) == expected
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15, 40))
 @given(st.lists(st.floats(0.0, 400.0), min_size=1, max_size=8, unique=True).map(sorted))
 def test_no_words_lie_on_others_or_on_a_rule(places):
     found = sides(places)

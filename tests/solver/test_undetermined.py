@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 from tests.physics.test_metamorphic import FRAMES, placed
 from tests.physics.test_random_trains import scaled, split_torques, stars
-from tests.reproducible import TRAINS
+from tests.reproducible import TRAINS, examples
 from tests.support import answer, coordinates, shipped
 
 import loadshare as ls
@@ -178,7 +178,7 @@ def polygon(region: Region, sides: int = 720) -> tuple[np.ndarray, np.ndarray]:
     return np.vstack(rows), np.concatenate(bounds)
 
 
-@settings(TRAINS, max_examples=25)
+@settings(TRAINS, max_examples=examples(25, 60))
 @given(regions())
 def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
     region, _ = given_region
@@ -197,7 +197,7 @@ def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
         assert reached >= -outer.fun - 1e-2 * max(1.0, abs(outer.fun))
 
 
-@settings(TRAINS, max_examples=60)
+@settings(TRAINS, max_examples=examples(60, 150))
 @given(regions())
 def test_the_least_point_is_nearer_than_all_others(given_region):
     """Least in a convex region: (v − u)·u ≥ 0 for all of its v."""

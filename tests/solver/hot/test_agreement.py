@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 from tests.physics.test_random_trains import split_torques, stars
-from tests.reproducible import TRAINS
+from tests.reproducible import TRAINS, examples
 from tests.support import EVERY_SHIPPED, answer, disagreement, forces, furthest, shipped
 
 import loadshare as ls
@@ -79,7 +79,7 @@ def test_a_random_train(family):
     """What it answers is right, and it answers nearly all: or the ladder would hide its loss."""
     answered = []
 
-    @settings(TRAINS, max_examples=6)
+    @settings(TRAINS, max_examples=examples(6, 12))
     @given(family())
     def run(case: ls.Case) -> None:
         answered.append(agrees(case))

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 from tests.physics.test_random_trains import split_torques, stars
-from tests.reproducible import TRAINS
+from tests.reproducible import TRAINS, examples
 from tests.solver.hot.trains import VARIED, varied
 from tests.support import EVERY_SHIPPED, mostly_slow, shipped
 
@@ -136,7 +136,7 @@ def test_random_samples(name):
     "family", mostly_slow((stars, split_torques), (stars,)), ids=["star", "split torque"]
 )
 def test_random_trains(family):
-    @settings(TRAINS, max_examples=10)
+    @settings(TRAINS, max_examples=examples(10, 30))
     @given(family())
     def run(case: ls.Case) -> None:
         note(case.to_toml())
