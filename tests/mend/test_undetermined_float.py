@@ -48,7 +48,7 @@ def test_the_unloaded_pinion_is_undetermined(name):
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", FILES)
-@pytest.mark.quick(6)
+@pytest.mark.quick(4)
 def test_every_way_gives_the_same_place_and_ranges(name, way):
     case = case_of(name)
     one, other = (ls.solve(case, **options).positions[0] for options in ({}, WAYS[way]))

@@ -413,7 +413,7 @@ def two_paths(support: str) -> ls.Case:
 
 @pytest.mark.parametrize("support", ["rigid", "2e8 N/m"])
 @pytest.mark.parametrize("ends", [(-300, 300), (-300, 0), (-10, -0.0001), (-3, 3), (-0.02, 300)])
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_what_carries_nothing_does_not_change(support, ends) -> None:
     """While an idler may turn freely, that it touches at the end of its window is no event."""
     case = two_paths(support)

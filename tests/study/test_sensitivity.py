@@ -92,7 +92,11 @@ def disagreeing(verdicts_by_key: dict[str, Verdict]) -> dict[str, Verdict]:
             ["splines.4.*", "errors.6.eccentricity.amount"],
             marks=pytest.mark.slow,
         ),
-        ("fgfbstts/spline_clearance", ["splines.4.*", "operating.power"]),
+        pytest.param(
+            "fgfbstts/spline_clearance",
+            ["splines.4.*", "operating.power"],
+            marks=pytest.mark.slow,
+        ),
         pytest.param(
             "fgfbstts/all_elements",
             ['meshes."4-6".law.c[0]', "splines.5.*", "rings.5.float.*", "errors.9"],

@@ -201,7 +201,7 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
         (None, lambda v: np.nextafter(v, 9.0)),
     ],
 )
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change, caplog):
     """Whoever recomputes its digest has its samples solved again; without, all of it is."""
     out = tmp_path / "study"
