@@ -1,5 +1,6 @@
 """What holds for all tests."""
 
+import gc
 import os
 import random
 import zlib
@@ -23,12 +24,17 @@ os.environ["LOADSHARE_CACHE"] = str(Path(__file__).parent.parent / ".pytest_cach
 # Tests write cases into folders of their own that inherit shipped ones.
 os.environ[OUTSIDE] = "1"
 
+KEPT = 50_000
+"""Objects after which cycles among them are looked for."""
+
 settings.register_profile("same", SAME)
 settings.load_profile("same")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     reproducible.QUICK = "not slow" in config.getoption("markexpr")
+    # Most of what is imported and collected stays; to look through it took a fifteenth of all time.
+    gc.set_threshold(KEPT)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

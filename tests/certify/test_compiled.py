@@ -37,7 +37,7 @@ SIZES = (1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3)
 
 
 @pytest.mark.parametrize("name", mostly_slow(WAYS, QUICK))
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_one_wrong_claim(name):
     train = build_train(WAYS[name]())
     situations, found = claims(train, positions(train)[:1])

@@ -28,7 +28,7 @@ def same(formulation, answer) -> None:
 def forced(form: ComplementarityForm) -> np.ndarray:
     """Solve a small complementarity problem by trying every set of contacts."""
     size = len(form.vector)
-    for acting in product([False, True], repeat=size):
+    for acting in product([True, False], repeat=size):
         on = np.flatnonzero(acting)
         z = np.zeros(size)
         block = form.matrix[np.ix_(on, on)]

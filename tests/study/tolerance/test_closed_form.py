@@ -134,11 +134,11 @@ def test_the_worst_phase_is_between(slope):
     )
     phase = {"errors.6.eccentricity.phase": {"distribution": "uniform phase"}}
     found = ls.tolerance(
-        case, phase, samples=4096, indices=0, sampling="sobol", positions=[1], engine="vectorised"
+        case, phase, samples=1024, indices=0, sampling="sobol", positions=[1], engine="vectorised"
     )
     stage = found.worst[0]
     assert stage.at == {"errors.6.eccentricity.phase": "between"}
-    # Over 4096 even phases the largest is short of the top by less than (π/4096)²/2 of its swing.
+    # Over 1024 even phases the largest is short of the top by less than (π/1024)²/2 of its swing.
     top = found.of("system").summary.highest
     assert top <= stage.omega + 1e-12
     assert stage.omega - top < 1e-5 * (stage.omega - 1.0)

@@ -75,6 +75,7 @@ def reference(tmp_path_factory) -> Path:
     return out
 
 
+@pytest.mark.slow
 def test_worker_processes_change_no_bit(reference, tmp_path, processes):
     reported = []
     found = run(tmp_path / "study", workers=2, chunk=2, progress=lambda *d: reported.append(d))

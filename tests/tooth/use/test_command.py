@@ -99,14 +99,14 @@ def test_what_the_law_leaves_out_is_reported(command, tmp_path):
 
 
 def test_a_folder_of_cases_may_hold_pairs_and_laws(command, spur, tmp_path):
-    command("ltca", spur, "-o", tmp_path / "out")
+    command("ltca", spur, "-o", tmp_path / "out/law.toml")
     case = written(tmp_path, CASE + 'law_file = "out/law.toml"\n', "case.toml")
     broken = written(tmp_path, "kind = 'pump'", "broken.toml")
     assert find_cases([tmp_path]) == [broken, case]
     assert find_cases([spur]) == [spur]
 
 
-@pytest.mark.parametrize("kind", [SPUR, FACE])
+@pytest.mark.parametrize("kind", [SPUR, pytest.param(FACE, marks=pytest.mark.slow)])
 def test_torques_under_which_teeth_are_crushed(command, tmp_path, kind):
     """Teeth of 3 and 4 mm modules yield by some nanometres per newton and mm of width."""
     file, law = tmp_path / "pair.toml", tmp_path / "law.toml"
