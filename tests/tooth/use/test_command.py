@@ -84,7 +84,7 @@ def test_wrong_use_is_reported(command, spur, tmp_path):
 
 def test_misalignment_and_edges_are_reported(command, tmp_path):
     off = written(tmp_path, SPUR + '[misalignment]\ndeviation = "0.2 mrad"\n')
-    result = command("ltca", off)
+    result = command("ltca", off, "-o", tmp_path / "out/law.toml")
     assert "Note: driver.face" in result.stdout
     assert "turn the driver by" not in result.stdout
     assert "Load reaches the end of the face" in result.stdout
@@ -92,7 +92,7 @@ def test_misalignment_and_edges_are_reported(command, tmp_path):
 
 def test_what_the_law_leaves_out_is_reported(command, tmp_path):
     off = written(tmp_path, FACE + '[misalignment]\ngear_shift = "20 um"\n')
-    result = command("ltca", off)
+    result = command("ltca", off, "-o", tmp_path / "out/law.toml")
     lead = re.search(r"Offset and gear shift turn the driver by (\S+) µrad", result.stdout)
     # Early by s sin α along the line of action: s tan α/r at the driver, r = 25 · 4 mm/2.
     assert float(lead[1]) == pytest.approx(-20.0 / 0.05 * math.tan(math.radians(25.0)), rel=0.02)
