@@ -166,7 +166,7 @@ def test_a_study_of_the_case_is_the_one_that_its_file_describes(served):
         first, *parts = study(address, "tolerance", {"study": "pins", "samples": 32, "seed": 1})
     assert set(offered) == {"pins", "teeth"}
     assert first["begun"]["limit"] == 1.1
-    found = ls.tolerance(case, study="pins", samples=8, indices=0, worst=False)
+    found = ls.tolerance(case, study="pins", samples=32, indices=0, worst=False)
     assert parts[-1]["table"]["rows"] == figures(found, 1.1)
     assert first["begun"]["inputs"] == [[i.name, str(i.distribution)] for i in found.inputs.every]
 
@@ -349,7 +349,7 @@ def test_a_tolerance_study_comes_to_its_end(browser, served):
             """return [...document.querySelectorAll("#statistics tbody tr")].map((row) =>
             [...row.cells].map((cell) => cell.textContent));"""
         )
-    found = ls.tolerance(case, study="pins", samples=32, indices=0, worst=False)
+    found = ls.tolerance(case, study="pins", samples=8, indices=0, worst=False)
     assert rows == figures(found, 1.1)
     assert browser.get_log("browser") == []
 
