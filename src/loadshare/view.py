@@ -84,6 +84,10 @@ class Viewed:
     def _view(self) -> View:
         raise NotImplementedError
 
+    def _left_open(self) -> list[str]:
+        """Return what a study could not answer, in lines; nothing if it answered everything."""
+        return []
+
     def __repr__(self) -> str:
         return self._view().text
 

@@ -9,7 +9,7 @@ from tests.support import EVERY_SHIPPED, mostly_slow, shipped
 import loadshare as ls
 from benchmarks.random_trains.draw import draw
 from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
-from loadshare.cli.study.sensitivity import good
+from loadshare.cli.tables.sensitivity import good
 from loadshare.errors import CaseError
 from loadshare.job import machine
 from loadshare.study.answers import certified

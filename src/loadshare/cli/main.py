@@ -30,14 +30,16 @@ from loadshare.cli.page import report
 from loadshare.cli.run import run
 from loadshare.cli.schema import schema
 from loadshare.cli.streams import open_streams
-from loadshare.cli.study.compare import compare
-from loadshare.cli.study.critical import critical
-from loadshare.cli.study.fit import fit
-from loadshare.cli.study.march import march
-from loadshare.cli.study.sensitivity import sensitivity
-from loadshare.cli.study.study import study
-from loadshare.cli.study.sweep import sweep
-from loadshare.cli.study.tolerance import tolerance
+from loadshare.cli.study.commands import (
+    compare,
+    critical,
+    fit,
+    march,
+    sensitivity,
+    study,
+    sweep,
+    tolerance,
+)
 from loadshare.cli.waiting import echo
 from loadshare.cli.warm import warm
 

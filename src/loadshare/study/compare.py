@@ -131,9 +131,20 @@ class Comparison(Viewed):
         return drawn
 
     def _view(self) -> View:
-        from loadshare.study.views import comparison_view
-
-        return comparison_view(self)
+        """Show measured against computed figures."""
+        chi = f"{self.chi_square:.4g} of {len(self.deviations)} figures"
+        rows = tuple(
+            (
+                d.target.key + (f" at {d.target.position}" if d.target.position else ""),
+                f"{d.target.value:g} ± {d.target.uncertainty:g} {d.target.unit}".rstrip(),
+                f"{d.computed:.5g}",
+                f"{d.deviations:+.2f}",
+            )
+            for d in self.deviations
+        )
+        columns = ("figure", "measured", "computed", "in deviations")
+        title = f"Measured against computed, {self.result.stamp.case}"
+        return View(title, (("χ²", chi),), columns, rows)
 
 
 def compare(case: Case | str | FilePath, *, progress: Progress | None = None) -> Comparison:

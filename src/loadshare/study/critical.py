@@ -14,6 +14,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from loadshare.case import Case
+from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from loadshare.report.figure import Figure
+
+SHOWN = 5
+"""Intervals that are named one by one where they are not proved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,9 +109,33 @@ class Critical(Viewed):
         return drawn
 
     def _view(self) -> View:
-        from loadshare.study.views import critical_view
+        """Show the interval, what is not proved, and the events."""
+        unit = self.parameter.unit
+        facts = (
+            (self.parameter.name, f"{self.start:g} to {self.stop:g} {unit}".rstrip()),
+            ("events", f"{len(self.events)}, {sum(e.confirmed for e in self.events)} confirmed"),
+            ("not proved", f"{len(self.unproved)} intervals" if self.unproved else "nothing"),
+        )
+        rows = tuple(
+            (f"{e.value:.6g} {e.unit}".rstrip(), str(e.position), e.element, e.kind)
+            for e in self.events
+        )
+        return View("Critical values", facts, ("value", "position", "element", "event"), rows)
 
-        return critical_view(self)
+    def _left_open(self) -> list[str]:
+        doubtful = sum(not event.confirmed for event in self.events)
+        lines = []
+        if doubtful:
+            lines.append(f"{count(doubtful, 'event')} of {len(self.events)} not confirmed.")
+        gaps = sorted({(u.start, u.stop, u.why) for u in self.unproved})
+        unit = f" {self.parameter.unit}" if self.parameter.unit else ""
+        lines += [
+            f"Not proved to be free of other events: {start:.12g} to {stop:.12g}{unit} ({why})."
+            for start, stop, why in gaps[:SHOWN]
+        ]
+        if len(gaps) > SHOWN:
+            lines.append(f"{count(len(gaps) - SHOWN, 'further interval')} not proved.")
+        return lines
 
 
 def critical(

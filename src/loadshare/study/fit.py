@@ -133,9 +133,22 @@ class Fit(Viewed):
         return drawn
 
     def _view(self) -> View:
-        from loadshare.study.views import fit_view
-
-        return fit_view(self)
+        """Show the fitted inputs, how well they fit, and what the data leave open."""
+        degrees = "1 degree" if self.freedom == 1 else f"{self.freedom} degrees"
+        facts = (
+            ("χ²", f"{self.chi_square:.4g}, {degrees} of freedom"),
+            ("starts", f"{len(self.starts)}, {self.evaluations} sets of equilibria"),
+            ("mind", " ".join(self.warnings)),
+        )
+        rows = tuple(
+            (
+                u.parameter.name,
+                f"{u.value:.5g} ± {u.deviation:.2g} {u.parameter.unit}".rstrip(),
+                f"{u.low:g} to {u.high:g}",
+            )
+            for u in self.unknowns
+        )
+        return View(f"Fit of {self.case.name}", facts, ("input", "value", "between"), rows)
 
 
 def fit(

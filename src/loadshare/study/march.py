@@ -7,6 +7,7 @@ that change. Every step is certified with its memory.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path as FilePath
@@ -32,7 +33,7 @@ from loadshare.train.elements import Spline
 from loadshare.train.gear import Vector
 from loadshare.train.memory import slip_of
 from loadshare.train.placed import standing
-from loadshare.view import View, Viewed
+from loadshare.view import View, Viewed, by_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -120,9 +121,26 @@ class March(Viewed):
         return drawn
 
     def _view(self) -> View:
-        from loadshare.study.views import march_view
-
-        return march_view(self)
+        """Show how far the march went, how load was shared, and what the splines dissipated."""
+        result, steps = self.result, len(self.revolutions)
+        last = self.revolutions[-1] if steps else 0.0
+        facts = (
+            ("way", f"{steps} steps, {last:g} revolutions of gear {self.gear}"),
+            ("certified", f"all steps, worst residual {result.certificate.worst:.1e}"),
+            ("largest Ω", by_name(result.omega)),
+            ("dissipated", f"{self.dissipated:.4g} J"),
+        )
+        rows = tuple(
+            (
+                gear,
+                ", ".join(f"{n} {stage}" for stage, n in Counter(s.stage for s in every).items()),
+                f"{sum(s.dissipated for s in every):.4g}",
+            )
+            for gear in (self.slips[0] if self.slips else ())
+            for every in ([step[gear] for step in self.slips],)
+        )
+        columns = ("spline", "steps", "dissipated [J]")
+        return View(f"March of {result.stamp.case}", facts, columns, rows)
 
 
 def march(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.case import Case
+from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.answered import Answered, answer_samples
@@ -34,7 +36,7 @@ from loadshare.study.parameter import (
 )
 from loadshare.study.positions import loaded
 from loadshare.train import build_train
-from loadshare.view import View, Viewed
+from loadshare.view import View, Viewed, by_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -187,9 +189,37 @@ class Sweep(Viewed):
         return self.dataset
 
     def _view(self) -> View:
-        from loadshare.study.views import sweep_view
+        """Show the grid, what became of its points, and the largest Ω at each."""
+        grids = zip(self.parameters, self.grids, strict=True)
+        facts = [
+            (
+                p.name,
+                f"{values[0]:g} to {values[-1]:g} {p.unit}".rstrip() + f", {len(values)} values",
+            )
+            for p, values in grids
+        ]
+        counts = Counter(p.status for p in self.points)
+        facts.append(("points", ", ".join(f"{count} {status}" for status, count in counts.items())))
+        rows = tuple(
+            (
+                *(f"{v:g}" for v in point.values),
+                point.status,
+                by_name(self.largest("omega", k))
+                if point.status in ("certified", "partly refused")
+                else point.message.partition("\n")[0],
+            )
+            for k, point in enumerate(self.points)
+        )
+        heads = (f"{p.name} [{p.unit}]" if p.unit else p.name for p in self.parameters)
+        columns = (*heads, "status", "largest Ω")
+        return View(f"Sweep of {self.case}", tuple(facts), columns, rows)
 
-        return sweep_view(self)
+    def _left_open(self) -> list[str]:
+        failed = [p for p in self.points if p.status != CERTIFIED]
+        if not failed:
+            return []
+        reasons = dict.fromkeys(f"{p.status}: {p.message.splitlines()[0]}" for p in failed)
+        return [*reasons, f"{count(len(failed), 'point')} of {len(self.points)} not certified."]
 
     def to_netcdf(self, path: str | FilePath) -> None:
         """Write the labelled arrays to a netCDF file."""

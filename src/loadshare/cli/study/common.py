@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import Tick, progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
+from loadshare.cli.files import tell_written
+from loadshare.cli.forms import FOLDER, Output, write_all
 from loadshare.cli.refusal import refusal_lines
+from loadshare.cli.study.answers import KINDS
 from loadshare.errors import LoadshareError, Refused
 
 if TYPE_CHECKING:
@@ -58,9 +61,18 @@ def answered() -> Iterator[None]:
         fail([str(error)], UNUSABLE)
 
 
-def end(found: object) -> None:
-    """Leave with the code of a refusal where a study lacks an answer, and say which."""
-    from loadshare.report.left_open import left_open
+def conclude(kind: str, found: Any, files: list[Output] | None) -> None:
+    """Print the answer of a study, and write its files but a folder of samples, which is there.
 
-    if lines := left_open(found):
+    Raises
+    ------
+    typer.Exit
+        With the code of a refusal where the study lacks an answer; says which.
+    """
+    KINDS[kind].show(found)
+    for output in files or ():
+        if output.form == FOLDER:
+            tell_written(output.file, err=True)
+    write_all([o for o in files or () if o.form != FOLDER], KINDS[kind].makers(found))
+    if lines := found._left_open():
         fail(lines, REFUSED)

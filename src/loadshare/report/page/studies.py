@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from loadshare.case import Case
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
-from loadshare.report.left_open import left_open
 from loadshare.report.records import FOLDED, Cell, Column, Table
 from loadshare.study.critical import Critical
 from loadshare.study.march import March
@@ -76,7 +75,7 @@ def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
         facts={what: text for what, text in view.facts if text},
         figures=tuple(figure.begin() for figure in _figures(found, case)),
         tables=(*tables, *_more_tables(found)),
-        problems=tuple(left_open(found)),
+        problems=tuple(found._left_open()),
     )
 
 

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
+from loadshare.case.words import count
 from loadshare.errors import LoadshareError
 from loadshare.pictures import picture
 from loadshare.study.tolerance.folder import Folder
@@ -16,7 +17,7 @@ from loadshare.study.tolerance.indices import Share
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.study.tolerance.statistics import Estimate, Summary
 from loadshare.study.tolerance.worst import WorstCase
-from loadshare.view import View, Viewed
+from loadshare.view import View, Viewed, figure, listed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -192,9 +193,36 @@ class Tolerance(Viewed):
         return drawn
 
     def _view(self) -> View:
-        from loadshare.study.views import tolerance_view
+        """Show how many samples have an answer, the distribution of Ω, and the worst case self."""
+        certified = f"{self.samples - self.refused} of {self.samples}"
+        facts = (
+            ("certified", f"{certified} samples, largest residual {self.residual:.1e}"),
+            ("inputs", listed([one.name for one in self.inputs.every])),
+            ("worst self", ", ".join(f"Ω {w.omega:.4f} over the {w.over}" for w in self.worst)),
+            ("why refused", "; ".join(f"{n} × {m}" for m, n in self.messages.items())),
+        )
+        rows = []
+        for one in self.omega:
+            mean, beyond = one.summary.mean, one.exceedance
+            rows.append(
+                (
+                    one.stage,
+                    one.over,
+                    f"{mean.value:.4f} ({mean.low:.4f} to {mean.high:.4f})",
+                    figure(one.summary.spread),
+                    f"{beyond.value:.3g} ({beyond.low:.2g} to {beyond.high:.2g})"
+                    if beyond
+                    else "–",
+                )
+            )
+        limit = "limit" if self.limit is None else f"{self.limit:g}"
+        columns = ("stage", "over", "mean Ω (95 %)", "deviation", f"P(Ω > {limit})")
+        return View(f"Tolerance study of {self.case}", facts, columns, tuple(rows))
 
-        return tolerance_view(self)
+    def _left_open(self) -> list[str]:
+        if not self.refused:
+            return []
+        return [f"{count(self.refused, 'sample')} of {self.samples} not certified."]
 
 
 def counted(messages: Sequence[str]) -> dict[str, int]:

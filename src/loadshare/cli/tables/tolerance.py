@@ -1,145 +1,22 @@
-"""`loadshare tolerance`: what scattering inputs do to load sharing."""
+"""What scattering inputs do to load sharing."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from loadshare._version import __version__
-from loadshare.cli.completion import study_names
-from loadshare.cli.console import say, say_all, stand
-from loadshare.cli.exits import fail
-from loadshare.cli.files import document_text, tell_written
-from loadshare.cli.forms import (
-    FIGURES,
-    FOLDER,
-    Makers,
-    Output,
-    figure_of,
-    outputs,
-    tables_of,
-    write_all,
-)
-from loadshare.cli.options import CaseFile, Changes, Positions, over, ranges_of
-from loadshare.cli.stop import Stop
-from loadshare.cli.study.common import end, running_study
+from loadshare.cli.console import say, say_all
 from loadshare.cli.tables.table import show, table
-from loadshare.output import netcdf_of
 from loadshare.report.numbers import NONE, counted, interval
 
 if TYPE_CHECKING:
     from loadshare.study.tolerance.result import Tolerance
     from loadshare.study.tolerance.statistics import Summary
 
-FORMS = (FOLDER, "csv", "nc", "parquet", "xlsx", "json", *FIGURES)
 SHOWN = 20
 """Inputs, and messages, that are shown."""
-
-
-def tolerance(
-    case: CaseFile,
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="NAME",
-            help="Which study, if the case has more than one of this kind.",
-            autocompletion=study_names,
-        ),
-    ] = None,
-    samples: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Samples, instead of the case's.")
-    ] = None,
-    seed: Annotated[
-        int | None, typer.Option(metavar="S", min=0, help="Seed, instead of the case's.")
-    ] = None,
-    ranges: Annotated[
-        list[str] | None,
-        over(
-            "LOW:HIGH",
-            "Input that varies evenly between two values, as in rings.*.float='0 um:12 um', in "
-            "place of those of [study.NAME]; without NAME, a study of these alone. May be "
-            "repeated.",
-        ),
-    ] = None,
-    file: Annotated[
-        list[Output] | None,
-        outputs(
-            *FORMS,
-            what="Folder for the samples (Parquet), from which an interrupted study continues; "
-            "or a file: tables hold the samples, .json and .nc the statistics",
-        ),
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help="Dask scheduler whose workers solve the samples."),
-    ] = None,
-    workers: Annotated[int, typer.Option(metavar="K", min=1, help="Processes.")] = 2,
-    worst: Annotated[
-        bool, typer.Option("--worst/--no-worst", help="Search for the worst case as well.")
-    ] = True,
-    position: Positions = None,
-    change: Changes = None,
-) -> None:
-    """Vary inputs within their tolerances ([study.NAME]) and show how Ω is distributed."""
-    from loadshare.study.tolerance.study import tolerance as studied
-
-    folders = [output.file for output in file or () if output.form == FOLDER]
-    if len(folders) > 1:
-        raise typer.BadParameter("the samples go into one folder only", param_hint="--output")
-    out = folders[0] if folders else None
-    scatter = {
-        "=".join(keys): {"distribution": "uniform", "low": low, "high": high}
-        for keys, (low, high) in ranges_of(ranges, "KEY=LOW:HIGH").items()
-    }
-    stop = Stop()
-    with running_study(case, change, "samples", None, rated=True) as (loaded, tick):
-        try:
-            with stop:
-                found = studied(
-                    loaded,
-                    scatter or None,
-                    study=name,
-                    samples=samples,
-                    seed=seed,
-                    positions=position,
-                    out=out,
-                    scheduler=scheduler,
-                    workers=workers,
-                    worst=worst,
-                    progress=tick,
-                )
-        except KeyboardInterrupt:
-            fail(["Interrupted: " + _kept(out, *stand())], stop.code)
-    show_tolerance(found)
-    if out is not None:
-        tell_written(out, err=True)
-    write_all([o for o in file or () if o.form != FOLDER], made_of_tolerance(found))
-    end(found)
-
-
-def _kept(out: Path | None, done: int, total: int) -> str:
-    """Return what is kept, and how to go on, in words."""
-    if out is None:
-        return "nothing is kept. With -o FOLDER what is solved is, and the same command goes on."
-    if done == total > 0:
-        kept = f"all {total:,} samples are kept in {out}."
-        return f"{kept} The same command looks for the worst case again."
-    part = f"{done:,} of {total:,} samples are" if total else "what was there is"
-    return f"{part} kept in {out}. The same command continues from there."
-
-
-def made_of_tolerance(found: Tolerance) -> Makers:
-    """Return what makes the files of a tolerance study: samples, and statistics."""
-    return {
-        **tables_of("tolerance", found.to_frame),
-        **figure_of(found.plot),
-        "json": lambda: document_text(statistics_document(found)),
-        "nc": lambda: netcdf_of(found.dataset),
-    }
 
 
 def statistics_document(found: Tolerance) -> dict[str, Any]:

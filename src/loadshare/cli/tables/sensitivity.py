@@ -1,25 +1,12 @@
-"""`loadshare sensitivity`: how load sharing changes with every input."""
+"""How load sharing changes with every input, and how surely that is known."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 from loadshare.cli.console import say, say_all
-from loadshare.cli.forms import (
-    FIGURES,
-    TABLES,
-    Makers,
-    Output,
-    figure_of,
-    outputs,
-    tables_of,
-    write_all,
-)
-from loadshare.cli.options import CaseFile, Changes, Positions, keys
-from loadshare.cli.study.common import running_study
 from loadshare.cli.tables.table import show, table
-from loadshare.output import netcdf_of
 
 if TYPE_CHECKING:
     from loadshare.study.sensitivity import Input, Sensitivity
@@ -33,30 +20,6 @@ ALIKE = 1e-6
 """Relative difference of two sides that no reader needs to see."""
 ROUND_OFF = 1e-13
 """Change of Ω over a unit and over the whole value of an input that says nothing."""
-
-
-def sensitivity(
-    case: CaseFile,
-    key: Annotated[
-        list[str] | None, keys("Inputs; a star matches any name. All by default.")
-    ] = None,
-    file: Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)] = None,
-    position: Positions = None,
-    change: Changes = None,
-) -> None:
-    """Compute how torques, Ω and floats change with each input."""
-    from loadshare.study.sensitivity import sensitivity as differentiated
-
-    with running_study(case, change, "inputs") as (loaded, tick):
-        found = differentiated(loaded, key or None, positions=position, progress=tick)
-    show_sensitivity(found)
-    write_all(file, made_of_sensitivity(found))
-
-
-def made_of_sensitivity(found: Sensitivity) -> Makers:
-    """Return what makes the files of sensitivities; tables hold those of torques."""
-    made = tables_of("sensitivity", lambda: found.dataset["torque"].to_dataframe().reset_index())
-    return {**made, **figure_of(found.plot), "nc": lambda: netcdf_of(found.dataset)}
 
 
 def show_sensitivity(found: Sensitivity) -> None:

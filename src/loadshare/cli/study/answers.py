@@ -1,0 +1,238 @@
+"""How the answers of studies are shown: what prints each kind, and what makes files of it."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from loadshare.cli.console import say, say_all
+from loadshare.cli.files import document_text
+from loadshare.cli.forms import Makers, figure_of, tables_of
+from loadshare.cli.refusal import ranges as numbers_text
+from loadshare.cli.tables.sensitivity import show_sensitivity
+from loadshare.cli.tables.table import show, table
+from loadshare.cli.tables.tolerance import show_tolerance, statistics_document
+from loadshare.output import netcdf_of
+from loadshare.report.numbers import counted, omega
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.table import Table
+
+    from loadshare.study.compare import Comparison, Deviation
+    from loadshare.study.critical import Critical
+    from loadshare.study.fit import Fit
+    from loadshare.study.march import March
+    from loadshare.study.sensitivity import Sensitivity
+    from loadshare.study.sweep import Sweep
+    from loadshare.study.tolerance.result import Tolerance
+
+
+class Kind(NamedTuple):
+    """How the answer of a kind of study is shown: what prints it, and what makes files of it."""
+
+    show: Callable[[Any], None]
+    makers: Callable[[Any], Makers]
+
+
+def _of_table(kind: str, found: Any, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:
+    """Return what makes files of a table and of the picture of an answer."""
+    return {**tables_of(kind, frame, **about), **figure_of(found.plot)}
+
+
+def _labelled(found: Any) -> Makers:
+    """Return what makes a netCDF file of an answer with labelled arrays of its own."""
+    return {"nc": lambda: netcdf_of(found.dataset)}
+
+
+def show_comparison(found: Comparison) -> None:
+    """Print every measured figure next to the computed one."""
+    words = ("measured", "of", "at")
+    heads = (*words, "figure", "±", "computed", "difference", "in ±")
+    show("Measured against computed", table(heads, map(_row, found.deviations), words))
+    say(f"χ² = {found.chi_square:.4g} over {counted(len(found.deviations), 'figure')}")
+
+
+def _row(d: Deviation) -> tuple[str, ...]:
+    target = d.target
+    unit = f" [{target.unit}]" if target.unit else ""
+    return (
+        target.measurement,
+        f"{target.quantity} {target.where}{unit}",
+        "all" if target.position is None else str(target.position),
+        f"{target.value:.6g}",
+        f"{target.uncertainty:.3g}",
+        f"{d.computed:.6g}",
+        f"{d.difference:+.3g}",
+        f"{d.deviations:+.2f}",
+    )
+
+
+def _of_comparison(found: Comparison) -> Makers:
+    return _of_table("compare", found, found.to_frame, chi_square=found.chi_square)
+
+
+def show_critical(found: Critical) -> None:
+    """Print every event, and the positions at which it is found alike."""
+    unit = f" [{found.parameter.unit}]" if found.parameter.unit else ""
+    doubtful = not all(e.confirmed for e in found.events)
+    alike: dict[tuple[str, ...], list[int]] = {}
+    for e in found.events:
+        confirmed = ["yes" if e.confirmed else "NO"] if doubtful else []
+        row = (f"{e.value:.9g}", e.element, e.kind, e.before, e.after, *confirmed)
+        alike.setdefault(row, []).append(e.position)
+    words = ("element", "event", "below", "above", *(["confirmed"] if doubtful else []), "at")
+    ordered = sorted(alike.items(), key=lambda item: float(item[0][0]))
+    rows = ((*row, numbers_text(positions)) for row, positions in ordered)
+    made = table((f"{found.parameter.name}{unit}", *words), rows, words)
+    made.columns[0].no_wrap = False
+    title = f"Events from {found.start:g} to {found.stop:g}{unit}"
+    if alike:
+        show(title, made)
+    else:
+        say(f"\n{title}: none")
+    if not doubtful and not found.unproved:
+        say("Proved between certified solves: there are no others.")
+
+
+def _of_critical(found: Critical) -> Makers:
+    unproved = [{"position": u.position, "from": u.start, "to": u.stop} for u in found.unproved]
+    about = {"parameter": found.parameter.name, "unit": found.parameter.unit}
+    return _of_table("critical", found, found.to_dataframe, **about, unproved=unproved)
+
+
+def show_fit(found: Fit) -> None:
+    """Print the fitted values, how sure they are, and what they give."""
+    rows = (
+        (
+            u.parameter.name,
+            u.parameter.unit,
+            f"{u.start:.6g}",
+            f"{u.value:.6g}",
+            "not determined" if math.isinf(u.deviation) else f"{u.deviation:.3g}",
+            f"{u.low:g} … {u.high:g}",
+        )
+        for u in found.unknowns
+    )
+    heads = ("unknown", "unit", "start", "fitted", "±", "bounds")
+    show("Fitted inputs", table(heads, rows, words=("unknown", "unit")))
+    if len(found.unknowns) > 1:
+        names = [u.parameter.name for u in found.unknowns]
+        correlations = (
+            (name, *("–" if math.isnan(c) else f"{c:+.3f}" for c in row))
+            for name, row in zip(names, found.correlation, strict=True)
+        )
+        made = table(("correlation", *names), correlations, words=("correlation",))
+        show("Correlations", made)
+    show_comparison(found.comparison)
+    if len(found.starts) > 1:
+        reached = ", ".join("failed" if math.isnan(chi) else f"{chi:.4g}" for chi in found.starts)
+        say(f"χ² from each starting point: {reached}")
+    say_all(f"WARNING  {warning}" for warning in found.warnings)
+
+
+def _of_fit(found: Fit) -> Makers:
+    def frame() -> pd.DataFrame:
+        import pandas as pd
+
+        rows = [
+            (u.parameter.name, u.parameter.unit, u.start, u.value, u.deviation, u.low, u.high)
+            for u in found.unknowns
+        ]
+        heads = ["unknown", "unit", "start", "fitted", "deviation", "low", "high"]
+        return pd.DataFrame(rows, columns=heads)
+
+    made = _of_table("fit", found, frame, chi_square=found.comparison.chi_square)
+    return {**made, "toml": found.case.to_toml}
+
+
+def show_march(found: March) -> None:
+    """Print load sharing over the march, and what every spline did."""
+    from loadshare.cli.tables.result import print_result
+
+    print_result(found.result, len(found.slips))
+    if not found.slips or not found.slips[0]:
+        say("\nNo spline holds a gear: there is nothing to remember.")
+        return
+    rows = []
+    for gear in found.slips[0]:
+        steps = [step[gear] for step in found.slips]
+        stages = ", ".join(f"{s} {n}×" for s, n in Counter(s.stage for s in steps).most_common())
+        sizes = [float((s.slip @ s.slip) ** 0.5) * 1e6 for s in steps]
+        total = sum(s.dissipated for s in steps)
+        rows.append((gear, stages, f"{min(sizes):.3f} … {max(sizes):.3f}", f"{total:.4g}"))
+    heads = ("spline", "stages", "slip [µm]", "dissipated [J]")
+    show("Splines", table(heads, rows, words=heads[:2]))
+
+
+def _of_march(found: March) -> Makers:
+    return {**_of_table("march", found, found.to_dataframe), **_labelled(found)}
+
+
+def _of_sensitivity(found: Sensitivity) -> Makers:
+    """Return what makes the files of sensitivities; tables hold those of torques."""
+
+    def frame() -> pd.DataFrame:
+        return found.dataset["torque"].to_dataframe().reset_index()
+
+    return {**_of_table("sensitivity", found, frame), **_labelled(found)}
+
+
+MEANS = {"stage": "omega", "group": "pair_omega"}
+
+
+def show_sweep(found: Sweep) -> None:
+    """Print the largest Ω of every stage at every point; by the group where that differs."""
+    tables = {mean: _table(found, kind) for mean, kind in MEANS.items()}
+    texts = [[list(column.cells) for column in made.columns] for made in tables.values()]
+    if texts[0] == texts[1]:
+        tables = {"stage and by group alike": tables["stage"]}
+    for mean, made in tables.items():
+        show(f"Sweep of {found.case}: largest Ω, by {mean}", made)
+
+
+def _table(found: Sweep, kind: str) -> Table:
+    stages = list(found.largest(kind, 0))
+    heads = [f"{p.name} [{p.unit}]" if p.unit else p.name for p in found.parameters]
+    # Where every point is certified, a column that says so would only take room.
+    status = [] if found.passed else ["status"]
+    rows = (
+        (
+            *(f"{value:.6g}" for value in point.values),
+            *map(omega, found.largest(kind, k).values()),
+            *([point.status] if status else []),
+        )
+        for k, point in enumerate(found.points)
+    )
+    made = table((*heads, *(f"Ω {stage}" for stage in stages), *status), rows, words=status)
+    for column in made.columns[: len(heads)]:
+        # A long key is folded, and its figures stay whole.
+        column.no_wrap, column.min_width = False, 9
+    return made
+
+
+def _of_sweep(found: Sweep) -> Makers:
+    about = {"case": found.case, "passed": found.passed}
+    return {**_of_table("sweep", found, found.to_frame, **about), **_labelled(found)}
+
+
+def _of_tolerance(found: Tolerance) -> Makers:
+    """Return what makes the files of a tolerance study: samples, and statistics."""
+    return {
+        **_of_table("tolerance", found, found.to_frame),
+        **_labelled(found),
+        "json": lambda: document_text(statistics_document(found)),
+    }
+
+
+KINDS = {
+    "compare": Kind(show_comparison, _of_comparison),
+    "critical": Kind(show_critical, _of_critical),
+    "fit": Kind(show_fit, _of_fit),
+    "march": Kind(show_march, _of_march),
+    "sensitivity": Kind(show_sensitivity, _of_sensitivity),
+    "sweep": Kind(show_sweep, _of_sweep),
+    "tolerance": Kind(show_tolerance, _of_tolerance),
+}
