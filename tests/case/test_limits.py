@@ -15,7 +15,7 @@ import loadshare as ls
 from benchmarks.limit import limited
 from loadshare.case import load_case
 from loadshare.case.units import si_factor
-from loadshare.cli.changes import read_changes
+from loadshare.cli.cases import read_changes
 from loadshare.cli.main import app
 from loadshare.settings import ALLOWED
 

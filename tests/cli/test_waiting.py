@@ -9,7 +9,7 @@ from contextlib import contextmanager, redirect_stderr
 import pytest
 
 from loadshare.cli import waiting
-from loadshare.cli.quiet import hush
+from loadshare.cli.waiting import hush
 
 pty = pytest.importorskip("pty")
 

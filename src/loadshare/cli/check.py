@@ -8,12 +8,11 @@ from typing import Annotated
 
 import typer
 
-from loadshare.cli.changes import open_case
+from loadshare.cli.cases import find_cases, open_case
 from loadshare.cli.console import say
 from loadshare.cli.everywhere import Json
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import document_text
-from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths, Changes
 from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError, Problem, ResultError

@@ -16,9 +16,8 @@ from loadshare.cli.files import ask_for, kept
 from loadshare.cli.forms import Output
 from loadshare.cli.old_words import renewed
 from loadshare.cli.options import OUTPUT
-from loadshare.cli.quiet import hush
 from loadshare.cli.stop import Stop
-from loadshare.cli.waiting import waiting
+from loadshare.cli.waiting import hush, waiting
 from loadshare.output import STANDARD, clear
 
 PREFIX = "Value error, "

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from loadshare.cli.files import is_stdout_taken
-from loadshare.cli.quiet import is_hushed
-from loadshare.cli.waiting import echo, speak
+from loadshare.cli.waiting import echo, is_hushed, speak
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from loadshare.cli.changes import open_case, read_changes
+from loadshare.cli.cases import open_case, read_changes
 from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
 from loadshare.cli.forms import Output, outputs, write_all
 from loadshare.cli.options import CaseFile, Changes

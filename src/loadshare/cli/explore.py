@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.changes import open_case
+from loadshare.cli.cases import open_case
 from loadshare.cli.console import say
 from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
 from loadshare.cli.options import CaseFile, Changes

@@ -10,8 +10,7 @@ from typing import Any
 import typer
 
 from loadshare.cli.exits import writing
-from loadshare.cli.quiet import is_hushed
-from loadshare.cli.waiting import echo
+from loadshare.cli.waiting import echo, is_hushed
 from loadshare.json_text import json_text
 from loadshare.output import STANDARD, write_whole
 

@@ -7,8 +7,10 @@ needs it, so that the help comes at once and a run does not wait for what it doe
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Sequence
 from functools import cache
+from io import TextIOWrapper
 from typing import Annotated
 
 import typer
@@ -20,16 +22,13 @@ from loadshare.cli.check import check
 from loadshare.cli.command import Command, Group
 from loadshare.cli.draw import draw
 from loadshare.cli.everywhere import taking
+from loadshare.cli.exchange import export, import_machine
 from loadshare.cli.exits import reporting_lack_of_room
 from loadshare.cli.explore import explore
-from loadshare.cli.exporting import export
-from loadshare.cli.importing import import_machine
 from loadshare.cli.ltca import ltca
-from loadshare.cli.new import new
+from loadshare.cli.new import new, schema
 from loadshare.cli.page import report
 from loadshare.cli.run import run
-from loadshare.cli.schema import schema
-from loadshare.cli.streams import open_streams
 from loadshare.cli.study.commands import (
     compare,
     critical,
@@ -42,6 +41,7 @@ from loadshare.cli.study.commands import (
 )
 from loadshare.cli.waiting import echo
 from loadshare.cli.warm import warm
+from loadshare.output import Closed
 
 app = typer.Typer(
     name="loadshare",
@@ -118,6 +118,37 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _built() -> Callable[..., object]:
     """Put the commands together: once, for those who call `main` again and again."""
     return get_command(app)
+
+
+def open_streams() -> None:
+    """Put nothing in the place of streams that are closed, as by ``2>&-`` or by some daemons.
+
+    Files and pipes that are opened would get their numbers, and then what libraries and workers
+    print. That a file was asked for on a closed output is reported when it is written.
+    """
+    for number, stream in enumerate((sys.stdin, sys.stdout, sys.stderr)):
+        if stream is None and not _is_open(number):
+            nowhere = os.open(os.devnull, os.O_RDWR)
+            if nowhere != number:
+                os.dup2(nowhere, number)
+                os.close(nowhere)
+            os.set_inheritable(number, True)
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            setattr(sys, name, Closed(os.fdopen(nowhere, "wb"), encoding="utf-8"))
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            # A stream that cannot show Ω shall show a question mark and go on.
+            stream.reconfigure(errors="replace")
+
+
+def _is_open(number: int) -> bool:
+    try:
+        os.fstat(number)
+    except OSError:
+        return False
+    return True
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""`loadshare new`: a case file to start from."""
+"""`loadshare new` and `loadshare schema`: a case to start from, and its schema."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from loadshare.cli.completion import kind_names
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import save_text, tell_written
 from loadshare.cli.options import Force, output
+from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError
 
 
@@ -55,3 +56,19 @@ def new(
         fail(map(str, error.problems), UNUSABLE)
     save_text(target, text)
     tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")
+
+
+def schema(
+    file: Annotated[Path | None, output(what="Write it to a file instead of stdout.")] = None,
+) -> None:
+    """Print the JSON Schema of a case file, for editors."""
+    import json
+
+    from loadshare.case import case_schema
+
+    text = json.dumps(case_schema(), indent=2, ensure_ascii=False)
+    if file is None:
+        echo(text)
+        return
+    save_text(file, text + "\n")
+    tell_written(file, err=True)

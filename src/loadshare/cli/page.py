@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.changes import read_changes
+from loadshare.cli.cases import find_cases, read_changes
 from loadshare.cli.console import progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail
-from loadshare.cli.find import find_cases
 from loadshare.cli.forms import Output, outputs, write_all
 from loadshare.cli.options import CasePaths, Changes
 from loadshare.report import beside

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, TypeAlias
 
 import typer
 
-from loadshare.cli.changes import open_case
+from loadshare.cli.cases import open_case
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, reporting_problems, writing
 from loadshare.cli.files import document_text, tell_written

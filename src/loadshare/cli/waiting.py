@@ -1,4 +1,4 @@
-"""A line on the terminal while libraries load, gone as soon as there is something else to say.
+"""What is printed at all, and a line while libraries load, gone once there is something to say.
 
 The first command of a fresh installation reads some hundred megabytes of libraries from the disk,
 which takes seconds.
@@ -10,10 +10,9 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 
 import typer
-
-from loadshare.cli.quiet import is_hushed
 
 LINE = "Loading libraries …"
 DELAY = 0.4
@@ -72,3 +71,16 @@ def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
     """Print a line to stdout or stderr."""
     speak()
     typer.echo(text, err=err, nl=nl)
+
+
+_hushed: ContextVar[bool] = ContextVar("hushed", default=False)
+
+
+def hush(wanted: bool) -> None:
+    """From here on print errors only, or everything."""
+    _hushed.set(wanted)
+
+
+def is_hushed() -> bool:
+    """Return whether only errors are printed."""
+    return _hushed.get()

@@ -10,7 +10,7 @@ from tests.tooth.use.pairs import CASE, FACE, SPUR, written
 from typer.testing import CliRunner
 
 from loadshare.case import load_case
-from loadshare.cli.find import find_cases
+from loadshare.cli.cases import find_cases
 from loadshare.cli.main import app
 from loadshare.tooth import resolve
 

@@ -1,17 +1,20 @@
-"""The commands that ask more than one equilibrium of a case: what each asks."""
+"""The commands that ask more than one equilibrium of a case: what each asks, and how it ends."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from loadshare.cli.changes import open_case
+from loadshare.cli.cases import open_case
 from loadshare.cli.completion import study_names
-from loadshare.cli.console import progress, stand, tell_note
-from loadshare.cli.exits import fail
-from loadshare.cli.forms import FIGURES, FOLDER, TABLES, Output, outputs
+from loadshare.cli.console import Tick, progress, stand, tell_note
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
+from loadshare.cli.files import tell_written
+from loadshare.cli.forms import FIGURES, FOLDER, TABLES, Output, outputs, write_all
 from loadshare.cli.options import (
     OVER,
     CaseFile,
@@ -23,13 +26,73 @@ from loadshare.cli.options import (
     ranges_of,
     split_setting,
 )
+from loadshare.cli.refusal import refusal_lines
 from loadshare.cli.stop import Stop
 from loadshare.cli.study.answers import KINDS
-from loadshare.cli.study.common import answered, conclude, running_study
 from loadshare.cli.waiting import echo
+from loadshare.errors import LoadshareError, Refused
 
 if TYPE_CHECKING:
     from loadshare.case import Case
+
+
+@contextmanager
+def running_study(
+    file: Path,
+    change: list[str] | None,
+    what: str,
+    total: int | None = 1,
+    *,
+    rated: bool = False,
+) -> Iterator[tuple[Case, Tick]]:
+    """Open the case of a study and a progress bar; what cannot be answered becomes a message.
+
+    Parameters
+    ----------
+    file : Path
+    change : list of str or None
+        Of ``--set``.
+    what, total, rated
+        Of the bar, as far as known beforehand.
+    """
+    with answered():
+        case = open_case(file, change)
+        with progress(what, total, rated=rated) as tick:
+            yield case, tick
+
+
+@contextmanager
+def answered() -> Iterator[None]:
+    """Turn an unusable case, wrong positions and a refused answer into messages and exit codes."""
+    try:
+        with reporting_problems():
+            yield
+    except Refused as refusal:
+        fail([f"REFUSED  {line}" for line in refusal_lines(refusal)], REFUSED)
+    except LoadshareError as error:
+        fail([str(error)], UNUSABLE)
+    except ValueError as error:
+        if not str(error).startswith("position"):
+            raise
+        fail([str(error)], UNUSABLE)
+
+
+def conclude(kind: str, found: Any, files: list[Output] | None) -> None:
+    """Print the answer of a study, and write its files but a folder of samples, which is there.
+
+    Raises
+    ------
+    typer.Exit
+        With the code of a refusal where the study lacks an answer; says which.
+    """
+    KINDS[kind].show(found)
+    for output in files or ():
+        if output.form == FOLDER:
+            tell_written(output.file, err=True)
+    write_all([o for o in files or () if o.form != FOLDER], KINDS[kind].makers(found))
+    if lines := found._left_open():
+        fail(lines, REFUSED)
+
 
 Files = Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)]
 SWEPT = ("csv", "nc", "parquet", "xlsx", "json", *FIGURES)

@@ -1,4 +1,4 @@
-"""`loadshare import`: a case from the file of another program."""
+"""`loadshare import` and `loadshare export`: from and into the files of other programs."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from typing import Annotated
 
 import typer
 
+from loadshare.cli.cases import open_case
 from loadshare.cli.console import say
-from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
 from loadshare.cli.files import keep_inputs, save_text, tell_written
-from loadshare.cli.options import Force, output
+from loadshare.cli.options import CaseFile, Changes, Force, output
 from loadshare.input import real
 from loadshare.output import STANDARD
 from loadshare.report.numbers import counted
@@ -56,3 +57,30 @@ def import_machine(
         problems = [str(problem) for problem in error.problems]
         fail([*problems, f"{counted(len(problems), 'problem')}."], UNUSABLE)
     tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")
+
+
+def export(
+    case: CaseFile,
+    unit: Annotated[
+        Path, typer.Argument(metavar="UNIT", help="REXS file from which the case was imported.")
+    ],
+    to: Annotated[Path, output(what="Copy of it to write.")],
+    change: Changes = None,
+) -> None:
+    """Solve a case and write what was found into a copy of its REXS file."""
+    from loadshare.errors import Refused
+    from loadshare.exchange.rexs import export_rexs
+    from loadshare.job import solve
+
+    keep_inputs([unit])
+    if to.suffix and to.suffix.lower() != unit.suffix.lower():
+        message = f"{to}: it will be what {unit.name} is; give it that ending, {unit.suffix}"
+        raise typer.BadParameter(message, param_hint="--output")
+    with reporting_problems():
+        loaded = open_case(case, change)
+        try:
+            text = export_rexs(solve(loaded), unit)
+        except Refused as refusal:
+            fail([str(refusal)], REFUSED)
+    save_text(to, text)
+    tell_written(to)
