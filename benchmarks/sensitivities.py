@@ -35,8 +35,7 @@ from loadshare.case.line_of_action import WRITTEN
 from loadshare.job.machine import Machine
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
-from loadshare.study.answers import certified
-from loadshare.study.positions import loaded
+from loadshare.study.positions import certified, loaded
 from loadshare.study.sensitivity import SIDES, Input, Sensitivity
 from loadshare.study.sensitivity.inputs import inputs_of, twin_of
 from loadshare.train import Train, build_train

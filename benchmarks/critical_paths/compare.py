@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.critical_paths.scan import StatesByName
-from loadshare.study.critical import Critical
-from loadshare.study.event import Event
+from loadshare.study.critical import Critical, Event
 
 Array = NDArray[np.float64]
 NEAR = 2e-9

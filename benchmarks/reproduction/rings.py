@@ -25,8 +25,7 @@ from benchmarks.reproduction.stiffness import ALIKE
 from loadshare.case import Case
 from loadshare.report.figure import Figure
 from loadshare.results import Position
-from loadshare.study.critical import critical
-from loadshare.study.event import Event
+from loadshare.study.critical import Event, critical
 from loadshare.study.fit import Fit, fit
 
 CLEARANCES = tuple(0.5 * k for k in range(25))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.support import coasting, lost_contact, round_ring, shipped
 
-from loadshare.study.answers import certified
+from loadshare.study.positions import certified
 from loadshare.study.sensitivity.branch import Setting
 from loadshare.train import build_train
 

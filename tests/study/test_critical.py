@@ -13,11 +13,11 @@ from benchmarks.critical_paths.compare import compared
 from benchmarks.critical_paths.draw import random_path
 from benchmarks.critical_paths.judge import Outcome, followed, judged, shown
 from benchmarks.critical_paths.table import text
-from loadshare.study.answers import certified
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
 from loadshare.study.follow.zero import first_zero
 from loadshare.study.parameter import read_parameter
+from loadshare.study.positions import certified
 from loadshare.study.sensitivity.branch import Setting
 from loadshare.train import build_train
 

@@ -15,8 +15,8 @@ from tests.certify.test_bound_following import two_shafts
 from tests.support import mostly_slow
 
 import loadshare as ls
-from loadshare.study.answers import certified
 from loadshare.study.memory import stepped
+from loadshare.study.positions import certified
 from loadshare.train import Train
 
 LOADS = (1000.0, 1400.0, 700.0, 701.0, 1300.0)

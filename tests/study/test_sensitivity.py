@@ -12,8 +12,8 @@ from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from loadshare.cli.tables.sensitivity import good
 from loadshare.errors import CaseError
 from loadshare.job import machine
-from loadshare.study.answers import certified
 from loadshare.study.parameter import Value
+from loadshare.study.positions import certified
 from loadshare.study.sensitivity import SIDES, Sensitivity, sensitivity
 from loadshare.study.sensitivity.differences import differentiate
 

@@ -7,7 +7,7 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import PrivateAttr
 
@@ -22,6 +22,10 @@ from loadshare.case.revise import differing, revise
 from loadshare.case.table import fixed
 from loadshare.errors import CaseError
 from loadshare.output import write_whole
+from loadshare.view import View
+
+if TYPE_CHECKING:
+    from loadshare.case.gears import Gear
 
 
 class Case(Content):
@@ -200,9 +204,7 @@ class Case(Content):
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
-        from loadshare.case.view import case_view
-
-        return case_view(self).html
+        return _view(self).html
 
 
 def _in_si(part: Any) -> Any:
@@ -212,3 +214,39 @@ def _in_si(part: Any) -> Any:
     if isinstance(part, Element):
         return part.model_dump(mode="json", by_alias=True, context="SI")
     return part
+
+
+ELEMENTS = ("gears", "meshes", "shafts", "splines", "rings", "bearings", "errors")
+
+
+def _view(case: Case) -> View:
+    """Tell what a case is, how it is loaded, and the first of its gears."""
+    counts = {name: len(getattr(case, name)) for name in ELEMENTS}
+    facts = (
+        ("title", case.title),
+        ("source", case.source),
+        ("operating point", _operating(case)),
+        ("elements", ", ".join(f"{name} {count}" for name, count in counts.items() if count)),
+        ("stages", ", ".join(case.stages)),
+        ("assumed", ", ".join(case.assumed)),
+        ("studies", ", ".join(case.study)),
+    )
+    rows = tuple((name, gear.type, _held(case, name, gear)) for name, gear in case.gears.items())
+    return View(f"Case {case.name or 'unnamed'}", facts, ("gear", "type", "held by"), rows)
+
+
+def _operating(case: Case) -> str:
+    point = case.operating
+    if point is None:
+        return ""
+    given = case.to_dict()["operating"]
+    load = ", ".join(f"{k} {given[k]}" for k in ("torque", "power", "speed") if k in given)
+    return f"{point.input} → {point.output}, {load}"
+
+
+def _held(case: Case, name: str, gear: Gear) -> str:
+    if gear.held:
+        return "held"
+    if case.floats(name):
+        return "floats"
+    return gear.support if isinstance(gear.support, str) else "elastic" if gear.support else "rigid"

@@ -1,4 +1,4 @@
-"""Altair for users whom the system knows by number only."""
+"""Altair for users whom the system knows by number only, and the Vega-Lite that it writes."""
 
 import os
 from pathlib import Path
@@ -14,3 +14,10 @@ def import_altair() -> None:
             import altair  # noqa: F401
         finally:
             del os.environ["HOME"]
+
+
+def vega_lite_version() -> str:
+    """Version of Vega-Lite, such as "6.4", in which Altair writes its charts."""
+    import altair as alt
+
+    return ".".join(str(alt.SCHEMA_VERSION).removeprefix("v").split(".")[:2])

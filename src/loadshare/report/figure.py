@@ -14,8 +14,8 @@ from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
 from loadshare.output import write_whole
 from loadshare.report import beside
+from loadshare.report.altair_alone import vega_lite_version
 from loadshare.report.palette import FAINT, INK, SOFT
-from loadshare.report.vega import vega_lite_version
 
 if TYPE_CHECKING:
     from concurrent.futures import Future

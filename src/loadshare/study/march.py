@@ -25,8 +25,8 @@ from loadshare.one_thread import one_thread
 from loadshare.pictures import picture
 from loadshare.results import Result
 from loadshare.settings import CERTIFY, MARCH
-from loadshare.study.answers import BACKEND
 from loadshare.study.memory import stepped
+from loadshare.study.positions import BACKEND
 from loadshare.train import Train, build_train
 from loadshare.train.build import with_laws
 from loadshare.train.elements import Spline

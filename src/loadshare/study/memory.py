@@ -33,7 +33,7 @@ from loadshare.settings import CERTIFY, MARCH
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.solver.hot.proximal import search
 from loadshare.solver.position import Known, equilibrium_of, with_ranges
-from loadshare.study.answers import BACKEND, certified
+from loadshare.study.positions import BACKEND, certified
 from loadshare.train.elements import Spline
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector

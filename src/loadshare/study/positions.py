@@ -1,8 +1,8 @@
-"""Cases as a study takes them, and positions that differ in nothing."""
+"""Cases as a study takes them, positions that differ in nothing, and certified answers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -10,6 +10,12 @@ from loadshare.case import Case
 from loadshare.case.keys import Path as Key
 from loadshare.case.keys import covers, dotted, parse
 from loadshare.case.reader import opened
+from loadshare.errors import Refused
+from loadshare.job.answer import Answer
+from loadshare.job.ladder import climb, climb_all
+from loadshare.job.machine import Machine
+from loadshare.settings import CERTIFY
+from loadshare.solver import Options
 from loadshare.study.parameter import split_outside
 from loadshare.tooth import bears_on_laws, resolve
 from loadshare.train.situations import VARYING, situation_of
@@ -61,3 +67,41 @@ def _situation(train: Train, position: int) -> tuple[object, ...]:
         return (position,)
     situation = situation_of(train, position)
     return tuple(getattr(situation, name).tobytes() for name in VARYING)
+
+
+BACKEND = Options(solver="clarabel")
+"""For trains that remember: the hot path knows holonomic friction only."""
+
+
+def certified(train: Train, position: int) -> Answer:
+    """Solve and certify a position of a train.
+
+    Raises
+    ------
+    Refused
+        If it has no certified equilibrium, or one with displacements that are too large.
+    """
+    return each_certified(train, [position])[0]
+
+
+def each_certified(train: Train, positions: Sequence[int]) -> list[Answer]:
+    """Solve and certify positions of a train, together.
+
+    Raises
+    ------
+    Refused
+        As `certified`, for the first of them that is refused.
+    """
+    found: Iterable[Answer | Refused]
+    if train.slip is not None:
+        found = (climb(train, k, BACKEND, CERTIFY.tolerance) for k in positions)
+    else:
+        found = climb_all(Machine(train), positions, Options(), CERTIFY.tolerance)
+    answers = []
+    for answer in found:
+        refused = answer if isinstance(answer, Refused) else answer.refused()
+        if refused is not None:
+            raise refused
+        assert isinstance(answer, Answer)
+        answers.append(answer)
+    return answers

@@ -8,11 +8,11 @@ from scipy import stats
 from tests.support import shipped
 
 import loadshare as ls
-from loadshare.case.distributions import Spread
+from loadshare.case.study import Spread
 from loadshare.settings import TOLERANCE
+from loadshare.study.tolerance.design import uniforms
 from loadshare.study.tolerance.distribution import Distribution, read_distribution
 from loadshare.study.tolerance.inputs import Inputs, read_inputs
-from loadshare.study.tolerance.points import uniforms
 
 NORMAL = {"distribution": "normal", "mean": "0 um", "deviation": "10 um"}
 COUNT = 40_000

@@ -5,8 +5,7 @@ import pytest
 from scipy import special, stats
 
 from loadshare.settings import TOLERANCE
-from loadshare.study.tolerance.indices import shares
-from loadshare.study.tolerance.statistics import exceedance, quantile, summary, wilson
+from loadshare.study.tolerance.statistics import exceedance, quantile, shares, summary, wilson
 
 
 @pytest.mark.parametrize(

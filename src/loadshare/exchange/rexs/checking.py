@@ -6,11 +6,17 @@ from collections import Counter
 from pathlib import Path
 
 from loadshare.errors import Problem
-from loadshare.exchange.rexs.beam import STIFF
 from loadshare.exchange.rexs.gearing import Gearing
-from loadshare.exchange.rexs.holding import radial
-from loadshare.exchange.rexs.kinds import BEARINGS, COUPLINGS, GEARS, READ, transmits
-from loadshare.exchange.rexs.model import Component, Unread
+from loadshare.exchange.rexs.holding import STIFF, radial
+from loadshare.exchange.rexs.model import (
+    BEARINGS,
+    COUPLINGS,
+    GEARS,
+    READ,
+    Component,
+    Unread,
+    transmits,
+)
 from loadshare.exchange.rexs.routes import applied_loads
 
 OVERLOOKED = ("normal_backlash", "runout", "angular_misalignment")

@@ -11,7 +11,6 @@ from typing import Any
 
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import Data, Imported, commented
-from loadshare.exchange.rexs.balance import balanced
 from loadshare.exchange.rexs.checking import (
     contradictions,
     unknown_gears,
@@ -19,13 +18,12 @@ from loadshare.exchange.rexs.checking import (
     unread_values,
     unused,
 )
-from loadshare.exchange.rexs.flow import flow_of
+from loadshare.exchange.rexs.flow import balanced, flow_of
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.holding import Holding, holding_of
-from loadshare.exchange.rexs.kinds import BEARINGS, COUPLINGS, GEARS, READ
 from loadshare.exchange.rexs.links import Links, links_of
 from loadshare.exchange.rexs.meshing import first_number, meshes_of, stages_of
-from loadshare.exchange.rexs.model import Component
+from loadshare.exchange.rexs.model import BEARINGS, COUPLINGS, GEARS, READ, Component
 from loadshare.exchange.rexs.places import Vector
 from loadshare.exchange.rexs.quantities import torque_of
 from loadshare.exchange.rexs.reading import read_model

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from loadshare.exchange.rexs.beam import NEAR
 from loadshare.exchange.rexs.gearing import Gearing, Joint
+from loadshare.exchange.rexs.holding import NEAR
 from loadshare.exchange.rexs.model import Component
 from loadshare.exchange.rexs.routes import Route, nearest_to, opposite, routes_from
 from loadshare.exchange.rexs.shafts import twist_between

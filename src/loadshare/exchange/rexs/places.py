@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.exchange.rexs.kinds import GEARS
-from loadshare.exchange.rexs.model import Component, Model
+from loadshare.exchange.rexs.model import GEARS, Component, Model
 
 LONG = 6
 """References to the place of another component that follow one another."""

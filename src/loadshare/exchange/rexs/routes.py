@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from loadshare.exchange.rexs.gearing import Gearing, Joint
-from loadshare.exchange.rexs.kinds import COUPLINGS, transmits
-from loadshare.exchange.rexs.model import Component
+from loadshare.exchange.rexs.model import COUPLINGS, Component, transmits
 
 Route = tuple[Joint, ...]
 """Couplings one after the other, each seen from the shaft from which it is reached."""

@@ -4,8 +4,8 @@ from loadshare.exchange.spreadsheet.exporting import (
     export_frames,
     export_tables,
     workbook_of,
+    write_tables,
 )
-from loadshare.exchange.spreadsheet.folder import write_tables
 from loadshare.exchange.spreadsheet.importing import import_tables, is_spreadsheet
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""A case and what was found of it, as the tables of a spreadsheet."""
+"""A case and what was found of it, as tables of a spreadsheet: in a workbook, or in a folder."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from io import BytesIO
 from itertools import chain
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from loadshare.case.content import Content
@@ -18,9 +19,9 @@ from loadshare.exchange.spreadsheet.cells import (
     value_of,
     with_common_unit,
 )
-from loadshare.exchange.spreadsheet.importing import ABOUT, ALONE
+from loadshare.exchange.spreadsheet.importing import ABOUT, ALONE, sheet_names
 from loadshare.exchange.spreadsheet.sheet import FOUND
-from loadshare.output import csv_of, without_formulas
+from loadshare.output import clear, csv_of, without_formulas, write_together
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -177,3 +178,33 @@ def _texts(heads: list[str], rows: list[list[str]]) -> pd.DataFrame:
     import pandas as pd
 
     return pd.DataFrame(rows, columns=heads, dtype=object)
+
+
+NEEDED = "operating"
+"""Sheet without which no folder is a case."""
+
+
+def write_tables(folder: FilePath, tables: Mapping[str, pd.DataFrame]) -> None:
+    """Write tables as the CSV files of a folder, and remove those of an earlier answer.
+
+    Other files of the folder stay. An interruption leaves the tables that were there, or the new
+    ones, or a folder that is refused as a case.
+
+    Parameters
+    ----------
+    folder : Path
+    tables : mapping of str to pandas.DataFrame
+        As `export_frames` has them.
+
+    Raises
+    ------
+    NotWritten
+        If a table cannot be written.
+    """
+    from loadshare.results.dataset import TABLES
+
+    texts = {folder / f"{name}.csv": csv_of(frame) for name, frame in tables.items()}
+    own = (*sheet_names(), *(FOUND + name for name in TABLES.values()))
+    files = [folder / f"{name}.csv" for name in own]
+    clear(files)
+    write_together(texts, [file for file in files if file not in texts], folder / f"{NEEDED}.csv")

@@ -9,7 +9,7 @@ from hashlib import sha256
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from loadshare.report.vega import vega_lite_version
+from loadshare.report.altair_alone import vega_lite_version
 from loadshare.user_cache import digest_of, read_entry, write_entry
 
 if TYPE_CHECKING:

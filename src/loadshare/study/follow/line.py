@@ -17,10 +17,10 @@ from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
-from loadshare.study.answers import certified
 from loadshare.study.follow.active import States, coordinates, read_states
 from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.parameter import Parameter, Value, applied
+from loadshare.study.positions import certified
 from loadshare.train import Train, build_train
 from loadshare.train.placed import standing
 from loadshare.train.samples import Samples, samples_of

@@ -19,8 +19,7 @@ from loadshare.study.sensitivity.differences import Slope
 from loadshare.study.sensitivity.directional import Neighbourhood
 from loadshare.study.sensitivity.motion import Motion
 from loadshare.study.sensitivity.result import SIDES, Rates, Remark
-from loadshare.study.sensitivity.trains import Trains
-from loadshare.study.sensitivity.variation import Variation, torques_of
+from loadshare.study.sensitivity.variation import Trains, Variation, torques_of
 from loadshare.train import Train
 from loadshare.train.placed import standing
 

@@ -17,12 +17,11 @@ from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
 from loadshare.results.share import coefficients
 from loadshare.settings import SENSITIVITY
-from loadshare.study.answers import each_certified
-from loadshare.study.positions import loaded
+from loadshare.study.positions import each_certified, loaded
 from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
 from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity
-from loadshare.study.sensitivity.trains import Trains
+from loadshare.study.sensitivity.variation import Trains
 from loadshare.tooth import bears_on_laws, resolve
 from loadshare.train import Train
 from loadshare.train.build import train_of

@@ -13,9 +13,8 @@ from loadshare.case.words import count
 from loadshare.errors import LoadshareError
 from loadshare.pictures import picture
 from loadshare.study.tolerance.folder import Folder
-from loadshare.study.tolerance.indices import Share
 from loadshare.study.tolerance.inputs import Inputs
-from loadshare.study.tolerance.statistics import Estimate, Summary
+from loadshare.study.tolerance.statistics import Estimate, Share, Summary
 from loadshare.study.tolerance.worst import WorstCase
 from loadshare.view import View, Viewed, figure, listed
 

@@ -24,7 +24,6 @@ from loadshare.study.positions import loaded
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.folder import WORST as WORST_FILE
 from loadshare.study.tolerance.folder import Folder
-from loadshare.study.tolerance.indices import Share, shares
 from loadshare.study.tolerance.inputs import read_inputs
 from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
 from loadshare.study.tolerance.omegas import apart_kinds, column_of, omega_statistics
@@ -35,7 +34,7 @@ from loadshare.study.tolerance.result import (
     counted,
 )
 from loadshare.study.tolerance.resume import check_part
-from loadshare.study.tolerance.statistics import Summary, summary
+from loadshare.study.tolerance.statistics import Share, Summary, shares, summary
 from loadshare.study.tolerance.temporary import TemporaryFolder
 from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
 from loadshare.train import build_train
