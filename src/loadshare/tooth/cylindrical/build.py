@@ -97,17 +97,14 @@ def _partner_problems(
     elif kind < 0:
         key, ring, pinion = _ring_first(driver, driven)
         if ring.teeth <= pinion.teeth:
-            few, allowed = "an internal gear needs more teeth than its pinion", pinion.teeth
-            yield problem(f"{key}.teeth", ring.teeth, few, f"more than {allowed}")
+            few = "an internal gear needs more teeth than its pinion"
+            yield problem(f"{key}.teeth", ring.teeth, few, f"more than {pinion.teeth}")
     for name in ("inclination", "deviation", "axial_shift"):
         if driver.helices == 2 and getattr(misalignment, name):
-            yield problem(
-                f"misalignment.{name}",
-                getattr(misalignment, name),
-                "the two halves of a herringbone pair would no longer be alike",
-                "0 for a herringbone pair",
-                "Treat the halves as two helical pairs.",
-            )
+            what = "the two halves of a herringbone pair would no longer be alike"
+            allowed = "0 for a herringbone pair"
+            hint = "Treat the halves as two helical pairs."
+            yield problem(f"misalignment.{name}", getattr(misalignment, name), what, allowed, hint)
 
 
 def _ring_first(
@@ -146,13 +143,10 @@ def _mesh_problems(pair: HelicoidPair) -> Iterator[Problem]:
         allowed = f"less than {millimetres(reach)}"
         yield problem("misalignment.axial_shift", millimetres(shift), apart, allowed)
     elif not found and (total < 1.0 or pair.contact_ratio <= 0.0):
-        yield problem(
-            "driver.addendum",
-            driver.addendum,
-            f"the contact ratio is {total:.3f}: at some positions no teeth are in contact",
-            "a contact ratio of 1 or more",
-            "Larger addenda, a smaller centre distance or a wider helical gear raise it.",
-        )
+        what = f"the contact ratio is {total:.3f}: at some positions no teeth are in contact"
+        allowed = "a contact ratio of 1 or more"
+        hint = "Larger addenda, a smaller centre distance or a wider helical gear raise it."
+        yield problem("driver.addendum", driver.addendum, what, allowed, hint)
 
 
 def _tip_problems(

@@ -79,20 +79,14 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
         room = math.pi / 4 - gear.dedendum * slope
         largest = room / (1.0 / math.cos(gear.pressure_angle) - slope)
         lower = f"0, with a dedendum of at most {digits(math.pi / 4 / slope)}"
-        yield problem(
-            f"{key}.tip_radius",
-            gear.tip_radius,
-            "the tip of the generating rack has no room for this radius",
-            f"at most {digits(largest)} with this dedendum" if room >= 0.0 else lower,
-        )
+        what = "the tip of the generating rack has no room for this radius"
+        allowed = f"at most {digits(largest)} with this dedendum" if room >= 0.0 else lower
+        yield problem(f"{key}.tip_radius", gear.tip_radius, what, allowed)
     if gear.profile_shift < gear.least_profile_shift - TEETH.fits:
-        yield problem(
-            f"{key}.profile_shift",
-            gear.profile_shift,
-            "the generating rack undercuts the teeth",
-            f"at least {gear.least_profile_shift:.4f} with {gear.teeth} teeth",
-            "A smaller dedendum, a larger tip radius or more teeth help too.",
-        )
+        what = "the generating rack undercuts the teeth"
+        allowed = f"at least {gear.least_profile_shift:.4f} with {gear.teeth} teeth"
+        hint = "A smaller dedendum, a larger tip radius or more teeth help too."
+        yield problem(f"{key}.profile_shift", gear.profile_shift, what, allowed, hint)
     if gear.tip <= gear.base_radius:
         least = digits(gear.addendum_to(gear.base_radius))
         inside = "the tip lies inside the base circle"
@@ -101,13 +95,10 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
         largest = -math.inf
         if gear.base_half_angle > 0.0:
             largest = gear.addendum_to(gear.pointed)
-        yield problem(
-            addendum,
-            gear.addendum,
-            "the teeth are pointed below this tip",
-            f"less than {digits(largest)} with this profile shift",
-            "A smaller profile shift helps too.",
-        )
+        what = "the teeth are pointed below this tip"
+        allowed = f"less than {digits(largest)} with this profile shift"
+        hint = "A smaller profile shift helps too."
+        yield problem(addendum, gear.addendum, what, allowed, hint)
 
 
 def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
@@ -127,9 +118,6 @@ def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     # The space is narrower the deeper it is.
     wide = deep and fillet_angle(gear) <= math.pi / gear.teeth
     if not (deep and wide):
-        yield problem(
-            f"{key}.tip_radius",
-            gear.tip_radius,
-            "the tooth space has no room for this root radius",
-            f"a smaller tip radius, or a {'smaller' if deep else 'larger'} dedendum",
-        )
+        what = "the tooth space has no room for this root radius"
+        allowed = f"a smaller tip radius, or a {'smaller' if deep else 'larger'} dedendum"
+        yield problem(f"{key}.tip_radius", gear.tip_radius, what, allowed)

@@ -91,19 +91,13 @@ def _values(gear: FaceGear) -> Iterator[Check]:
 def _shaper_problems(gear: FaceGear) -> Iterator[Problem]:
     shaper = gear.shaper
     if shaper.tip <= shaper.base_radius or shaper.tip_half_angle < 0.0:
-        yield problem(
-            "driven.shaper.addendum",
-            shaper.addendum,
-            "the shaper's teeth are pointed below this tip, or lie inside its base circle",
-            "a smaller addendum or profile shift of the shaper",
-        )
+        what = "the shaper's teeth are pointed below this tip, or lie inside its base circle"
+        allowed = "a smaller addendum or profile shift of the shaper"
+        yield problem("driven.shaper.addendum", shaper.addendum, what, allowed)
     if gear.axial_scale <= 0.0:
-        yield problem(
-            "driven.shaft_angle",
-            gear.shaft_angle,
-            "shaper and gear do not roll on each other at this angle",
-            f"more than {degrees(math.acos(min(1.0, 1.0 / gear.roll_ratio)))}",
-        )
+        what = "shaper and gear do not roll on each other at this angle"
+        allowed = f"more than {degrees(math.acos(min(1.0, 1.0 / gear.roll_ratio)))}"
+        yield problem("driven.shaft_angle", gear.shaft_angle, what, allowed)
 
 
 def _partner_problems(pinion: HelicoidGear, shaper: Shaper) -> list[Problem]:
@@ -126,33 +120,24 @@ def _shift_problems(pinion: HelicoidGear, shaper: Shaper) -> Iterator[Problem]:
     room = 0.5 * teeth * inv(shaper.pressure_angle) / math.tan(shaper.pressure_angle)
     if not (excess <= TEETH.fits if teeth == 0 else excess < room):
         largest = digits(shaper.profile_shift + room)
-        yield problem(
-            "driver.profile_shift",
-            pinion.profile_shift,
-            "the pinion's teeth are too thick for the spaces that the shaper has cut",
-            f"{'at most' if teeth == 0 else 'less than'} {largest}",
-            "Give the shaper the same profile shift.",
-        )
+        what = "the pinion's teeth are too thick for the spaces that the shaper has cut"
+        allowed = f"{'at most' if teeth == 0 else 'less than'} {largest}"
+        hint = "Give the shaper the same profile shift."
+        yield problem("driver.profile_shift", pinion.profile_shift, what, allowed, hint)
 
 
 def _limit_problems(gear: FaceGear) -> Iterator[Problem]:
     undercut, pointed = undercut_limit(gear), pointing_limit(gear)
     if gear.inner < undercut:
-        yield problem(
-            "driven.inner",
-            gear.inner,
-            "the shaper's tip undercuts the teeth at the inner end",
-            f"at least L1 = {millimetres(undercut)}",
-            "A smaller addendum of the shaper lowers this limit.",
-        )
+        what = "the shaper's tip undercuts the teeth at the inner end"
+        allowed = f"at least L1 = {millimetres(undercut)}"
+        hint = "A smaller addendum of the shaper lowers this limit."
+        yield problem("driven.inner", gear.inner, what, allowed, hint)
     if gear.outer > pointed:
-        yield problem(
-            "driven.outer",
-            gear.outer,
-            "the teeth are pointed at the outer end",
-            f"at most L2 = {millimetres(pointed)}",
-            "A smaller addendum of the gear raises this limit.",
-        )
+        what = "the teeth are pointed at the outer end"
+        allowed = f"at most L2 = {millimetres(pointed)}"
+        hint = "A smaller addendum of the gear raises this limit."
+        yield problem("driven.outer", gear.outer, what, allowed, hint)
 
 
 def _mesh_problems(pair: FaceGearPair) -> Iterator[Problem]:
@@ -178,30 +163,21 @@ def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:
         allowed = f"{more} than {millimetres(contact)}"
         yield problem(f"driven.{end}", getattr(gear, end), beyond, allowed)
     elif beside >= 0.5 * pinion.face_width:
-        yield problem(
-            "driver.face_width",
-            pinion.face_width,
-            "the ideal pair's point of contact lies beyond the end of the pinion",
-            f"more than {millimetres(2.0 * beside)}",
-            "Or choose inner and outer end so that their middle is nearer the contact.",
-        )
+        what = "the ideal pair's point of contact lies beyond the end of the pinion"
+        allowed = f"more than {millimetres(2.0 * beside)}"
+        hint = "Or choose inner and outer end so that their middle is nearer the contact."
+        yield problem("driver.face_width", pinion.face_width, what, allowed, hint)
     deepest = pair.shaper_roll(pinion.tip_roll)
     if deepest > shaper.tip_roll or pair.axis_distance + pinion.tip >= shaper.tip:
         roll = pair.pinion_roll(shaper.tip_roll)
         tip = min(pinion.base_radius * math.hypot(1.0, roll), shaper.tip - pair.axis_distance)
-        yield problem(
-            "driver.addendum",
-            pinion.addendum,
-            "the tip of the pinion cuts into the root of the face gear",
-            f"less than {digits(pinion.addendum_to(tip))} with the shaper's addendum",
-            "A larger addendum of the shaper makes room.",
-        )
+        what = "the tip of the pinion cuts into the root of the face gear"
+        allowed = f"less than {digits(pinion.addendum_to(tip))} with the shaper's addendum"
+        hint = "A larger addendum of the shaper makes room."
+        yield problem("driver.addendum", pinion.addendum, what, allowed, hint)
     if pair.roll_range[0] < pinion.form_roll - TEETH.fits:
         roll, angle = max(pair.shaper_roll(pinion.form_roll), 0.0), pair.working_angle
         depth = shaper.base_radius * (math.cos(angle) + roll * math.sin(angle))
-        yield problem(
-            "driven.addendum",
-            gear.addendum,
-            "the tip of the face gear cuts into the root fillet of the pinion",
-            f"less than about {digits((shaper.radius - depth) / shaper.module)}",
-        )
+        what = "the tip of the face gear cuts into the root fillet of the pinion"
+        allowed = f"less than about {digits((shaper.radius - depth) / shaper.module)}"
+        yield problem("driven.addendum", gear.addendum, what, allowed)
