@@ -6,17 +6,20 @@ The room that draws is above them; `loadshare`, which knows every room, says her
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-_drawn_by: list[Callable[[], Callable[..., Any]]] = []
+if TYPE_CHECKING:
+    from loadshare.report.figure import Figure
+
+_drawn_by: list[Callable[[], Callable[..., Figure]]] = []
 
 
-def drawn_by(who: Callable[[], Callable[..., Any]]) -> None:
+def drawn_by(who: Callable[[], Callable[..., Figure]]) -> None:
     """Let `who`, called when the first picture is asked for, return the function that draws."""
     _drawn_by[:] = [who]
 
 
-def picture(found: object, *settings: Any, **named: Any) -> Any:
+def picture(found: object, *settings: Any, **named: Any) -> Figure:
     """Return the picture, or the choice of pictures, of what was found."""
     (who,) = _drawn_by
     return who()(found, *settings, **named)

@@ -38,6 +38,11 @@ def dotted(path: Path) -> str:
     return text
 
 
+def with_unit(name: str, unit: str) -> str:
+    """Return a name with the unit of its values in brackets, where they have one."""
+    return f"{name} [{unit}]" if unit else name
+
+
 @lru_cache(maxsize=4096)
 def parse(text: str) -> Path:
     """Return the key path that dotted text names.

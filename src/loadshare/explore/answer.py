@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from dataclasses import astuple
 from typing import Any
 
 from loadshare.case import Case
@@ -231,23 +232,7 @@ def case_of(inputs: Inputs) -> Plain:
     return {
         "title": case.title or case.name,
         "name": case.name,
-        "inputs": [
-            [
-                one.key,
-                one.text,
-                one.number,
-                one.unit,
-                one.low,
-                one.high,
-                one.step,
-                one.whole,
-                one.turning,
-                one.about,
-                one.assumed,
-                one.geometry,
-            ]
-            for one in inputs.every.values()
-        ],
+        "inputs": [list(astuple(one)) for one in inputs.every.values()],
         "tied": tied(inputs),
         "positions": train.count,
         "angles": angles(case),

@@ -44,7 +44,7 @@ COARSE = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """One number that a page may change.
+    """One number that a page may change; a page is given its attributes in this order.
 
     Attributes
     ----------

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from loadshare.case.table import Table
 from loadshare.certify import Certificate, FloatState
@@ -385,8 +385,7 @@ class Result:
 
         Each returns a `Figure`; ``.save("floats.svg")`` writes it.
         """
-        plots: Plots = picture(self)
-        return plots
+        return cast("Plots", picture(self))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as the JSON file holds it."""

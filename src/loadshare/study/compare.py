@@ -16,7 +16,7 @@ from loadshare.case.measured import COEFFICIENTS, Measurement
 from loadshare.errors import CaseError
 from loadshare.job import Progress, solve
 from loadshare.pictures import picture
-from loadshare.results import Result
+from loadshare.results import Position, Result
 from loadshare.study.positions import loaded
 from loadshare.view import View, Viewed
 
@@ -127,8 +127,7 @@ class Comparison(Viewed):
 
     def plot(self) -> Figure:
         """Picture of how far every computed figure is from the measured one."""
-        drawn: Figure = picture(self)
-        return drawn
+        return picture(self)
 
     def _view(self) -> View:
         """Show measured against computed figures."""
@@ -240,14 +239,20 @@ def computed(case: Case, wanted: Iterable[Target], result: Result) -> list[float
 
 def _computed(target: Target, result: Result) -> float:
     """Return one of them; NaN where there is none."""
+    values = [getattr(p, kind)[mesh] for p, kind, mesh in _of_meshes(target, result)]
+    if target.quantity in MEANS:
+        return float(np.mean([np.nan if v is None else v for v in values]))
+    return max((s for s in values if s is not None), default=np.nan)
+
+
+def _of_meshes(target: Target, result: Result) -> list[tuple[Position, str, str]]:
+    """Positions, quantities and meshes whose mean or largest value a figure is."""
     at = [p for p in result.positions if target.position in (None, p.position)]
     if target.quantity in MEANS:
-        values = [getattr(p, target.quantity)[target.where] for p in at]
-        return float(np.mean([np.nan if v is None else v for v in values]))
+        return [(p, target.quantity, target.where) for p in at]
     kind = "pair_share" if target.quantity == "pair_omega" else "share"
     meshes = [m for s, own in result.stages.items() if target.where in (s, "system") for m in own]
-    shares = [getattr(p, kind)[m] for p in at for m in meshes]
-    return max((s for s in shares if s is not None), default=np.nan)
+    return [(p, kind, mesh) for p in at for mesh in meshes]
 
 
 def slope(target: Target, result: Result, rate: Callable[[int, str], Mapping[str, float]]) -> float:
@@ -260,11 +265,9 @@ def slope(target: Target, result: Result, rate: Callable[[int, str], Mapping[str
     rate : callable
         Derivatives by mesh of a quantity ("torque", "share", "pair_share") at a position.
     """
-    at = [p for p in result.positions if target.position in (None, p.position)]
+    found = _of_meshes(target, result)
     if target.quantity in MEANS:
-        return float(np.mean([rate(p.position, target.quantity)[target.where] for p in at]))
-    kind = "pair_share" if target.quantity == "pair_omega" else "share"
-    meshes = [m for s, own in result.stages.items() if target.where in (s, "system") for m in own]
-    largest = [(getattr(p, kind)[m] or 0.0, p.position, m) for p in at for m in meshes]
-    _, position, mesh = max(largest)
+        return float(np.mean([rate(p.position, kind)[mesh] for p, kind, mesh in found]))
+    largest = [(getattr(p, kind)[m] or 0.0, p.position, kind, m) for p, kind, m in found]
+    _, position, kind, mesh = max(largest)
     return float(rate(position, kind)[mesh])

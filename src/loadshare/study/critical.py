@@ -238,8 +238,7 @@ class Critical(Viewed):
 
     def plot(self) -> Figure:
         """Picture of the events: an element in a row, the input along x."""
-        drawn: Figure = picture(self)
-        return drawn
+        return picture(self)
 
     def _view(self) -> View:
         """Show the interval, what is not proved, and the events."""

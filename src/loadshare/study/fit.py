@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -129,8 +130,7 @@ class Fit(Viewed):
 
     def plot(self) -> Figure:
         """Picture of how far every figure, computed at the fitted values, is from the measured."""
-        drawn: Figure = picture(self)
-        return drawn
+        return picture(self)
 
     def _view(self) -> View:
         """Show the fitted inputs, how well they fit, and what the data leave open."""
@@ -275,15 +275,11 @@ class _Problem:
         """Values of the unknowns from their places between the bounds."""
         return np.asarray(self.low + np.clip(u, 0.0, 1.0) * (self.high - self.low))
 
-    def applied(self, u: Array) -> Case:
-        """Return the case at a point."""
-        return applied(self.case, self.parameters, self.numbers(u))
-
     def solved(self, u: Array) -> tuple[Case, Result]:
         """Return the case and its certified result at a point; the last one is kept."""
         key = u.tobytes()
         if self._last is None or self._last[0] != key:
-            case = self.applied(u)
+            case = applied(self.case, self.parameters, self.numbers(u))
             self._last = (key, case, solve(case, positions=self.positions))
             self.evaluations += 1
         return self._last[1], self._last[2]
@@ -310,12 +306,8 @@ class _Problem:
     def _column(self, rates: Sensitivity, result: Result, key: str) -> Array:
         """Derivatives of the figures with respect to one key, per unit of its value."""
         factor = next(item.value.factor for item in rates.inputs if item.key == key)
-        return factor * np.array(
-            [
-                slope(t, result, lambda position, kind: _mean(rates, position, key, kind))
-                for t in self.targets
-            ]
-        )
+        rate = partial(_mean, rates, key)
+        return factor * np.array([slope(t, result, rate) for t in self.targets])
 
     def descend(self, start: Array) -> tuple[float, Array]:
         """Return the χ² and the point to which a start leads."""
@@ -384,7 +376,7 @@ class _Problem:
         )
 
 
-def _mean(rates: Sensitivity, position: int, key: str, kind: str) -> dict[str, float]:
+def _mean(rates: Sensitivity, key: str, position: int, kind: str) -> dict[str, float]:
     """Derivatives by mesh; at a kink the mean of both sides, or the one that exists."""
     sides = [getattr(rates.rates[position, key, side], kind) for side in ("falling", "rising")]
     found = {}

@@ -117,8 +117,7 @@ class March(Viewed):
         over : {"stage", "group"}
             Mean to which the torque of a branch is compared.
         """
-        drawn: Figure = picture(self, over)
-        return drawn
+        return picture(self, over)
 
     def _view(self) -> View:
         """Show how far the march went, how load was shared, and what the splines dissipated."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from loadshare.case import Case, Study
+from loadshare.case import Case
 from loadshare.case.reader import opened
 from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
@@ -66,38 +65,24 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
         raise CaseError(
             [Problem(case.name, f"study.{name}", "", "is not in the case", allowed, hint)]
         )
-    arguments = _ARGUMENTS[block.kind](block, name)
+    arguments = {to: getattr(block, key) for to, key in _ARGUMENTS[block.kind].items()}
+    if block.kind == "tolerance":
+        arguments = {"study": name}
     run = getattr(import_module("loadshare"), block.kind)
     found: Found = run(case, **arguments, progress=progress)
     return found
 
 
-_ARGUMENTS: dict[str, Callable[[Study, str], dict[str, Any]]] = {
-    "sweep": lambda block, _: {
-        "parameters": {
-            key: list(values) if isinstance(values, tuple) else values
-            for key, values in (block.over or {}).items()
-        },
-        "positions": block.positions,
-    },
-    "critical": lambda block, _: {
-        "key": block.keys or (),
-        "start": block.start,
-        "stop": block.stop,
-        "positions": block.positions,
-    },
-    "sensitivity": lambda block, _: {"inputs": block.keys, "positions": block.positions},
-    "march": lambda block, _: {
-        "gear": block.gear,
-        "revolutions": block.revolutions,
-        "steps": block.steps,
-    },
-    "compare": lambda *_: {},
-    "fit": lambda block, _: {
-        "unknowns": dict((block.unknowns or {}).items()),
-        "starts": block.starts,
-        "seed": block.seed,
-    },
-    "tolerance": lambda _, name: {"study": name},
+_ARGUMENTS: dict[str, dict[str, str]] = {
+    "sweep": {"parameters": "over", "positions": "positions"},
+    "critical": {"key": "keys", "start": "start", "stop": "stop", "positions": "positions"},
+    "sensitivity": {"inputs": "keys", "positions": "positions"},
+    "march": {"gear": "gear", "revolutions": "revolutions", "steps": "steps"},
+    "compare": {},
+    "fit": {"unknowns": "unknowns", "starts": "starts", "seed": "seed"},
+    "tolerance": {},
 }
-"""What the function of each kind of study is given besides the case."""
+"""What the function of each kind of study is given: by argument, the key that holds it.
+
+A tolerance study reads its table itself.
+"""

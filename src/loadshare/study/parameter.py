@@ -11,7 +11,7 @@ from typing import Any
 
 from loadshare.case import Case
 from loadshare.case.content import ABOUT
-from loadshare.case.keys import Path, dotted, look_up, parse
+from loadshare.case.keys import Path, dotted, look_up, parse, with_unit
 from loadshare.case.quantity import NUMBER, Dimension, as_text
 from loadshare.case.units import si_factor
 from loadshare.case.words import did_you_mean
@@ -137,6 +137,11 @@ class Parameter:
     keys: tuple[str, ...]
     unit: str
 
+    @property
+    def column(self) -> str:
+        """Its name with the unit in brackets."""
+        return with_unit(self.name, self.unit)
+
     def changes(self, number: float) -> dict[str, Any]:
         """Return the changes that `Case.replace` takes."""
         return dict.fromkeys(self.keys, Value(float(number), self.unit).text)
@@ -155,8 +160,7 @@ def check_apart(parameters: Iterable[Parameter]) -> None:
         for key in parameter.keys:
             if key in seen:
                 message = f"is set by {seen[key]} and by {parameter.name}"
-                allowed = "one parameter for each key"
-                raise CaseError([Problem(STUDY, key, "", message, allowed)])
+                raise _unusable(key, message, "one parameter for each key")
             seen[key] = parameter.name
 
 
@@ -209,14 +213,13 @@ def matches(case: Case, pattern: str) -> tuple[str, ...]:
     CaseError
         If the text is no key path, or the pattern matches nothing.
     """
+    allowed = "a text such as rings.4.float"
     try:
         wanted = parse(pattern.strip())
     except ValueError:
-        raise _unusable(pattern, "is not a key path", "a text such as rings.4.float") from None
+        raise _unusable(pattern, "is not a key path", allowed) from None
     if wanted[0] in ABOUT:
-        raise _unusable(
-            pattern, "describes the case and is no input", "a text such as rings.4.float"
-        )
+        raise _unusable(pattern, "describes the case and is no input", allowed)
     if not any("*" in str(step) for step in wanted):
         return (dotted(wanted),)
     data = case.to_dict()

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.case import Case
+from loadshare.case.keys import with_unit
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
@@ -169,8 +170,7 @@ class Sweep(Viewed):
         LoadshareError
             If there is no such variable, name or position.
         """
-        drawn: Figure = picture(self, show, names=names, position=position, events=events)
-        return drawn
+        return picture(self, show, names=names, position=position, events=events)
 
     def to_frame(self) -> pd.DataFrame:
         """Torques and coefficients as a table, one row per point, position and mesh."""
@@ -190,14 +190,10 @@ class Sweep(Viewed):
 
     def _view(self) -> View:
         """Show the grid, what became of its points, and the largest Ω at each."""
-        grids = zip(self.parameters, self.grids, strict=True)
-        facts = [
-            (
-                p.name,
-                f"{values[0]:g} to {values[-1]:g} {p.unit}".rstrip() + f", {len(values)} values",
-            )
-            for p, values in grids
-        ]
+        facts = []
+        for p, values in zip(self.parameters, self.grids, strict=True):
+            ends = f"{values[0]:g} to {values[-1]:g} {p.unit}".rstrip()
+            facts.append((p.name, f"{ends}, {len(values)} values"))
         counts = Counter(p.status for p in self.points)
         facts.append(("points", ", ".join(f"{count} {status}" for status, count in counts.items())))
         rows = tuple(
@@ -210,8 +206,7 @@ class Sweep(Viewed):
             )
             for k, point in enumerate(self.points)
         )
-        heads = (f"{p.name} [{p.unit}]" if p.unit else p.name for p in self.parameters)
-        columns = (*heads, "status", "largest Ω")
+        columns = (*(p.column for p in self.parameters), "status", "largest Ω")
         return View(f"Sweep of {self.case}", tuple(facts), columns, rows)
 
     def _left_open(self) -> list[str]:
@@ -315,7 +310,7 @@ def sweep(
 def _samples(chosen: Sequence[Parameter], values: Array) -> dict[str, Array]:
     """Return the points as `solve_many` takes them."""
     return {
-        f"{key} [{parameter.unit}]" if parameter.unit else key: values[:, number]
+        with_unit(key, parameter.unit): values[:, number]
         for number, parameter in enumerate(chosen)
         for key in parameter.keys
     }

@@ -171,8 +171,7 @@ def sweep_frame(sweep: Sweep) -> pd.DataFrame:
     table = table.sort_index(kind="stable")
     order = table.index.to_numpy()
     for k, parameter in enumerate(sweep.parameters):
-        label = f"{parameter.name} [{parameter.unit}]" if parameter.unit else parameter.name
-        table.insert(k, label, np.array([p.values[k] for p in sweep.points])[order])
+        table.insert(k, parameter.column, np.array([p.values[k] for p in sweep.points])[order])
     for name in ("status", "message"):
         table[name] = np.array([getattr(p, name) for p in sweep.points], dtype=object)[order]
     return table.reset_index(drop=True)

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.case.keys import Path, dotted, parse
+from loadshare.case.keys import Path, dotted, parse, with_unit
 from loadshare.case.quantity import as_text
 from loadshare.case.units import si_factor
 from loadshare.errors import CaseError, Problem
@@ -46,7 +46,7 @@ class Column:
     @property
     def key(self) -> str:
         """The key with the unit, as a table of samples has it."""
-        return f"{dotted(self.path)} [{self.unit}]" if self.unit else dotted(self.path)
+        return with_unit(dotted(self.path), self.unit)
 
     @property
     def has_numbers(self) -> bool:

@@ -195,7 +195,7 @@ def show_sweep(found: Sweep) -> None:
 
 def _table(found: Sweep, kind: str) -> Table:
     stages = list(found.largest(kind, 0))
-    heads = [f"{p.name} [{p.unit}]" if p.unit else p.name for p in found.parameters]
+    heads = [p.column for p in found.parameters]
     # Where every point is certified, a column that says so would only take room.
     status = [] if found.passed else ["status"]
     rows = (

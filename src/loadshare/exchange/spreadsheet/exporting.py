@@ -10,7 +10,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from loadshare.case.content import Content
-from loadshare.case.keys import Path, dotted
+from loadshare.case.keys import Path, dotted, with_unit
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.spreadsheet.cells import (
     head_of,
@@ -158,7 +158,7 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
     """
     given = [value for value in values if value is not None]
     unit, shown = with_common_unit(given)
-    head = f"{dotted(path)} [{unit}]" if unit else dotted(path)
+    head = with_unit(dotted(path), unit)
     texts = iter([text_of(value) for value in shown])
     cells = ["" if value is None else next(texts) for value in values]
     read, read_unit = head_of(head, above)

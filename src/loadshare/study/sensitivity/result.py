@@ -165,8 +165,7 @@ class Sensitivity(Viewed):
         over : {"stage", "group"}
             Over whose mean torque Ω is.
         """
-        drawn: Figure = picture(self, stage, over)
-        return drawn
+        return picture(self, stage, over)
 
     def _view(self) -> View:
         """Show the largest derivatives of Ω of the system, and what a reader must know of them."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -144,37 +145,33 @@ def _omegas(
     kind: str,
 ) -> tuple[dict[tuple[str, str], dict[str, float]], dict[tuple[str, str], dict[str, float]]]:
     """Derivatives of the largest Ω by input and side, then by stage; and their errors."""
-    largest = {
-        (item.key, side): _largest(train, corners, rates, item.key, side, kind)
-        for item in inputs
-        for side in SIDES
-    }
-    return (
-        {at: {stage: s.rate for stage, s in slopes.items()} for at, slopes in largest.items()},
-        {at: {stage: s.error for stage, s in slopes.items()} for at, slopes in largest.items()},
-    )
+    slopes, errors = {}, {}
+    for at in product((item.key for item in inputs), SIDES):
+        largest = _largest(train, corners, rates, at, kind)
+        slopes[at] = {stage: slope.rate for stage, slope in largest.items()}
+        errors[at] = {stage: slope.error for stage, slope in largest.items()}
+    return slopes, errors
 
 
 def _largest(
     train: Train,
     corners: list[Corner],
     rates: dict[tuple[int, str, str], Rates],
-    key: str,
-    side: str,
+    at: tuple[str, str],
     kind: str,
 ) -> dict[str, Slope]:
-    """Derivative of the largest Ω of each stage, and of the system, to one side."""
+    """Derivative of the largest Ω of each stage, and of the system, by an input to one side."""
     found: dict[str, Slope] = {}
     for stage in train.stages:
         groups = [stage.meshes] if kind == "share" else stage.groups
         near: list[Slope] = []
         for corner in corners:
             shares = coefficients(corner.torque, groups, corner.largest_torque)
-            here = rates[corner.position, key, side]
+            here = rates[corner.position, *at]
             slopes, errors = getattr(here, kind), getattr(here.error, kind)
             near += [Slope(s, slopes[m], errors[m]) for m, s in shares.items() if s is not None]
-        found[stage.name] = _steepest(near, side)
-    found["system"] = _steepest(list(found.values()), side)
+        found[stage.name] = _steepest(near, at[1])
+    found["system"] = _steepest(list(found.values()), at[1])
     return found
 
 

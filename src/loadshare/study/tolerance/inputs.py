@@ -11,7 +11,7 @@ import numpy as np
 
 from loadshare.case import Case, Study
 from loadshare.case.iso1328 import tolerances_of
-from loadshare.case.keys import dotted, parse
+from loadshare.case.keys import dotted, parse, with_unit
 from loadshare.case.study import CLASS, Group, Spread
 from loadshare.errors import CaseError, Problem
 from loadshare.scene.scene import Array
@@ -47,15 +47,11 @@ class Input:
     @property
     def column(self) -> str:
         """Its name with the unit in brackets."""
-        return self._with_unit(self.name)
-
-    def _with_unit(self, name: str) -> str:
-        unit = self.distribution.unit
-        return f"{name} [{unit}]" if unit else name
+        return with_unit(self.name, self.distribution.unit)
 
     def samples(self, values: Array) -> dict[str, Array]:
         """Return values by key and unit, as `loadshare.solve_many` takes them."""
-        return {self._with_unit(key): values for key in self.keys}
+        return {with_unit(key, self.distribution.unit): values for key in self.keys}
 
     def changes(self, value: float) -> dict[str, Any]:
         """Return the changes that `Case.replace` takes."""

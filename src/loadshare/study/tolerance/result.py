@@ -188,8 +188,7 @@ class Tolerance(Viewed):
         """
         if not self.omega:
             raise LoadshareError("a case without stages has torques, but no Ω to draw")
-        drawn: Figure = picture(self, stage, over)
-        return drawn
+        return picture(self, stage, over)
 
     def _view(self) -> View:
         """Show how many samples have an answer, the distribution of Ω, and the worst case self."""
