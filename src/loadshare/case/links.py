@@ -160,11 +160,7 @@ class Spline(Element):
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the ways to give the friction."""
         allowed = "friction_force; friction and normal_force; or friction and radius"
-        ways = [
-            {"friction_force"},
-            {"friction", "normal_force"},
-            {"friction", "radius"},
-        ]
+        ways = [{"friction_force"}, {"friction", "normal_force"}, {"friction", "radius"}]
         given = self.given("friction_force", "friction", "normal_force", "radius")
         if not given:
             yield Rule("has no friction bound", allowed=allowed)
@@ -249,15 +245,8 @@ class Ring(Element):
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the two forms."""
         forms = "drum (neighbours, float, clearance) or circle (radius, offset)"
-        drum = [
-            key
-            for key, name in (
-                ("neighbours", "neighbours"),
-                ("float", "float_"),
-                ("clearance", "clearance"),
-            )
-            if name in self.model_fields_set
-        ]
+        names = ("neighbours", "float_", "clearance")
+        drum = [name.rstrip("_") for name in names if name in self.model_fields_set]
         circle = [key for key in ("radius", "offset") if key in self.model_fields_set]
         if drum and circle:
             yield Rule(f"mixes two forms: {', '.join(drum)}; {', '.join(circle)}", allowed=forms)
@@ -295,9 +284,8 @@ class RollingElements(Element):
         """Yield what does not hold of the elements."""
         kinds = self.given("balls", "rollers")
         if len(kinds) != 1:
-            yield Rule(
-                "has either balls or rollers", allowed="balls and diameter, or rollers and length"
-            )
+            allowed = "balls and diameter, or rollers and length"
+            yield Rule("has either balls or rollers", allowed=allowed)
             return
         needed, idle = ("diameter", "length") if kinds == ["balls"] else ("length", "diameter")
         if getattr(self, needed) is None:

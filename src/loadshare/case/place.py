@@ -11,6 +11,10 @@ from loadshare.case.meshes import Mesh
 from loadshare.involute import distance_without_backlash
 
 Vector: TypeAlias = tuple[float, float, float]
+Placed: TypeAlias = Mapping[str, Vector]
+"""Centres that are known, by gear."""
+Near: TypeAlias = Mapping[str, Gear]
+"""Gears that mesh with one, by name."""
 
 COAXIAL = 1e-6
 """How far centres on one axis may be apart, as a part of the size of what is there [-]."""
@@ -59,11 +63,11 @@ def centres_of(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> dict[st
         and those whose distance is neither given nor follows.
     """
     placed: dict[str, Vector] = {}
-    partners: dict[str, list[str]] = {name: [] for name in gears}
+    partners: dict[str, dict[str, Gear]] = {name: {} for name in gears}
     for mesh in meshes.values():
         if set(mesh.ends) <= gears.keys():
-            partners[mesh.driver].append(mesh.driven)
-            partners[mesh.driven].append(mesh.driver)
+            partners[mesh.driver][mesh.driven] = gears[mesh.driven]
+            partners[mesh.driven][mesh.driver] = gears[mesh.driver]
     ready: dict[str, Vector] = {}
     while True:
         placed |= ready
@@ -73,7 +77,7 @@ def centres_of(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> dict[st
             ready = {
                 name: centre
                 for name, gear in waiting.items()
-                if (centre := way(gear, partners[name], gears, placed)) is not None
+                if (centre := way(gear, partners[name], placed)) is not None
             }
             if ready:
                 break
@@ -101,14 +105,12 @@ def along_z(gear: Gear) -> bool:
     return abs(axis_of(gear)[2]) == 1.0
 
 
-def _has_pole(gear: Gear, placed: Mapping[str, Vector]) -> bool:
+def _has_pole(gear: Gear, placed: Placed) -> bool:
     centre = gear.centre
     return not isinstance(centre, Polar) or centre.about is None or centre.about in placed
 
 
-def _given(
-    gear: Gear, partners: list[str], gears: Mapping[str, Gear], placed: Mapping[str, Vector]
-) -> Vector | None:
+def _given(gear: Gear, _partners: Near, placed: Placed) -> Vector | None:
     """The centre of a gear, where it is given."""
     centre = gear.centre
     if not isinstance(centre, Polar):
@@ -117,20 +119,16 @@ def _given(
     return None if centre.distance is None else _polar(centre, centre.distance.si, placed)
 
 
-def _from_pole(
-    gear: Gear, partners: list[str], gears: Mapping[str, Gear], placed: Mapping[str, Vector]
-) -> Vector | None:
+def _from_pole(gear: Gear, partners: Near, placed: Placed) -> Vector | None:
     """The centre of a gear that meshes with its pole."""
     centre = gear.centre
-    if not isinstance(centre, Polar) or centre.about not in partners:
+    if not isinstance(centre, Polar) or centre.about is None or centre.about not in partners:
         return None
-    distance = _apart(gear, gears[centre.about])
+    distance = _apart(gear, partners[centre.about])
     return None if distance is None else _polar(centre, distance, placed)
 
 
-def _from_axis(
-    gear: Gear, partners: list[str], gears: Mapping[str, Gear], placed: Mapping[str, Vector]
-) -> Vector | None:
+def _from_axis(gear: Gear, partners: Near, placed: Placed) -> Vector | None:
     """The centre of a gear that meshes with others on its pole's axis."""
     centre = gear.centre
     if not isinstance(centre, Polar) or centre.about in partners:
@@ -138,8 +136,7 @@ def _from_axis(
     pole = _pole(centre, placed)
     external: list[float] = []
     internal: list[float] = []
-    for partner in partners:
-        other = gears[partner]
+    for partner, other in partners.items():
         distance = _apart(gear, other)
         if distance is None or partner not in placed:
             continue
@@ -161,15 +158,12 @@ def _apart(one: Gear, two: Gear) -> float | None:
         return None
 
 
-def _pole(centre: Polar, placed: Mapping[str, Vector]) -> Vector:
+def _pole(centre: Polar, placed: Placed) -> Vector:
     return placed[centre.about] if centre.about is not None else (0.0, 0.0, 0.0)
 
 
-def _polar(centre: Polar, distance: float, placed: Mapping[str, Vector]) -> Vector:
+def _polar(centre: Polar, distance: float, placed: Placed) -> Vector:
     x, y, z = _pole(centre, placed)
     angle = centre.angle.si
-    return (
-        x + distance * math.cos(angle),
-        y + distance * math.sin(angle),
-        z + centre.height.si,
-    )
+    across, up = distance * math.cos(angle), distance * math.sin(angle)
+    return (x + across, y + up, z + centre.height.si)

@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 from loadshare.case.gears import Gear
-from loadshare.case.links import Shaft
-from loadshare.case.meshes import Mesh
-from loadshare.case.operation import Operating
+
+if TYPE_CHECKING:
+    from loadshare.case.content import Sections
 
 Steps = list[tuple[str, str]]
 
 
-def steps(
-    gears: Mapping[str, Gear], meshes: Mapping[str, Mesh], shafts: Mapping[str, Shaft]
-) -> Steps:
+def steps(case: Sections) -> Steps:
     """Return the steps of the torque: driver to driven over meshes, either way over shafts.
 
     In a train with planetary sets it goes either way over all meshes and pins: which member drives
     is no matter of names, nor which way the power of a loop over several sets goes round.
     """
-    found = [mesh.ends for mesh in meshes.values()]
-    both = [shaft.ends for shaft in shafts.values()]
-    both += found if has_sets(gears) else []
-    both += [(name, gear.carrier) for name, gear in gears.items() if gear.carrier]
+    found = [mesh.ends for mesh in case.meshes.values()]
+    both = [shaft.ends for shaft in case.shafts.values()]
+    both += found if has_sets(case.gears) else []
+    both += [(name, gear.carrier) for name, gear in case.gears.items() if gear.carrier]
     for a, b in both:
         found += [(a, b), (b, a)]
     return found
@@ -60,28 +59,22 @@ def backwards(taken: Steps) -> Steps:
     return [(b, a) for a, b in taken]
 
 
-def from_the_other_end(
-    operating: Operating,
-    gears: Mapping[str, Gear],
-    meshes: Mapping[str, Mesh],
-    shafts: Mapping[str, Shaft],
-) -> bool:
-    """Tell whether the input is where the meshes' names put the output."""
-    forward = steps(gears, meshes, shafts)
+def from_the_other_end(case: Sections) -> bool:
+    """Tell whether the input is where the meshes' names put the output; not without a load."""
+    operating = case.operating
+    if operating is None:
+        return False
+    forward = steps(case)
     ahead, behind = reach([operating.input], forward), reach([operating.input], backwards(forward))
     return operating.output not in ahead and operating.output in behind
 
 
-def against_the_names(
-    operating: Operating,
-    gears: Mapping[str, Gear],
-    meshes: Mapping[str, Mesh],
-    shafts: Mapping[str, Shaft],
-) -> tuple[bool, ...]:
+def against_the_names(case: Sections) -> tuple[bool, ...]:
     """Tell for every input torque whether it presses the flanks that the meshes' names do not.
 
     It does where the torque is negative (the input brakes), and where the input is at the other
     end; both together press the usual flanks.
     """
-    turned = from_the_other_end(operating, gears, meshes, shafts)
-    return tuple((torque < 0.0) != turned for torque in operating.input_torque if torque)
+    turned = from_the_other_end(case)
+    torques = case.operating.input_torque if case.operating else ()
+    return tuple((torque < 0.0) != turned for torque in torques if torque)

@@ -14,13 +14,12 @@ from loadshare.report.figures.layout import Body, Layout, layout_of
 from loadshare.report.figures.marks import Point, circle
 from loadshare.report.figures.region import Journey
 from loadshare.report.flanks import carrying, reaction_size
-from loadshare.report.numbers import significant
 from loadshare.report.palette import Palette, palette_of
-from loadshare.report.units import MICROMETRE, MILLIMETRE, engineering
+from loadshare.report.units import MICROMETRE, MILLIMETRE, read_best
 from loadshare.report.words import direction_name
 from loadshare.results import Position, Result
 from loadshare.train import Train, build_train
-from loadshare.train.gear import Vector, transverse_frame
+from loadshare.train.gear import Vector
 
 Plain = dict[str, Any]
 PLACES = 4
@@ -39,7 +38,6 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
         region, rest = journey.region, journey.rests[0]
         view = _square(journey.view, [p.displacement[gear] for p in result.positions])
         size = reaction_size(shown, gear)
-        force = engineering([size], "N")
         yield {
             "gear": gear,
             "colour": palette.gear(gear).colour,
@@ -55,7 +53,7 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
             "path": [_point(p.displacement[gear]) for p in result.positions],
             "here": _point(shown.displacement[gear]),
             "reaction": [v / size for v in rest.reaction] if size else None,
-            "force": f"{significant(force.of(size))} {force.name}" if size else "",
+            "force": read_best(size, "N") if size else "",
             "told": journey.subtitle[:-1],
         }
 
@@ -81,13 +79,11 @@ def force_shapes(train: Train, shown: Position) -> Iterator[Plain]:
     for flank in carrying(shown):
         mesh = train.meshes[flank.mesh]
         normal = mesh.drive_normal if flank.drive else mesh.coast_normal
-        unit = engineering([flank.force], "N")
         yield {
             "mesh": flank.mesh,
             "force": flank.force,
             "push": normal.round(6).tolist(),
-            "text": f"{flank.where}, on gear {mesh.driven}: "
-            f"{significant(unit.of(flank.force))} {unit.name}",
+            "text": f"{flank.where}, on gear {mesh.driven}: {read_best(flank.force, 'N')}",
         }
 
 
@@ -103,28 +99,21 @@ def train_shapes(case: Case) -> Plain | None:
     layout = layout_of(case, train)
     if not layout.bodies:
         return None
-    ends = {pair.name: (pair.driver, pair.driven) for pair in layout.pairs}
-    palette = Palette(layout.bodies, ends)
-    axis = layout.common_axis
-    frame = transverse_frame(axis)
-    frames = [frame]
-    if layout.heights_differ(axis):
-        frames.append(np.array([frame[0], axis]))
-    return {"views": [_view(layout, palette, frame) for frame in frames]}
+    return {"views": [_view(layout, frame) for frame in layout.frames]}
 
 
-def _view(layout: Layout, palette: Palette, frame: Vector) -> Plain:
-    bodies = sorted(layout.bodies.values(), key=lambda b: -layout.reach(b))
+def _view(layout: Layout, frame: Vector) -> Plain:
+    bodies = layout.large_first
     reach = np.vstack([_flat(b.circle(layout.reach(b)), frame) for b in bodies])
     low, high = reach.min(axis=0), reach.max(axis=0)
-    against = np.cross(frame[0], frame[1])
+    palette = layout.palette
     return {
-        "title": f"Seen against {direction_name(against)}",
+        "title": f"Seen against {direction_name(np.cross(frame[0], frame[1]))}",
         "axes": [direction_name(v) for v in frame],
         "frame": frame.tolist(),
         "low": low.round(PLACES).tolist(),
         "high": high.round(PLACES).tolist(),
-        "gears": [_gear(layout, palette, body, frame, against) for body in bodies],
+        "gears": [_gear(layout, palette, body, frame) for body in bodies],
         "shafts": [_line((layout.bodies[n].centre for n in ends), frame) for ends in layout.shafts],
         "meshes": [
             {"name": pair.name, "at": _line([pair.pitch_point], frame)[0]} for pair in layout.pairs
@@ -132,9 +121,9 @@ def _view(layout: Layout, palette: Palette, frame: Vector) -> Plain:
     }
 
 
-def _gear(layout: Layout, palette: Palette, body: Body, frame: Vector, against: Vector) -> Plain:
+def _gear(layout: Layout, palette: Palette, body: Body, frame: Vector) -> Plain:
     full, dashed = layout.radii(body)
-    is_round = abs(float(against @ body.axis)) > 1.0 - 1e-6
+    is_round = body.is_round(frame)
     return {
         "name": body.name,
         "colour": palette.gear(body.name).colour,

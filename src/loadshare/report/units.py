@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from loadshare.report.numbers import significant
+
 
 @dataclass(frozen=True, slots=True)
 class Unit:
@@ -67,3 +69,9 @@ def engineering(values: Iterable[float], unit: str) -> Unit:
     if largest < ROUND_OFF and unit == "m":
         return MICROMETRE
     return next(known for known, end in ladder if largest < end)
+
+
+def read_best(value: float, unit: str, digits: int = 4) -> str:
+    """Return a value [SI] with so many significant digits in the unit in which it is read best."""
+    best = engineering([value], unit)
+    return f"{significant(best.of(value), digits)} {best.name}"

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from loadshare.certify import FloatState
 from loadshare.certify.validity import LABELS, NEITHER
 from loadshare.report.numbers import runs, significant
-from loadshare.report.units import engineering
+from loadshare.report.units import engineering, read_best
 from loadshare.results import Position, Result
 from loadshare.results.differences import ROUND_OFF
 from loadshare.train.period import Period
@@ -57,14 +57,12 @@ def rest_lines(
     margins = [r.margin for r in rests if r.state == "inside" and r.margin is not None]
     if margins:
         least = min(margins)
-        unit = engineering([least], "m")
-        lines.append(f"least margin inside {significant(unit.of(least), 3)} {unit.name}")
+        lines.append(f"least margin inside {read_best(least, 'm', 3)}")
     forces = [math.hypot(*rest.reaction) for rest in rests]
     most = max(forces)
     if most > least and len(rests) > 1 and most - min(forces) > 1e-6 * most:
-        unit = engineering([most], "N")
         at = positions[forces.index(most)]
-        lines.append(f"reaction up to {significant(unit.of(most))} {unit.name}, at position {at}")
+        lines.append(f"reaction up to {read_best(most, 'N')}, at position {at}")
     return lines
 
 
@@ -94,11 +92,10 @@ def spline_lines(rests: Sequence[FloatState], least: float = 0.0) -> list[str]:
     if not stages:
         return []
     most = max(rest.spline_force for rest in rests)
-    unit = engineering([most], "N")
     text = ", ".join(
         stage if len(stages) == 1 else f"{stage} at {count}" for stage, count in stages.items()
     )
-    force = f"{significant(unit.of(most))} {unit.name}" if most > least else "0 N"
+    force = read_best(most, "N") if most > least else "0 N"
     return [f"spline: {text}; force up to {force}"]
 
 

@@ -104,7 +104,7 @@ def pressed_flanks(
 
 def _against_the_names(case: spec.Case, torque: NDArray[np.float64]) -> Flags:
     """Whether torques (positions, S) run against the names of the meshes: all that are not 0."""
-    other_end = from_the_other_end(case.operating, case.gears, case.meshes, case.shafts)
+    other_end = from_the_other_end(case)
     against = np.where(torque != 0.0, (torque < 0.0) != other_end, True)
     return np.asarray(against.all(axis=0) & (torque != 0.0).any(axis=0))
 

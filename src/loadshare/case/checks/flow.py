@@ -130,7 +130,7 @@ def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:
     """
     if not _known(draft) or draft.operating is None:
         return
-    against = against_the_names(draft.operating, draft.gears, draft.meshes, draft.shafts)
+    against = against_the_names(draft)
     given = {n for n, m in draft.meshes.items() if m.given("backlash", "normal_backlash")}
     if not any(against) or (all(against) and not given):
         return
@@ -152,14 +152,10 @@ def _known(draft: Draft) -> bool:
 
 def _steps(draft: Draft) -> Steps:
     """The steps of the torque from the input on, along the names of the meshes or against them."""
-    taken = draft.once("steps", lambda: steps(draft.gears, draft.meshes, draft.shafts))
+    taken = draft.once("steps", lambda: steps(draft))
     return backwards(taken) if _turned(draft) else taken
 
 
 def _turned(draft: Draft) -> bool:
     """Whether the input is where the meshes' names put the output."""
-    operating = draft.operating
-    if operating is None:
-        return False
-    elements = draft.gears, draft.meshes, draft.shafts
-    return draft.once("turned", lambda: from_the_other_end(operating, *elements))
+    return draft.once("turned", lambda: from_the_other_end(draft))

@@ -43,8 +43,7 @@ def critical(found: Critical) -> Figure:
     ]
     elements = list(dict.fromkeys(e["element"] for e in events)) or ["no event"]
     kinds = list(dict.fromkeys(e["event"] for e in events))
-    unit = f" [{found.parameter.unit}]" if found.parameter.unit else ""
-    x = axis(alt.X, "value:Q", f"{found.parameter.name}{unit}", [found.start, found.stop])
+    x = axis(alt.X, "value:Q", found.parameter.column, [found.start, found.stop])
     looks = alt.Axis(domain=False, ticks=False, grid=True, labelLimit=LABEL)
     y = alt.Y("element:N", title=None, scale=alt.Scale(domain=elements), axis=looks)
     layers: list[Drawing] = []
@@ -67,7 +66,7 @@ def critical(found: Critical) -> Figure:
             color=alt.Color("event:N", scale=colours, legend=legend if kinds else None),
             shape=alt.Shape("event:N", scale=shapes, legend=legend if kinds else None),
             tooltip=hover(
-                ("value:Q", found.parameter.name + unit, ".8g"),
+                ("value:Q", found.parameter.column, ".8g"),
                 "position:Q",
                 "element:N",
                 "event:N",

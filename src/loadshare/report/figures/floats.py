@@ -15,9 +15,8 @@ from loadshare.report.figures.labels import Labels
 from loadshare.report.figures.marks import Drawing, Panel, Point, Row, circle, hover, path_rows
 from loadshare.report.figures.region import Journey, Region
 from loadshare.report.flanks import reaction_size
-from loadshare.report.numbers import significant
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
-from loadshare.report.units import MICROMETRE, engineering
+from loadshare.report.units import MICROMETRE, engineering, read_best
 from loadshare.report.words import boundary_name, direction_name, places_text
 from loadshare.results import Result
 from loadshare.train import Train
@@ -213,8 +212,7 @@ class _Panel(Panel):
         shaft = self._shaft()
         if shaft:
             size = math.hypot(*journey.hardest_rest.reaction)
-            force = engineering([size], "N")
-            labels.place(f"{significant(force.of(size))} {force.name}", [shaft[1]])
+            labels.place(read_best(size, "N"), [shaft[1]])
         found = labels.layers(self.x, self.y, WARNING)
         spots = self._spots() if len(self.places) > 1 else []
         for place, numbers in spots if len(spots) <= NUMBERED else spots[::5]:

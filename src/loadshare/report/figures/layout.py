@@ -14,6 +14,7 @@ from loadshare.case.content import Sections
 from loadshare.case.line_of_action import line_of_action
 from loadshare.case.place import axis_of
 from loadshare.report.flanks import Flank
+from loadshare.report.palette import Palette
 from loadshare.train import Train
 from loadshare.train.gear import Vector, transverse_frame
 from loadshare.train.ring import transverse
@@ -56,6 +57,10 @@ class Body:
     sense: int
     held: str
     role: str
+
+    def is_round(self, frame: Vector) -> bool:
+        """Whether a view shows it as a circle, not from the side."""
+        return abs(float(np.cross(frame[0], frame[1]) @ self.axis)) > 1.0 - 1e-6
 
     def circle(self, radius: float, start: float = 0.0, turn: float = 2.0 * math.pi) -> Vector:
         """Points (n, 3) [m] on a circle about the axis, from angle `start` on over `turn` [rad]."""
@@ -132,7 +137,28 @@ class Layout:
 
         return max(bodies, key=alike).axis
 
-    def heights_differ(self, axis: Vector) -> bool:
+    @property
+    def palette(self) -> Palette:
+        """Looks of the gears, as in all pictures of the case."""
+        return Palette(self.bodies, {p.name: (p.driver, p.driven) for p in self.pairs})
+
+    @property
+    def frames(self) -> list[Vector]:
+        """What is to the right and upwards in every view.
+
+        The first is along the common axis; one from the side, where heights differ, has that axis
+        upwards, and to the right what is there in the first.
+        """
+        axis = self.common_axis
+        frame = transverse_frame(axis)
+        return [frame, np.array([frame[0], axis])] if self._heights_differ(axis) else [frame]
+
+    @property
+    def large_first(self) -> list[Body]:
+        """The gears, large ones first, so that small ones lie on top."""
+        return sorted(self.bodies.values(), key=lambda body: -self.reach(body))
+
+    def _heights_differ(self, axis: Vector) -> bool:
         """Whether there is more to be seen from the side."""
         heights = [float(body.centre @ axis) for body in self.bodies.values()]
         size = max(body.base_radius for body in self.bodies.values())

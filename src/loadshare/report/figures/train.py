@@ -27,12 +27,12 @@ from loadshare.report.figures.marks import (
 )
 from loadshare.report.flanks import carrying
 from loadshare.report.numbers import significant
-from loadshare.report.palette import INK, SOFT, WARNING, Palette
+from loadshare.report.palette import INK, SOFT, WARNING
 from loadshare.report.units import MILLIMETRE
 from loadshare.report.words import direction_name
 from loadshare.results import Position, Result
 from loadshare.train import Train, build_train
-from loadshare.train.gear import Vector, transverse_frame
+from loadshare.train.gear import Vector
 
 WIDTH, HEIGHT = 620.0, 560.0
 """Room for a view [px]."""
@@ -79,14 +79,7 @@ def train(case: Sections, result: Result | None = None) -> Figure:
     layout = layout_of(case, train, list(carrying(first)) if first else None)
     if not layout.bodies:
         raise LoadshareError("no gear has a centre that could be read, so nothing can be drawn")
-    ends = {pair.name: (pair.driver, pair.driven) for pair in layout.pairs}
-    palette = Palette(layout.bodies, ends)
-    axis = layout.common_axis
-    frame = transverse_frame(axis)
-    views = [_View(layout, palette, frame, plan=True)]
-    if layout.heights_differ(axis):
-        # Upwards is the common axis; to the right stays to the right.
-        views.append(_View(layout, palette, np.array([frame[0], axis]), plan=False))
+    views = [_View(layout, frame, plan=k == 0) for k, frame in enumerate(layout.frames)]
     scale = min(view.scale for view in views)
     panels = [view.chart(scale) for view in views]
     subtitle = [
@@ -126,10 +119,9 @@ def _misfit_text(pair: Pair) -> str:
 class _View(Panel):
     """The train seen along one direction; lengths in millimetres."""
 
-    def __init__(self, layout: Layout, palette: Palette, frame: Vector, *, plan: bool) -> None:
-        self.layout, self.palette, self.frame, self.plan = layout, palette, frame, plan
-        # Large gears first, so that small ones lie on top.
-        self.bodies = sorted(layout.bodies.values(), key=lambda b: -self.layout.reach(b))
+    def __init__(self, layout: Layout, frame: Vector, *, plan: bool) -> None:
+        self.layout, self.palette, self.frame, self.plan = layout, layout.palette, frame, plan
+        self.bodies = layout.large_first
         reach = np.vstack([self._flat_array(b.circle(self.layout.reach(b))) for b in self.bodies])
         low, high = reach.min(axis=0), reach.max(axis=0)
         room = 0.04 * float(high[0] - low[0])
@@ -170,10 +162,6 @@ class _View(Panel):
 
     def _flat(self, points: Vector) -> list[Point]:
         return [(float(x), float(y)) for x, y in np.atleast_2d(self._flat_array(points))]
-
-    def _is_round(self, body: Body) -> bool:
-        """Whether a gear is seen as a circle, not from the side."""
-        return abs(float(np.cross(self.frame[0], self.frame[1]) @ body.axis)) > 1.0 - 1e-6
 
     def _circles(self) -> list[Any]:
         hollow, full, dashed = list[Row](), list[Row](), list[Row]()
@@ -250,7 +238,7 @@ class _View(Panel):
         rows: list[Row] = []
         head = 0.014 * (self.high[0] - self.low[0])
         for body in self.bodies:
-            if body.sense == 0 or not self._is_round(body):
+            if body.sense == 0 or not body.is_round(self.frame):
                 continue
             internal = body.kind == "internal"
             radius = self.layout.reach(body) if internal else 0.72 * body.base_radius

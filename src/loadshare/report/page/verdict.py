@@ -9,7 +9,7 @@ from loadshare.report import records
 from loadshare.report.flanks import carrying, least_force, reaction_size
 from loadshare.report.numbers import NONE, significant, small
 from loadshare.report.records import Cell, Record, Table, table
-from loadshare.report.units import engineering
+from loadshare.report.units import engineering, read_best
 from loadshare.report.words import advice, rest_lines, spline_lines, undetermined_lines
 from loadshare.results import Result
 from loadshare.results.laws import law_lines
@@ -75,14 +75,8 @@ def resting(result: Result) -> Table:
         rests = [p.floats[gear] for p in result.positions]
         lines = [*rest_lines(rests, numbers, least), *spline_lines(rests, least)]
         most = max(reaction_size(p, gear) for p in result.positions)
-        unit = engineering([most], "N")
-        rows.append(
-            {
-                "gear": Cell(gear),
-                "rests": Cell("; ".join(lines)),
-                "reaction": Cell(f"{significant(unit.of(most), DIGITS)} {unit.name}", most),
-            }
-        )
+        reaction = Cell(read_best(most, "N", DIGITS), most)
+        rows.append({"gear": Cell(gear), "rests": Cell("; ".join(lines)), "reaction": reaction})
     heads = {"reaction": "reaction, most"}
     return table("Where the floats rest", rows, ("gear", "rests"), ("reaction",), heads)
 
@@ -114,7 +108,7 @@ def largest_forces(result: Result) -> Iterator[Record]:
         yield {
             "what": Cell(what),
             "where": Cell(where if value else NONE),
-            "value": Cell(f"{significant(unit.of(value), DIGITS)} {unit.name}", value),
+            "value": Cell(read_best(value, of, DIGITS), value),
         }
 
 
