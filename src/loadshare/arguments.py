@@ -6,16 +6,16 @@ from collections.abc import Iterable
 from numbers import Integral
 
 
-def whole(name: str, given: object, least: int = 1) -> int:
+def whole(name: str, given: object) -> int:
     """Return a whole number, of NumPy as well, as Python's.
 
     Raises
     ------
     ValueError
-        If it is none, or below `least`.
+        If it is none, or below 1.
     """
-    if not isinstance(given, Integral) or isinstance(given, bool) or given < least:
-        raise ValueError(f"{name} {given!r}; allowed: a whole number from {least} on")
+    if not isinstance(given, Integral) or isinstance(given, bool) or given < 1:
+        raise ValueError(f"{name} {given!r}; allowed: a whole number from 1 on")
     return int(given)
 
 

@@ -135,6 +135,15 @@ def walk(data: Mapping[str, Any], above: Path = ()) -> Iterator[Path]:
             yield from walk(value, (*above, key))
 
 
+def values_in(data: Mapping[str, Any], above: Path = ()) -> Iterator[tuple[Path, Any]]:
+    """Yield the path of every value that is no table, with the value."""
+    for key, value in data.items():
+        if isinstance(value, Mapping):
+            yield from values_in(value, (*above, key))
+        else:
+            yield (*above, key), value
+
+
 def covers(pattern: Path, path: Path) -> bool:
     """Tell whether a pattern names a key or a table above it.
 

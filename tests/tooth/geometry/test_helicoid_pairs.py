@@ -283,6 +283,6 @@ def test_tooth_thickness_by_the_tabled_formula():
 def test_the_cycle_begins_at_the_pitch_point_in_the_middle_of_the_common_face(data):
     mesh = pair(**data)
     driver, _ = mesh.ideal(np.zeros(1))
-    middle = np.array([0.5 * sum(mesh.axial_range)])
+    middle = np.array([0.5 * sum(mesh.ends)])
     roll = mesh.roll(np.zeros(1), middle, driver)
     np.testing.assert_allclose(roll, math.tan(mesh.working_angle), rtol=1e-12)

@@ -61,10 +61,10 @@ def unplaced(of: Gearing) -> list[str]:
 def contradictions(path: Path, of: Gearing) -> list[Problem]:
     """Return a problem for every gear that is on several shafts or has part of a tooth."""
     problems = []
-    pairs = list(of.model.related("assembly", "assembly", "part"))
     for gear in of.gears:
         where = f"{gear.type} {gear.id}"
-        shafts = {whole.id for whole, part in pairs if part is gear and whole.type == "shaft"}
+        wholes = (whole for whole, part in of.model.parts if part is gear)
+        shafts = {whole.id for whole in wholes if whole.type == "shaft"}
         if len(shafts) > 1:
             why = f"is on {len(shafts)} shafts: {', '.join(sorted(shafts))}"
             problems.append(Problem(str(path), where, "", why, "one shaft"))

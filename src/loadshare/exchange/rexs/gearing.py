@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from loadshare.case.place import Vector
 from loadshare.exchange.rexs.model import (
     BEARINGS,
     COUPLINGS,
@@ -20,7 +21,7 @@ from loadshare.exchange.rexs.model import (
     may_turn,
     transmits,
 )
-from loadshare.exchange.rexs.places import Places, Vector, ahead, dot
+from loadshare.exchange.rexs.places import Places, ahead, dot
 
 Stage = tuple[Component, Component, Component]
 """A stage and both its gears."""
@@ -96,7 +97,7 @@ class Gearing:
     @cached_property
     def loose(self) -> list[Stage]:
         """Meshes of gears that turn loose."""
-        pairs = list(self.model.related("assembly", "assembly", "part"))
+        pairs = self.model.parts
         held = {
             shaft.id for coupling, *both in self.coupled if transmits(coupling) for shaft in both
         }
@@ -145,15 +146,14 @@ class Gearing:
     @cached_property
     def shaft_of(self) -> dict[str, Component]:
         """Shaft of every gear, by id."""
-        pairs = self.model.related("assembly", "assembly", "part")
-        return {part.id: whole for whole, part in pairs if whole.type == "shaft"}
+        return {part.id: whole for whole, part in self.model.parts if whole.type == "shaft"}
 
     @cached_property
     def _carriers_of_stages(self) -> dict[str, Component]:
         """Carrier of every planetary stage, by id of the stage."""
         return {
             whole.id: part
-            for whole, part in self.model.related("assembly", "assembly", "part")
+            for whole, part in self.model.parts
             if whole.type == "planetary_stage" and part.type == "planet_carrier"
         }
 
@@ -196,7 +196,7 @@ class Gearing:
         """Carriers of which shafts are parts, by id of the shaft."""
         return {
             part.id: whole
-            for whole, part in self.model.related("assembly", "assembly", "part")
+            for whole, part in self.model.parts
             if whole.type == "planet_carrier" and part.type == "shaft"
         }
 
@@ -265,11 +265,8 @@ class Gearing:
 
     def sections(self, shaft: Component) -> list[Component]:
         """Sections of a shaft."""
-        return [
-            part
-            for whole, part in self.model.related("assembly", "assembly", "part")
-            if whole is shaft and part.type == "shaft_section"
-        ]
+        parts = (part for whole, part in self.model.parts if whole is shaft)
+        return [part for part in parts if part.type == "shaft_section"]
 
     def nearest(self, shaft: Component, part: Component, side: str = "") -> tuple[str, float]:
         """The body on a shaft that is nearest to a part of it, and how far away it is [m]."""

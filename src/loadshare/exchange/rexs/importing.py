@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from loadshare.case.place import Vector
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import Data, Imported, commented
 from loadshare.exchange.rexs.checking import (
@@ -24,7 +25,6 @@ from loadshare.exchange.rexs.holding import Holding, holding_of
 from loadshare.exchange.rexs.links import Links, links_of
 from loadshare.exchange.rexs.meshing import first_number, meshes_of, stages_of
 from loadshare.exchange.rexs.model import BEARINGS, COUPLINGS, GEARS, READ, Component
-from loadshare.exchange.rexs.places import Vector
 from loadshare.exchange.rexs.quantities import torque_of
 from loadshare.exchange.rexs.reading import read_model
 

@@ -49,7 +49,7 @@ def links_of(of: Gearing, assumed: list[str]) -> Links:
                 assumed.append(f"{name}: its coupling to the casing is rigid")
         else:
             _add_route(links, of, route, assumed)
-    for whole, part in of.model.related("assembly", "assembly", "part"):
+    for whole, part in of.model.parts:
         if whole.id in of.casing and part in of.gears:
             links.held.append(of.names[part.id])
     return links

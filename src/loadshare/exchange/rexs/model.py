@@ -110,6 +110,11 @@ class Model:
                 yield tuple(self.components[id_] for id_ in ids)
 
     @cached_property
+    def parts(self) -> list[tuple[Component, ...]]:
+        """Assemblies, each with one of its parts."""
+        return list(self.related("assembly", "assembly", "part"))
+
+    @cached_property
     def _by_kind(self) -> dict[str, list[Relation]]:
         found: dict[str, list[Relation]] = {}
         for relation in self.relations:

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.case.place import Vector, minus
 from loadshare.exchange.rexs.model import GEARS, Component, Model
 
 LONG = 6
 """References to the place of another component that follow one another."""
 FIRST = ("1", "1.0", "1.0.0")
 """Versions that give where a gear begins along its shaft, not its middle."""
-
-Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class Places:
         coordinate = part.number(name)
         referred = self.is_referred(part) or self.is_referred(shaft)
         if here is not None and start is not None and (coordinate is None or not referred):
-            return dot(_minus(here, start), self.axis(shaft))
+            return dot(minus(here, start), self.axis(shaft))
         if coordinate is not None and part.type in GEARS and self.model.version in FIRST:
             return coordinate + 0.5 * (part.number("face_width") or 0.0)
         return coordinate
@@ -119,8 +118,4 @@ def dot(one: Vector, other: Vector) -> float:
 
 def ahead(there: Vector, here: Vector, axis: Vector) -> float:
     """How far a place lies ahead of another along an axis [m]."""
-    return dot(_minus(there, here), axis)
-
-
-def _minus(one: Vector, other: Vector) -> Vector:
-    return (one[0] - other[0], one[1] - other[1], one[2] - other[2])
+    return dot(minus(there, here), axis)

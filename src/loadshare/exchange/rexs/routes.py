@@ -61,7 +61,7 @@ def nearest_to(of: Gearing, route: Route) -> tuple[str, float]:
 def applied_loads(of: Gearing) -> list[Applied]:
     """Return the loads that reach a gear or carrier."""
     found = []
-    for shaft, load in of.model.related("assembly", "assembly", "part"):
+    for shaft, load in of.model.parts:
         if shaft.type != "shaft" or load.type != "external_load":
             continue
         if of.on_shaft(shaft):

@@ -10,7 +10,7 @@ from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from loadshare.case.content import Content
-from loadshare.case.keys import Path, dotted, with_unit
+from loadshare.case.keys import Path, dotted, values_in, with_unit
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.spreadsheet.cells import (
     head_of,
@@ -125,11 +125,11 @@ def case_frames(data: Mapping[str, Any]) -> Iterator[tuple[str, pd.DataFrame]]:
             continue
         above: Path = () if name == ABOUT else (name,)
         if name == ABOUT or name in ALONE:
-            leaves = dict(_leaves(value))
+            leaves = dict(values_in(value))
             cells = [_column(path, [leaf], above) for path, leaf in leaves.items()]
             yield name, _texts(["key", "value"], [[head, text] for head, (text,) in cells])
             continue
-        rows = {element: dict(_leaves(keys)) for element, keys in value.items()}
+        rows = {element: dict(values_in(keys)) for element, keys in value.items()}
         columns = [list(rows)]
         heads = ["name"]
         for path in dict.fromkeys(path for keys in rows.values() for path in keys):
@@ -137,15 +137,6 @@ def case_frames(data: Mapping[str, Any]) -> Iterator[tuple[str, pd.DataFrame]]:
             heads.append(head)
             columns.append(texts)
         yield name, _texts(heads, [list(row) for row in zip(*columns, strict=True)])
-
-
-def _leaves(data: Mapping[str, Any], above: Path = ()) -> Iterator[tuple[Path, Any]]:
-    """Yield the values in nested tables, with their keys."""
-    for key, value in data.items():
-        if isinstance(value, Mapping):
-            yield from _leaves(value, (*above, key))
-        else:
-            yield (*above, key), value
 
 
 def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from loadshare.case import Case
 from loadshare.case.content import ABOUT
-from loadshare.case.keys import dotted
+from loadshare.case.keys import dotted, values_in
 from loadshare.report.numbers import NONE, omega, significant
 from loadshare.report.page.inputs import written
 from loadshare.report.records import FOLDED, Cell, Column, Table
@@ -40,7 +39,10 @@ def comparison(names: Sequence[str], results: Sequence[Result]) -> list[Table]:
 
 
 def _differing_inputs(names: Sequence[str], cases: Sequence[Case]) -> Table:
-    found = [dict(_leaves(case.to_dict())) for case in cases]
+    found = [
+        {key: written(v) for key, v in values_in(case.to_dict()) if key[0] not in ABOUT}
+        for case in cases
+    ]
     keys = dict.fromkeys(key for one in found for key in one)
     rows = [
         [Cell(dotted(key)), *(Cell(one.get(key, NONE)) for one in found)]
@@ -52,15 +54,6 @@ def _differing_inputs(names: Sequence[str], cases: Sequence[Case]) -> Table:
     if not rows:
         notes = [f"All {len(keys)} inputs are written alike."]
     return Table("Inputs that differ", columns, rows, notes, folded=len(rows) > FOLDED)
-
-
-def _leaves(value: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str]]:
-    if isinstance(value, Mapping):
-        for key, item in value.items():
-            if path or key not in ABOUT:
-                yield from _leaves(item, (*path, key))
-    else:
-        yield path, written(value)
 
 
 def _differing_figures(names: Sequence[str], results: Sequence[Result]) -> Table:

@@ -136,7 +136,7 @@ def _mesh_problems(pair: HelicoidPair) -> Iterator[Problem]:
     ]
     yield from found
     total = pair.contact_ratio + pair.overlap_ratio
-    low, high = pair.axial_range
+    low, high = pair.ends
     if low >= high:
         reach = 0.5 * (driver.face_width + driven.face_width)
         shift, apart = pair.misalignment.axial_shift, "the face widths no longer overlap"

@@ -113,21 +113,16 @@ class HelicoidPair(GearPair):
     @property
     def overlap_ratio(self) -> float:
         """Overlap ratio ε_β of one half."""
-        first, last = self.axial_range
+        first, last = self.ends
         twist = abs(self.driver_gear.twist)
         return max(last - first, 0.0) * twist * self.driver_gear.teeth / (2.0 * math.pi)
 
     @property
-    def axial_range(self) -> tuple[float, float]:
-        """Axial coordinates between which both gears have face width [m]."""
+    def ends(self) -> tuple[float, float]:
+        """Axial coordinates of the ends of the contact lines: both gears have face width [m]."""
         shift = self.misalignment.axial_shift
         own, other = 0.5 * self.driver_gear.face_width, 0.5 * self.driven_gear.face_width
         return max(-own, shift - other), min(own, shift + other)
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Axial coordinates of the ends of the contact lines [m]."""
-        return self.axial_range
 
     @cached_property
     def driver(self) -> HelicoidBody:
@@ -156,7 +151,7 @@ class HelicoidPair(GearPair):
         """
         one, two = self.driver_gear, self.driven_gear
         pitch = inv(self.working_angle)
-        turn = 2.0 * math.pi * phase / one.teeth - one.twist * 0.5 * sum(self.axial_range)
+        turn = 2.0 * math.pi * phase / one.teeth - one.twist * 0.5 * sum(self.ends)
         driver = one.kind * pitch - one.base_half_angle + turn
         # The driven flank faces the driver: its base tangent is the same line of action.
         facing = (math.pi if self.kind > 0 else 0.0) - one.kind * self.working_angle
@@ -169,7 +164,7 @@ class HelicoidPair(GearPair):
         """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
         gear = self.driver_gear
         first, last = self.roll_range
-        low, high = self.axial_range
+        low, high = self.ends
         per_tooth = 2.0 * math.pi / gear.teeth
         reach = abs(gear.twist) * max(abs(low), abs(high))
         middle = self.roll(np.zeros(1), np.zeros(1), driver)
@@ -199,7 +194,7 @@ class HelicoidPair(GearPair):
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
         """Margins along the lines of pairs near contact, on both flanks or not."""
         gear, (first, last) = self.driver_gear, self.roll_range
-        axial = np.linspace(*self.axial_range, 33)
+        axial = np.linspace(*self.ends, 33)
         step = 2.0 * math.pi / gear.teeth
         middle = self.roll(np.zeros(1), np.zeros(1), driver)
         pairs = np.rint(gear.kind * (0.5 * (first + last) - middle) / step) + np.arange(-1.0, 2.0)

@@ -85,7 +85,7 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
     if inner.any():
         part = pairs[inner], unknowns[inner]
         refined, met = _newton(pair, *part, driver[inner], driven[inner])
-        unknowns[inner] = np.where(_sooner(pair, met, *part, refined), refined, part[1])
+        unknowns[inner] = np.where(_sooner(pair, met, part[1], refined), refined, part[1])
     a, b, c, d, lead = np.moveaxis(unknowns, -1, 0)
     own = pair.driver_patch(pairs, (a, b), driver + lead)
     other = pair.driven_patch(pairs, (c, d), driven)
@@ -141,7 +141,7 @@ def _alone(pair: GearPair, found: Extents) -> tuple[Extents, Array, Array]:
     return lines, station, turned
 
 
-def _sooner(pair: GearPair, met: Array, pairs: Array, line: Array, refined: Array) -> Array:
+def _sooner(pair: GearPair, met: Array, line: Array, refined: Array) -> Array:
     """Which answers (m, 1, 1) of Newton's method count: on both flanks, no later than the line.
 
     Next to a line contact the equations are nearly singular and can lead off the flanks; the place
