@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-_on_one_line = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
 _HOLDING = dict, list, tuple
 
 
@@ -18,16 +16,22 @@ def json_text(document: Mapping[str, Any]) -> str:
     ValueError
         If a number is infinite or none, which JSON does not know.
     """
-    return _laid_out(document, "\n") + "\n"
+    import json
+
+    on_one_line = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
+    return _laid_out(document, "\n", on_one_line) + "\n"
 
 
-def _laid_out(value: Any, line: str) -> str:
+def _laid_out(value: Any, line: str, on_one_line: Callable[[Any], str]) -> str:
     """Return the text of a value; `line` begins a line of it."""
     inner = value.values() if isinstance(value, dict) else value
     if not isinstance(value, _HOLDING) or not any(isinstance(v, _HOLDING) for v in inner):
-        return _on_one_line(value)
+        return on_one_line(value)
     inside = line + " "
+    texts = [_laid_out(v, inside, on_one_line) for v in inner]
+    begin, end = "[]"
     if isinstance(value, dict):
-        pairs = ((_on_one_line(str(key)), _laid_out(v, inside)) for key, v in value.items())
-        return "{" + ",".join(f"{inside}{key}: {text}" for key, text in pairs) + line + "}"
-    return "[" + ",".join(inside + _laid_out(v, inside) for v in value) + line + "]"
+        keys = [on_one_line(str(key)) for key in value]
+        texts = [f"{key}: {text}" for key, text in zip(keys, texts, strict=True)]
+        begin, end = "{}"
+    return begin + ",".join(inside + text for text in texts) + line + end

@@ -12,10 +12,10 @@ from loadshare.cli.cases import find_cases, open_case
 from loadshare.cli.console import say
 from loadshare.cli.everywhere import Json
 from loadshare.cli.exits import UNUSABLE, fail
-from loadshare.cli.files import document_text
 from loadshare.cli.options import CasePaths, Changes
 from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError, Problem, ResultError
+from loadshare.json_text import json_text
 from loadshare.report.numbers import counted
 
 RESULTS = (".json", ".nc")
@@ -54,7 +54,7 @@ def check(
                 _print_teeth(path, change)
         record.append({"file": str(path), "ok": not wrong, "problems": [asdict(p) for p in wrong]})
     if json:
-        echo(document_text({"ok": not bad, "files": record}), nl=False)
+        echo(json_text({"ok": not bad, "files": record}), nl=False)
     if bad:
         noun = "file" if any(path.suffix in RESULTS for path in found) else "case"
         summary = f"{counted(problems, 'problem')} in {bad} of {counted(len(found), noun)}."

@@ -41,12 +41,7 @@ def kept() -> str:
 
 def write_document(path: Path, document: dict[str, Any]) -> None:
     """Write plain data as a JSON file, whole or not at all."""
-    write_whole(path, document_text(document))
-
-
-def document_text(document: dict[str, Any]) -> str:
-    """Return plain data as the text of a JSON file."""
-    return json_text(document)
+    write_whole(path, json_text(document))
 
 
 _outputs: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", default=())

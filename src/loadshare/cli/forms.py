@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from loadshare.cli.exits import UNUSABLE, fail, writing
-from loadshare.cli.files import document_text, tell_written
+from loadshare.cli.files import tell_written
 from loadshare.cli.options import OUTPUT
 from loadshare.cli.waiting import speak
 from loadshare.errors import LoadshareError
+from loadshare.json_text import json_text
 from loadshare.output import STANDARD, csv_of, write_whole
 
 if TYPE_CHECKING:
@@ -241,7 +242,7 @@ def _json(name: str, frame: pd.DataFrame, about: Mapping[str, object]) -> str:
         dict(zip(heads, map(_plain, row), strict=True)) for row in frame.itertuples(index=False)
     ]
     document = {"question": name, "version": __version__, **about, "rows": rows}
-    return document_text(document)
+    return json_text(document)
 
 
 def _plain(cell: Any) -> object:

@@ -11,11 +11,12 @@ import typer
 from loadshare.cli.cases import open_case
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, reporting_problems, writing
-from loadshare.cli.files import document_text, tell_written
+from loadshare.cli.files import tell_written
 from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
 from loadshare.cli.refusal import refusal_lines, refused_document
 from loadshare.errors import Refused
+from loadshare.json_text import json_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -142,7 +143,7 @@ def _print_explanations(case: Case, positions: Sequence[int], how: dict[str, Any
 def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoReturn:
     """Write the refusal as JSON, and print it with the files that were not written."""
     written = [output for output in files if output.form == "json"]
-    document = document_text(refused_document(refusal, case))
+    document = json_text(refused_document(refusal, case))
     write_all(written, {"json": lambda: document})
     lines = [f"REFUSED  {line}" for line in refusal_lines(refusal)]
     others = [output.file for output in files if output not in written]

@@ -25,11 +25,12 @@ from loadshare.cli.cases import find_cases, read_changes
 from loadshare.cli.console import progress, say
 from loadshare.cli.everywhere import Json
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
-from loadshare.cli.files import document_text, write_document
+from loadshare.cli.files import write_document
 from loadshare.cli.options import CasePaths, Changes, Method, Solver, Tolerance
 from loadshare.cli.stop import Stop
 from loadshare.cli.waiting import echo
 from loadshare.errors import LoadshareError
+from loadshare.json_text import json_text
 from loadshare.output import STANDARD, clear, make_folder
 
 
@@ -91,7 +92,7 @@ def batch(
             with writing(summary):
                 write_document(summary, document)
             if json:
-                echo(document_text(document), nl=False)
+                echo(json_text(document), nl=False)
             if stop.requested:
                 message = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
                 fail([message, "The same command goes on; what is certified is kept."], stop.code)

@@ -8,12 +8,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from loadshare.cli.console import say, say_all
-from loadshare.cli.files import document_text
 from loadshare.cli.forms import Makers, figure_of, tables_of
 from loadshare.cli.refusal import ranges as numbers_text
 from loadshare.cli.tables.sensitivity import show_sensitivity
 from loadshare.cli.tables.table import show, table
 from loadshare.cli.tables.tolerance import show_tolerance, statistics_document
+from loadshare.json_text import json_text
 from loadshare.output import netcdf_of
 from loadshare.report.numbers import counted, omega
 
@@ -223,7 +223,7 @@ def _of_tolerance(found: Tolerance) -> Makers:
     return {
         **_of_table("tolerance", found, found.to_frame),
         **_labelled(found),
-        "json": lambda: document_text(statistics_document(found)),
+        "json": lambda: json_text(statistics_document(found)),
     }
 
 
