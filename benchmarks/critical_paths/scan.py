@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.critical_paths.draw import Path
+from loadshare.array_types import States
 from loadshare.certify import Judge, Verdicts
 from loadshare.certify.bound import Bounds
 from loadshare.job.engines import engine_named
@@ -19,7 +20,7 @@ from loadshare.job.many import solve_blocks
 from loadshare.scene.loading import Loading
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import contact_states as at
-from loadshare.solver.hot.exchange import Engine, Found, States, exchange
+from loadshare.solver.hot.exchange import Engine, Found, exchange
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.study.follow.line import Line
 from loadshare.train.equilibria import Equilibria

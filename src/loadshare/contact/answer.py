@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.backends.backend import backend
 from loadshare.contact.conflict import conflict
 from loadshare.contact.findings import Unsolved
 from loadshare.contact.left_open import left_open
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan
-from loadshare.contact.problem import Array, ContactProblem, Row
+from loadshare.contact.problem import ContactProblem, Row
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.contact.runaway import runaway

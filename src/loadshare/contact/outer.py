@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.backends.backend import Backend
 from loadshare.contact.energy import potential
 from loadshare.contact.findings import Unsolved, Work
@@ -25,7 +26,7 @@ from loadshare.contact.inner import Inner, solve_programme
 from loadshare.contact.law import Law, PowerLaw
 from loadshare.contact.plan import Linearisation, Plan, Role, Units, programme
 from loadshare.contact.problem import ContactProblem
-from loadshare.contact.programme import Array, Point
+from loadshare.contact.programme import Point
 from loadshare.contact.radial import RadialLaw, RollingLaw
 from loadshare.contact.record import Iteration, Options
 from loadshare.settings import CONTACT

@@ -8,9 +8,9 @@ from functools import cached_property, partial
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare import compilation
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
 from loadshare.job.judging import Judging
@@ -21,7 +21,7 @@ from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import pin, without_noise
 from loadshare.solver.hot.determined import determined
-from loadshare.solver.hot.exchange import Engine, Found, States, exchange, first_sets
+from loadshare.solver.hot.exchange import Engine, Found, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.proximal import search
 from loadshare.solver.hot.rule import Rule, rule_of, samples_to_learn
@@ -31,7 +31,7 @@ from loadshare.train.placed import standing
 from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations, situation_of, situations_of, stack
 
-Some = NDArray[np.bool_] | None
+Some = Flags | None
 """Samples (S,) to solve; None for all."""
 Way = Callable[[Some], tuple[Iterate, Found]]
 """How samples are solved."""
@@ -81,14 +81,14 @@ class Answers:
     loading: Loading
     equilibria: Equilibria
     verdicts: Verdicts
-    passed: NDArray[np.bool_]
+    passed: Flags
     states: States
-    turns: NDArray[np.intp]
-    searched: NDArray[np.bool_]
-    determine: Callable[[], NDArray[np.bool_]]
+    turns: Numbers
+    searched: Flags
+    determine: Callable[[], Flags]
 
     @cached_property
-    def determined(self) -> NDArray[np.bool_]:
+    def determined(self) -> Flags:
         """Whether the forces determine every displacement of a sample, shape (S,).
 
         Where they do not, the place given is one possible choice.
@@ -105,7 +105,7 @@ class _Start:
     """
 
     states: States
-    share: NDArray[np.float64]
+    share: Array
 
 
 class Machine:
@@ -342,7 +342,7 @@ class Machine:
         loading: Loading,
         iterate: Iterate,
         found: Found,
-        rows: NDArray[np.bool_],
+        rows: Flags,
         tolerance: float,
     ) -> Found:
         """Search an equilibrium of single samples by the proximal method."""

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.backends.backend import Backend, backend
 from loadshare.contact.findings import Unsolved, Work
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan, Role
-from loadshare.contact.programme import Array
 from loadshare.contact.record import Options, Record
 from loadshare.errors import Refused
 from loadshare.later import Later

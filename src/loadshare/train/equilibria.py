@@ -8,12 +8,10 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Numbers
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -102,7 +100,7 @@ class Equilibria:
         """Return some of the samples, as a view."""
         return self.mapped(lambda array: array[samples])
 
-    def take(self, samples: NDArray[np.intp]) -> Equilibria:
+    def take(self, samples: Numbers) -> Equilibria:
         """Return some of the samples, as a copy."""
         return self.mapped(lambda array: array[samples])
 
@@ -169,7 +167,7 @@ class Equilibria:
         for array in self.arrays:
             array[sample] = np.nan
 
-    def put_all(self, samples: NDArray[np.intp], answers: Equilibria) -> None:
+    def put_all(self, samples: Numbers, answers: Equilibria) -> None:
         """Write answers in the places of some samples."""
         for here, others in zip(self.arrays, answers.arrays, strict=True):
             here[samples] = others

@@ -17,15 +17,13 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare import case as spec
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.case.power_flow import from_the_other_end, has_sets
 from loadshare.errors import CaseError
 from loadshare.train.gear import Gear
 from loadshare.train.willis import Links
-
-Flags = NDArray[np.bool_]
 
 
 class Pressed(NamedTuple):
@@ -87,7 +85,7 @@ def pressed_flanks(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pres
     return found
 
 
-def _against_the_names(case: spec.Case, torque: NDArray[np.float64]) -> Flags:
+def _against_the_names(case: spec.Case, torque: Array) -> Flags:
     """Whether torques (positions, S) run against the names of the meshes: all that are not 0."""
     other_end = from_the_other_end(case.operating, case.gears, case.meshes, case.shafts)
     against = np.where(torque != 0.0, (torque < 0.0) != other_end, True)
@@ -95,8 +93,8 @@ def _against_the_names(case: spec.Case, torque: NDArray[np.float64]) -> Flags:
 
 
 def _pressed(
-    case: spec.Case, gears: Mapping[str, Gear], torque: NDArray[np.float64]
-) -> dict[str, tuple[NDArray[np.intp], Flags]]:
+    case: spec.Case, gears: Mapping[str, Gear], torque: Array
+) -> dict[str, tuple[Numbers, Flags]]:
     """Signs of the torques of meshes (positions, S), by statics (see `Links.pressed`)."""
     links = Links.of(
         gears,

@@ -9,16 +9,14 @@ from functools import cached_property
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Numbers
 from loadshare.train.elements import Shaft, Spline, Stage
 from loadshare.train.gear import ORIGIN, Gear, Vector
 from loadshare.train.mesh import Approach, Mesh, approach_of
 from loadshare.train.offset import Angle, Offset, turned_about
 from loadshare.train.period import Period
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
-
-Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,9 +172,9 @@ class Train:
     def rotations(self, index: int) -> dict[str, float]: ...
 
     @overload
-    def rotations(self, index: Indices) -> dict[str, Vector]: ...
+    def rotations(self, index: Numbers) -> dict[str, Vector]: ...
 
-    def rotations(self, index: int | Indices) -> dict[str, float] | dict[str, Vector]:
+    def rotations(self, index: int | Numbers) -> dict[str, float] | dict[str, Vector]:
         """Angle [rad] by which every gear has turned at position `index` (1-based).
 
         At many positions at once where there is an array of them.
@@ -277,12 +275,12 @@ class Train:
 
     @overload
     def mesh_positions(
-        self, index: Indices, rotation: Mapping[str, Vector] | None = None
-    ) -> dict[str, Indices]: ...
+        self, index: Numbers, rotation: Mapping[str, Vector] | None = None
+    ) -> dict[str, Numbers]: ...
 
     def mesh_positions(
-        self, index: int | Indices, rotation: Mapping[str, Any] | None = None
-    ) -> dict[str, int] | dict[str, Indices]:
+        self, index: int | Numbers, rotation: Mapping[str, Any] | None = None
+    ) -> dict[str, int] | dict[str, Numbers]:
         """Position (0-based) of its laws at which every drive flank is, by mesh.
 
         As `flank_positions`, which has coast flanks as well.
@@ -297,12 +295,12 @@ class Train:
 
     @overload
     def flank_positions(
-        self, index: Indices, rotation: Mapping[str, Vector] | None = None
-    ) -> dict[str, Indices]: ...
+        self, index: Numbers, rotation: Mapping[str, Vector] | None = None
+    ) -> dict[str, Numbers]: ...
 
     def flank_positions(
-        self, index: int | Indices, rotation: Mapping[str, Any] | None = None
-    ) -> dict[str, int] | dict[str, Indices]:
+        self, index: int | Numbers, rotation: Mapping[str, Any] | None = None
+    ) -> dict[str, int] | dict[str, Numbers]:
         """Position (0-based) of its laws at which every flank is at position `index` (1-based).
 
         In a mesh cycle all meshes go through theirs together, each flank from its own phase; over

@@ -17,12 +17,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.train.gear import Gear
 from loadshare.train.mesh import running_contact
 
-Array = NDArray[np.float64]
 Ends = tuple[str, str]
 
 LOCKED = 1e-3
@@ -106,7 +106,7 @@ class Links:
 
     def pressed(
         self, torques: Mapping[str, ArrayLike], free: Iterable[str]
-    ) -> dict[str, tuple[NDArray[np.intp], NDArray[np.bool_]]]:
+    ) -> dict[str, tuple[Numbers, Flags]]:
         """Tell which flank of every mesh loads press, and whether it may be the other one.
 
         It may where statics leaves open how loads are shared, and some stiffnesses of the links
@@ -138,7 +138,7 @@ class Links:
         signs = np.sign(force).astype(np.intp).reshape(-1, *load.shape[1:])
         return dict(zip(self.names, zip(signs, either, strict=True), strict=True))
 
-    def _either(self, balance: Array, response: Array, load: Array) -> NDArray[np.bool_]:
+    def _either(self, balance: Array, response: Array, load: Array) -> Flags:
         """Whether links may pass on loads (gears, ...) either way, (links, ...)."""
         either = np.zeros((len(response), *load.shape[1:]), dtype=bool)
         # Forces in balance without a load are what statics leaves open.

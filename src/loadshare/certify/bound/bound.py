@@ -25,9 +25,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array, Flags
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.acts import Acts
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
@@ -66,7 +65,7 @@ class Box:
         """Return the box of one claim."""
         return Box(*(getattr(self, f.name)[row : row + 1] for f in fields(self)))
 
-    def put(self, rows: NDArray[np.intp], other: Box) -> None:
+    def put(self, rows: Numbers, other: Box) -> None:
         """Write the boxes of some claims."""
         for f in fields(self):
             getattr(self, f.name)[rows] = getattr(other, f.name)
@@ -143,7 +142,7 @@ def rounding_of(force: Array, scale: Array) -> Array:
     return np.asarray(np.maximum(BOUND.balanced * scale, BOUND.rounded * largest))
 
 
-def aside(claim: Claim, found: Elements, rows: NDArray[np.intp] | slice) -> Array:
+def aside(claim: Claim, found: Elements, rows: Numbers | slice) -> Array:
     """What claimed forces are off by whatever acts: what it cannot carry, friction put aside.
 
     Shape (rows, m) [N].
@@ -201,7 +200,7 @@ class _Enclosure(Part):
             left, alike = more, alike and len(more) < len(left) - 1
         return force, coordinate
 
-    def _errors(self, response: Response, rows: NDArray[np.intp]) -> tuple[Array, Array]:
+    def _errors(self, response: Response, rows: Numbers) -> tuple[Array, Array]:
         """Errors of some claims; infinite where they are not proved."""
         known, size = self.statics, len(self.columns)
         soft, skew, misfit = self.soft[rows], self.skew[rows], self.misfit[rows]
@@ -264,7 +263,7 @@ class _Enclosure(Part):
         return found
 
     def _left_out(
-        self, rows: NDArray[np.intp], reach: Array, ways: Array, torques: Array
+        self, rows: Numbers, reach: Array, ways: Array, torques: Array
     ) -> tuple[Array, Array]:
         """What the linearisation leaves out of forces [N] and of lengths [m] in a box."""
         found, columns = self.found, self.columns

@@ -19,9 +19,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.statics import Statics, force_at_end
 from loadshare.certify.bound.twofold import Twofold, quotient, two_product
 from loadshare.certify.mechanics import mechanics_of
@@ -202,13 +201,13 @@ class Columns:
         return np.asarray((terms + 4) * UNIT)
 
     @cached_property
-    def contacts(self) -> NDArray[np.intp]:
+    def contacts(self) -> Numbers:
         """Columns of flanks and stops."""
         every = np.arange(len(self.names))
         return np.concatenate([every[self.flanks], every[self.stops]])
 
     @cached_property
-    def is_contact(self) -> NDArray[np.bool_]:
+    def is_contact(self) -> Flags:
         """Which columns these are, shape (m,)."""
         found = np.zeros(len(self.names), dtype=bool)
         found[self.contacts] = True
@@ -232,7 +231,7 @@ class Columns:
         pairs = high[self.first_pair :].reshape(-1, 2, high.shape[1])
         return force_at_end(moves, high[self.contacts], pairs)
 
-    def statics(self, columns: NDArray[np.intp]) -> Statics:
+    def statics(self, columns: Numbers) -> Statics:
         """Return the statics of columns that act, computed once."""
         key = columns.tobytes()
         known = self._statics.get(key)

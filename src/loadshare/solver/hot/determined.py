@@ -13,16 +13,14 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.array_types import Flags
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.statics import unresisted
 from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES, STATICS
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
 from loadshare.solver.hot.elements import arc_at, pick
-from loadshare.solver.hot.exchange import States
 from loadshare.solver.hot.iterate import Iterate, pushes
 
 
@@ -112,7 +110,7 @@ def _kinds(structure: Structure, loading: Loading, iterate: Iterate, carries: Ar
     return kinds
 
 
-def _alike(sets: NDArray[Any]) -> Iterator[tuple[NDArray[np.intp], NDArray[Any]]]:
+def _alike(sets: NDArray[Any]) -> Iterator[tuple[Numbers, NDArray[Any]]]:
     """Yield samples that have one set, and it."""
     order = np.lexsort(sets.T) if sets.shape[1] else np.arange(len(sets))
     changes = np.flatnonzero((sets[order][1:] != sets[order][:-1]).any(axis=1)) + 1
@@ -125,7 +123,7 @@ class _Moves(NamedTuple):
 
     moves: Array
     level: tuple[int, ...]  # radial elements on a level piece
-    flat: NDArray[np.intp]  # columns of flanks and stops that carry nothing
+    flat: Numbers  # columns of flanks and stops that carry nothing
     arcs: tuple[int, ...]
     radials: tuple[int, ...]
     # Whether level pieces, whatever their directions, leave some move.
@@ -187,7 +185,7 @@ def _fixed(
     loading: Loading,
     iterate: Iterate,
     some: States,
-    rows: NDArray[np.intp],
+    rows: Numbers,
     near: Flags,
 ) -> Flags:
     """Whether samples of one set of carrying elements are determined, shape (len(rows),).
@@ -243,7 +241,7 @@ def _touched(
     iterate: Iterate,
     some: States,
     left_by: _Moves,
-    rows: NDArray[np.intp],
+    rows: Numbers,
     near: Flags,
 ) -> _Touched:
     """Find what samples touch where they are."""
@@ -270,7 +268,7 @@ def _touched(
     return _Touched(np.concatenate(touches, axis=1), structure.vectors[flat] @ moves, directions)
 
 
-def _across(structure: Structure, iterate: Iterate, j: int, rows: NDArray[np.intp]) -> Array:
+def _across(structure: Structure, iterate: Iterate, j: int, rows: Numbers) -> Array:
     """Direction (k, n) across the force of a radial element."""
     column = structure.radial_column(j)
     pull = iterate.force[rows, column : column + 2]

@@ -10,19 +10,17 @@ from dataclasses import dataclass, replace
 from itertools import pairwise, permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.elements import pick
 from loadshare.solver.hot.iterate import Iterate
 
-States = NDArray[np.int8]
 Engine = Callable[
-    [Structure, Loading, States, Sequence[NDArray[np.intp]], Iterate, NDArray[np.bool_]],
+    [Structure, Loading, States, Sequence[Numbers], Iterate, Flags],
     tuple[States, States],
 ]
 
@@ -47,10 +45,10 @@ class Found:
         Whether the set leaves no coordinate loose.
     """
 
-    solved: NDArray[np.bool_]
+    solved: Flags
     states: States
-    turns: NDArray[np.intp]
-    held: NDArray[np.bool_]
+    turns: Numbers
+    held: Flags
 
     def completed(self, other: Found) -> Found:
         """Return what was found here, and elsewhere what the other found."""
@@ -62,7 +60,7 @@ class Found:
             np.where(mine, self.held, other.held),
         )
 
-    def without(self, rows: NDArray[np.bool_]) -> Found:
+    def without(self, rows: Flags) -> Found:
         """Return the same with some samples as not solved."""
         return replace(self, solved=self.solved & ~rows)
 
@@ -130,7 +128,7 @@ def exchange(
     iterate: Iterate,
     engine: Engine,
     states: States | None = None,
-    only: NDArray[np.bool_] | None = None,
+    only: Flags | None = None,
     singly: bool = False,
     limit: int | None = None,
 ) -> Found:
@@ -201,7 +199,7 @@ def exchange(
     return Found(solved, states[:, :switches], turns, held)
 
 
-def _alike(states: States) -> tuple[NDArray[np.intp], list[int]]:
+def _alike(states: States) -> tuple[Numbers, list[int]]:
     """Order in which equal sets, given in whole words, stand together, and where each begins.
 
     Should two sets have one key, a sample is solved on the other one: what it finds there is

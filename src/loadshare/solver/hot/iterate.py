@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
 
@@ -37,13 +36,13 @@ class Iterate:
     force: Array
     root: Array
     floor: Array
-    stays: NDArray[np.bool_]
+    stays: Flags
 
-    def take(self, rows: NDArray[np.intp]) -> Iterate:
+    def take(self, rows: Numbers) -> Iterate:
         """Return some of the samples, as a copy."""
         return Iterate(*(getattr(self, field.name)[rows] for field in fields(self)))
 
-    def completed(self, other: Iterate, rows: NDArray[np.bool_]) -> Iterate:
+    def completed(self, other: Iterate, rows: Flags) -> Iterate:
         """Return this iterate with some samples as they are in the other."""
         for name in ("x", "force", "root", "floor", "stays"):
             getattr(self, name)[rows] = getattr(other, name)[rows]
@@ -59,7 +58,7 @@ class Iterate:
         samples: slice,
         share: Array,
         loading: Loading,
-        which: NDArray[np.intp] | None = None,
+        which: Numbers | None = None,
     ) -> None:
         """Take the laws of some samples first at forces in shares of the load.
 

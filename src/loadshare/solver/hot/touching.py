@@ -6,18 +6,16 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare import compilation
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES
 from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.products import Rows, rows_of
 
-States = NDArray[np.int8]
 _how = {"nogil": True, "error_model": "numpy", "_nrt": False}
 compiled = compilation.jit(**_how)
 inlined = compilation.within(forceinline=True, **_how)
@@ -72,7 +70,7 @@ class Touching:
         loading: Loading,
         iterate: Iterate,
         states: States,
-        held: NDArray[np.bool_],
+        held: Flags,
         least: Array,
     ) -> None:
         self._of = structure.cache.get(("touching",)) or structure.remember(
@@ -107,7 +105,7 @@ class Touching:
         )
         self.sets = self._carries[first[:sets]]
 
-    def met(self, sets: Sequence[Sequence[int]]) -> NDArray[np.intp]:
+    def met(self, sets: Sequence[Sequence[int]]) -> Numbers:
         """How many elements every sample touches, (S,), of those wanted of its set.
 
         Elements are flanks and stops, then arcs, then radial elements.

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Flags
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.contact.law import roots
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
@@ -20,15 +18,12 @@ from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.radials import Block, beyond, block, misplaced, until
 from loadshare.solver.hot.rest import rest
 
-Rows = NDArray[np.intp]
-States = NDArray[np.int8]
-
 
 def settle(
     structure: Structure,
     loading: Loading,
     sets: States,
-    parts: Sequence[Rows],
+    parts: Sequence[Numbers],
     iterate: Iterate,
     one_only: Flags,
 ) -> tuple[States, States]:
@@ -66,7 +61,7 @@ def _settle_set(
     loading: Loading,
     basis: Basis,
     states: States,
-    rows: Rows,
+    rows: Numbers,
     iterate: Iterate,
     one_only: Flags,
 ) -> tuple[States, States]:
@@ -137,7 +132,7 @@ class _Passes:
         loading: Loading,
         basis: Basis,
         states: States,
-        rows: Rows,
+        rows: Numbers,
         iterate: Iterate,
     ) -> None:
         self.structure, self.loading, self.basis = structure, loading, basis
@@ -580,7 +575,7 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
     matrix : ndarray, shape (k, n, n)
     sides : ndarray, shape (k, n)
     size : int
-        Rows of the positive semidefinite part; the rest are constraints.
+        Numbers of the positive semidefinite part; the rest are constraints.
     """
     if not matrix.shape[1]:
         return sides

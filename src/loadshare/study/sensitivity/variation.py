@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 
+from loadshare.array_types import Array
 from loadshare.results.share import flank_torques
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import SENSITIVITY
 from loadshare.study.answers import certified

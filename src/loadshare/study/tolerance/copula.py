@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import TOLERANCE
 
 

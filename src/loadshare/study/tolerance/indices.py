@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.statistics import Estimate
 

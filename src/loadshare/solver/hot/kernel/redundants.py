@@ -11,11 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.scene.statics import Basis
 from loadshare.settings import STATICS
-
-Rows = NDArray[np.intp]
 
 
 class Factor(NamedTuple):
@@ -26,14 +24,14 @@ class Factor(NamedTuple):
     starts : ndarray of int, shape (r + 1,)
         Where the rows of each column begin.
     below : ndarray of int
-        Rows below the diagonal, column by column.
+        Numbers below the diagonal, column by column.
     """
 
-    starts: Rows
-    below: Rows
+    starts: Numbers
+    below: Numbers
 
-    def entries(self, borders: int) -> tuple[Rows, Rows]:
-        """Rows and columns of all entries, each column from its diagonal on, without borders."""
+    def entries(self, borders: int) -> tuple[Numbers, Numbers]:
+        """Numbers and columns of all entries, each column from its diagonal on, without borders."""
         r = len(self.starts) - 1 - borders
         column = np.repeat(np.arange(r + borders), np.diff(self.starts))
         kept = self.below < r
@@ -90,7 +88,7 @@ def _chained(redundant: Array) -> Array:
     return redundant
 
 
-def _coupled(redundant: Array) -> NDArray[np.bool_]:
+def _coupled(redundant: Array) -> Flags:
     """Which redundants act in one element, (r, r)."""
     acts = (redundant != 0.0).astype(float)
     return np.asarray(acts.T @ acts > 0.0)
@@ -107,7 +105,7 @@ def eliminated(redundant: Array, turned: Array, borders: int) -> tuple[Array, Fa
     turned : ndarray, shape (2 t, r)
         Those of radial elements that turn, whose two columns act together.
     borders : int
-        Rows that are added below, full.
+        Numbers that are added below, full.
     """
     r = redundant.shape[1]
     coupled = _coupled(redundant) | _coupled(np.abs(turned[::2]) + np.abs(turned[1::2]))
@@ -131,7 +129,7 @@ def full(r: int, borders: int) -> Factor:
     return _factor([np.arange(c + 1, r) for c in range(r)], borders)
 
 
-def _factor(below: Sequence[Rows], borders: int) -> Factor:
+def _factor(below: Sequence[Numbers], borders: int) -> Factor:
     """Factor of some columns, with borders, which are full, as further rows and columns."""
     at_border = np.arange(len(below), len(below) + borders)
     columns = [np.concatenate([rows, at_border]) for rows in below]
