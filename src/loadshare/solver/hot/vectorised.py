@@ -389,8 +389,7 @@ class _Passes:
         return found
 
     def _offset(self, j: int, x: Array | None = None) -> Array:
-        column = self.structure.radial_column(j)
-        matrix = self.structure.vectors[column : column + 2]
+        column, matrix = self.structure.radial_column(j), self.structure.radials[j].matrix
         centre = pick(self.loading.gap, self.rows)[:, column : column + 2]
         return np.asarray((self.x if x is None else x) @ matrix.T - centre)
 
@@ -494,10 +493,9 @@ class _Passes:
         states[:, : structure.rows] = at.CLOSED
         ends = [way]
         for j in range(structure.switches - structure.rows):
-            column = structure.radial_column(j)
             offset = self._offset(j)
             law = self._graph(j, offset)
-            velocity = drift @ structure.vectors[column : column + 2].T
+            velocity = drift @ structure.radials[j].matrix.T
             reached = until(offset, velocity, law.reach, fast[:, 0])
             free = self.states[structure.rows + j] == at.OPEN
             ends.append(np.where(free, reached, np.inf)[:, None])
@@ -542,8 +540,7 @@ class _Passes:
             vectors[row], room[row] = (-normal @ self.loading.relative[a])[0], margin[0]
         discs = []
         for j in np.flatnonzero(self.states[rows:] == at.OPEN).tolist():
-            column = structure.radial_column(j)
-            matrix = structure.vectors[column : column + 2] @ loose
+            matrix = structure.radials[j].matrix @ loose
             offset = self._offset(j)
             # A wall that is a power begins at the clearance, not where its tangent from here does.
             reach = float(self._graph(j, np.zeros_like(offset)).reach[k])
