@@ -17,7 +17,6 @@ from loadshare.scene import assemble
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.mesh import Mesh
 
 CASES = Path(__file__).parents[1] / "cases"
 SHIPPED = tuple(
@@ -168,16 +167,3 @@ def potential(train: Train, found: Equilibrium) -> float:
         if gear.support is not None:
             energy.append(0.5 * float(gear.support @ (gear.frame @ found.displacement[name]) ** 2))
     return float(np.sum(energy))
-
-
-def approach(
-    mesh: Mesh,
-    drive: bool,
-    position: int,
-    rotations: tuple[float, float],
-    apart: np.ndarray,
-) -> float:
-    """Approach of a flank [m] from the rotations of both gears and their displacement apart."""
-    on_driver, on_driven, normal = mesh.direction(drive)
-    turned = on_driver * rotations[0] + on_driven * rotations[1]
-    return turned + float(normal @ apart) - mesh.gap(position, drive)

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.support import approach
+from tests.certify.oracle import approach
 
 from loadshare.contact.law import PowerLaw
 from loadshare.train.gear import Gear, transverse_frame

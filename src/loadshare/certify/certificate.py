@@ -15,9 +15,9 @@ import numpy as np
 
 from loadshare.certify.bound import Bound
 from loadshare.certify.bound.one import bound_of_one
+from loadshare.certify.fault import fault_of
 from loadshare.certify.floats import FloatState, float_states
 from loadshare.certify.mechanics import mechanics_of
-from loadshare.certify.pulls import fault_of
 from loadshare.certify.residuals import FIGURES, RESIDUALS, scales, worst_of_one
 from loadshare.certify.state import ClaimedState
 from loadshare.certify.tolerance import checked_tolerance
