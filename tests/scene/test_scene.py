@@ -6,9 +6,9 @@ Source: formulation, sections 4 and 11.
 
 import numpy as np
 import pytest
+from tests.certify.oracle import approach
 from tests.support import (
     answer,
-    approach,
     driver_torques,
     furthest,
     round_ring,

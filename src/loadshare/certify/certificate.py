@@ -118,6 +118,15 @@ class Certificate:
         """Residuals beyond the tolerance."""
         return {n: r for n, r in self.residuals.items() if not r.scaled <= self.tolerance}
 
+    @property
+    def shortfall(self) -> str:
+        """These in words."""
+        return "; ".join(
+            f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} ({r.scaled:.1e} of the "
+            f"case, allowed {self.tolerance:.0e})"
+            for name, r in self.failing.items()
+        )
+
 
 def certify_later(
     train: Train,

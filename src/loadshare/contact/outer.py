@@ -57,6 +57,13 @@ class Settled:
     kind: str
     iterations: tuple[Iteration, ...]
 
+    def pulls(self, problem: ContactProblem) -> dict[str, Array]:
+        """Force of every radial element along its offset, whether it was in play or not."""
+        idle = [r for r in problem.radials if r.name not in self.radial_forces]
+        first = {r.name: self.laws[r.name].pieces[0].stiffness for r in idle}
+        offsets = {r.name: np.asarray(r.matrix @ self.x - r.centre) for r in idle}
+        return self.radial_forces | {name: first[name] * p for name, p in offsets.items()}
+
 
 @dataclass(slots=True)
 class _State:

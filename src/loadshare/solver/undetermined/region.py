@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from loadshare.array_types import Array, Numbers
+from loadshare.contact.backends.clarabel_ import settings_of
 from loadshare.scene.statics import unresisted
 from loadshare.settings import PLACES
 
@@ -85,10 +86,7 @@ class Region:
             rows += [np.zeros((1, self.size)), -disc.matrix]
             bounds += [np.array([disc.radius]), -disc.centre]
             cones.append(clarabel.SecondOrderConeT(3))
-        settings = clarabel.DefaultSettings()
-        settings.verbose = False
-        settings.presolve_enable = False
-        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = PLACES.cone
+        settings = settings_of(PLACES.cone)
         return csc_matrix(np.vstack(rows)), np.concatenate(bounds), cones, settings
 
     def beyond(self, u: Array) -> float:
