@@ -181,19 +181,26 @@ class Equilibria:
         self.ring_force[sample] = [answer.ring_force[c] for c in names.contacts]
         for j, (name, _) in enumerate(names.radials):
             self.radial_reaction[sample, j] = answer.radial_reaction[name]
-        phi = answer.rotation
-        for s, (name, shaft) in enumerate(train.shafts.items()):
-            torque = 0.0
-            if not math.isinf(shaft.stiffness):
-                wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
-                torque = answer.shaft_torque.get(name, shaft.stiffness * wind)
-            self.shaft_torque[sample, s] = torque
-        for g, (name, gear) in enumerate(train.gears.items()):
-            force = np.zeros(2)
-            if gear.support is not None:
-                moved = gear.frame @ answer.displacement[name]
-                force = answer.support_force.get(name, gear.support * moved)
-            self.support_force[sample, g] = force
+        torque, force = carried(train, answer)
+        self.shaft_torque[sample] = [torque.get(name, 0.0) for name in train.shafts]
+        self.support_force[sample] = [force.get(name, (0.0, 0.0)) for name in train.gears]
+
+
+def carried(train: Train, answer: Equilibrium) -> tuple[dict[str, float], dict[str, Array]]:
+    """Torques of elastic shafts [N·m] and forces of bearings that can yield [N].
+
+    What is not claimed follows from displacements.
+    """
+    phi, torque, force = answer.rotation, {}, {}
+    for name, shaft in train.shafts.items():
+        if not math.isinf(shaft.stiffness):
+            wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
+            torque[name] = float(answer.shaft_torque.get(name, shaft.stiffness * wind))
+    for name, gear in train.gears.items():
+        if gear.support is not None:
+            moved = gear.frame @ np.asarray(answer.displacement[name])
+            force[name] = answer.support_force.get(name, gear.support * moved)
+    return torque, force
 
 
 CLAIMED = tuple(f.name for f in fields(Equilibria) if f.name != "names")

@@ -9,6 +9,7 @@ import numpy as np
 
 from loadshare import compilation
 from loadshare.array_types import Array, Flags, Numbers, States
+from loadshare.numbering import numbered
 from loadshare.scene.loading import Loading
 from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES
@@ -133,8 +134,8 @@ def _number_all(of, here, states, held, number, carries, first, key):  # type: i
             certain &= states[s, contacts + j] == 0 or carries[s, contacts + j] == HELD
         number[s] = -1
         if not certain:
-            number[s], count = _numbered(s, carries, first, key, count, last)
-            last = number[s]
+            count, last = numbered(s, carries, first, key, count, last)
+            number[s] = last
     return count
 
 
@@ -225,26 +226,3 @@ def _margin(of, here, s, a):  # type: ignore[no-untyped-def]
     else:
         margin = along / distance
     return margin + here.clearance[_row(here.clearance, s), a]
-
-
-@inlined
-def _numbered(s, carries, first, key, count, last):  # type: ignore[no-untyped-def]
-    """Number of the set that carries, and how many sets there are."""
-    own = np.uint64(0)
-    for k in range(carries.shape[1]):
-        own = own * np.uint64(6364136223846793005) + np.uint64(1 + carries[s, k])
-    if last < count and key[last] == own and _same(carries, s, first[last]):
-        return last, count
-    for k in range(count):
-        if key[k] == own and _same(carries, s, first[k]):
-            return k, count
-    first[count], key[count] = s, own
-    return count, count + 1
-
-
-@inlined
-def _same(carries, one, other):  # type: ignore[no-untyped-def]
-    same = True
-    for k in range(carries.shape[1]):
-        same &= carries[one, k] == carries[other, k]
-    return same

@@ -22,6 +22,7 @@ from loadshare.scene.structure import Structure
 from loadshare.solver.hot.contact_states import OPEN, PINNED, SLIP, STICK
 from loadshare.solver.hot.kernel.options import allocating
 from loadshare.solver.hot.kernel.redundants import eliminated, full, local
+from loadshare.solver.hot.products import rows_of
 
 
 class Samples(NamedTuple):
@@ -266,16 +267,16 @@ def _structure(
     open_rows = np.flatnonzero(states[:flanks] == OPEN)
     open_arcs = np.flatnonzero(states[flanks : structure.rows] == OPEN)
     known = _known_of_arcs(structure, loading)
-    arc_starts, arc_coordinates, _ = _sparse(known.astype(float))
+    arc_starts, arc_coordinates, _ = rows_of(known.astype(float))
     turning = np.flatnonzero(known[arcs[acting]].any(axis=0))
-    starts, coordinates, entries = _sparse(structure.vectors)
+    starts, coordinates, entries = rows_of(structure.vectors)
     compliances = np.array(loading.bending[0, columns[:springs]])
     held, of_springs, touching = particular[:springs], n[:springs], n[springs:]
     yields = held[:, turning].T * compliances
     by_springs = of_springs.T * compliances @ of_springs
     entries_at = factor.entries(borders)
     products = (touching[:, entries_at[0]] * touching[:, entries_at[1]]).T
-    product_starts, product_contacts, product_values = _sparse(products[:, :renewed])
+    product_starts, product_contacts, product_values = rows_of(products[:, :renewed])
     arrays = [
         particular[springs:].T,
         held.T,
@@ -377,9 +378,3 @@ def _inverse(
     if not steady[columns].all() or not n.shape[1]:
         return np.zeros((0, 0))
     return np.asarray(np.linalg.pinv(n.T * compliance[columns] @ n))
-
-
-def _sparse(matrix: Array) -> tuple[Numbers, Numbers, Array]:
-    """Starts of the rows, columns and entries of a matrix."""
-    row, column = np.nonzero(matrix)
-    return np.searchsorted(row, np.arange(len(matrix) + 1)), column, matrix[row, column]
