@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
+from itertools import compress
 
 import numpy as np
 
@@ -106,33 +107,22 @@ class Equilibria:
 
     def one(self, sample: int, index: int) -> Equilibrium:
         """Return a sample as an equilibrium of position `index`."""
-        names = self.names
+        names, train = self.names, self.names.train
+        torques = zip(train.shafts, self.shaft_torque[sample].tolist(), strict=True)
+        forces = zip(train.gears, self.support_force[sample], strict=True)
+        elastic = (not math.isinf(s.stiffness) for s in train.shafts.values())
+        moving = (g.support is not None for g in train.gears.values())
         return Equilibrium(
             index=index,
             rotation=dict(zip(names.gears, self.rotation[sample].tolist(), strict=True)),
             displacement=dict(zip(names.gears, self.displacement[sample], strict=True)),
             flank_force=dict(zip(names.flanks, self.flank_force[sample].tolist(), strict=True)),
             ring_force=dict(zip(names.contacts, self.ring_force[sample].tolist(), strict=True)),
-            radial_reaction={
-                name: force
-                for (name, _), force in zip(
-                    names.radials, self.radial_reaction[sample], strict=True
-                )
-            },
-            shaft_torque={
-                shaft.name: float(torque)
-                for shaft, torque in zip(
-                    names.train.shafts.values(), self.shaft_torque[sample], strict=True
-                )
-                if not math.isinf(shaft.stiffness)
-            },
-            support_force={
-                gear.name: force
-                for gear, force in zip(
-                    names.train.gears.values(), self.support_force[sample], strict=True
-                )
-                if gear.support is not None
-            },
+            radial_reaction=dict(
+                zip((n for n, _ in names.radials), self.radial_reaction[sample], strict=True)
+            ),
+            shaft_torque=dict(compress(torques, elastic)),
+            support_force=dict(compress(forces, moving)),
         )
 
     @classmethod
