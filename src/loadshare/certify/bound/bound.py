@@ -27,7 +27,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from loadshare.array_types import Array, Flags, Numbers
-from loadshare.certify.bound.acts import Acts
+from loadshare.certify.bound.acts import Acts, alike
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.elements import Elements
@@ -113,12 +113,9 @@ def _boxes(claim: Claim, act: Acts, scale: Array, verge: Flags, softest: float) 
     left, rounding = claim.balance(found.force)
     rounding = rounding + found.rounding @ np.abs(claim.columns.matrix.high)
     box = Box.unproved(claim, act)
-    _, first, group = np.unique(
-        np.packbits(found.active, axis=1), axis=0, return_index=True, return_inverse=True
-    )
-    for number, sample in enumerate(first):
-        rows = np.flatnonzero(group.reshape(-1) == number)
-        part = _Enclosure(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
+    for rows in alike(found.active):
+        acting = np.flatnonzero(found.active[rows[0]])
+        part = _Enclosure(claim, found, rows, acting, left, rounding)
         force, coordinate = part.solve(scale[rows])
         box.force[rows] = aside(claim, found, rows) + part.ended[:, None]
         box.force[np.ix_(rows, part.columns)] += force + part.shared

@@ -24,7 +24,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.array_types import Array, Flags, Numbers
-from loadshare.certify.bound.acts import Act, Acts
+from loadshare.certify.bound.acts import Act, Acts, alike
 from loadshare.certify.bound.bound import Box, aside, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.elements import Elements
@@ -122,20 +122,6 @@ def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
         radials = act[:, gaps.shape[1] :]
         radials[(radials == Act.OPEN) & (left <= BOUND.near * widest[:, None])] = Act.STOP
     return act, doubled
-
-
-def alike(codes: Acts) -> list[Numbers]:
-    """Rows with the same codes."""
-    if (codes == codes[:1]).all():
-        return [np.arange(len(codes))]
-    group = np.zeros(len(codes), dtype=np.int64)
-    for at in range(0, codes.shape[1], BOUND.digits):
-        digits = codes[:, at : at + BOUND.digits].astype(np.int64)
-        number = digits @ Act.WAYS ** np.arange(digits.shape[1])
-        _, number = np.unique(number, return_inverse=True)
-        _, group = np.unique(group * (number.max() + 1) + number, return_inverse=True)
-    order = np.argsort(group, kind="stable")
-    return np.split(order, np.cumsum(np.bincount(group))[:-1])
 
 
 def _groups(claim: Claim, act: Acts) -> list[Numbers]:

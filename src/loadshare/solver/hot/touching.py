@@ -86,15 +86,8 @@ class Touching:
                 structure.columns.radials.start,
             ),
         )
-        figures = (
-            iterate.x,
-            iterate.force,
-            least,
-            loading.gap,
-            loading.shift,
-            loading.clearance,
-            loading.radial,
-        )
+        varying = (getattr(loading, name) for name in Figures._fields[3:])
+        figures = (iterate.x, iterate.force, least, *varying)
         self._here = Figures(*(np.require(array, np.float64, ["C"]) for array in figures))
         count = len(states)
         self.number, first = np.empty((2, count), dtype=np.intp)

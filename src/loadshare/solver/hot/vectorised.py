@@ -9,7 +9,6 @@ import numpy as np
 from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.contact.law import roots
 from loadshare.scene.loading import Loading
-from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
 from loadshare.solver.hot import contact_states as at
@@ -48,50 +47,41 @@ def settle(
     proposal : ndarray of int8, shape (k, switches)
         Set to try next.
     """
-    found = [
-        _settle_set(structure, loading, structure.basis(states), states, rows, iterate, one_only)
-        for states, rows in zip(sets, parts, strict=True)
-    ]
+    with np.errstate(all="ignore"):
+        found = [
+            _settle_set(_Passes(structure, loading, states, rows, iterate), iterate, one_only[rows])
+            for states, rows in zip(sets, parts, strict=True)
+        ]
     verdicts, proposals = zip(*found, strict=True)
     return np.concatenate(verdicts), np.concatenate(proposals)
 
 
-def _settle_set(
-    structure: Structure,
-    loading: Loading,
-    basis: Basis,
-    states: States,
-    rows: Numbers,
-    iterate: Iterate,
-    one_only: Flags,
-) -> tuple[States, States]:
+def _settle_set(passes: _Passes, iterate: Iterate, single: Flags) -> tuple[States, States]:
     """Solve samples on one set and say what has the wrong sign."""
-    with np.errstate(all="ignore"):
-        passes = _Passes(structure, loading, basis, states, rows, iterate)
-        drift = passes.drift()
-        drifting = (drift != 0.0).any(axis=1)
-        passes.run(one_only[rows] | drifting)
-        start = iterate.x[rows]
-        far = iterate.stays[rows] & (size_of(passes.x - start) > HOT.far * (1.0 + size_of(start)))
-        if far.any():
-            # What all but nothing resists has run away from where it began.
-            drift[far], drifting = (passes.x - start)[far], drifting | far
-            passes.x[far] = start[far]
-        wrong, moved = passes.wrong(HOT.sign)
-        staying = iterate.stays[rows] & wrong.any(axis=1)
-        if staying.any():
-            wrong, moved = passes.left_in_place(iterate.x[rows], staying, wrong, moved)
-        gross = passes.gross.any(axis=1)
-        wrong[gross] = passes.gross[gross]
-        moved[gross] = passes.gross_to[gross]
-        if drifting.any():
-            # Only what stops the drift is of interest.
-            stopping, other = passes.stopped_by(drift)
-            wrong[drifting], moved[drifting] = stopping[drifting], other[drifting]
-            passes.settled &= ~drifting
-            passes.refused &= ~drifting
-    single = one_only[rows]
-    if basis.loose.shape[1]:
+    rows, states = passes.rows, passes.states
+    drift = passes.drift()
+    drifting = (drift != 0.0).any(axis=1)
+    passes.run(single | drifting)
+    start = iterate.x[rows]
+    far = iterate.stays[rows] & (size_of(passes.x - start) > HOT.far * (1.0 + size_of(start)))
+    if far.any():
+        # What all but nothing resists has run away from where it began.
+        drift[far], drifting = (passes.x - start)[far], drifting | far
+        passes.x[far] = start[far]
+    wrong, moved = passes.wrong(HOT.sign)
+    staying = iterate.stays[rows] & wrong.any(axis=1)
+    if staying.any():
+        wrong, moved = passes.left_in_place(iterate.x[rows], staying, wrong, moved)
+    gross = passes.gross.any(axis=1)
+    wrong[gross] = passes.gross[gross]
+    moved[gross] = passes.gross_to[gross]
+    if drifting.any():
+        # Only what stops the drift is of interest.
+        stopping, other = passes.stopped_by(drift)
+        wrong[drifting], moved[drifting] = stopping[drifting], other[drifting]
+        passes.settled &= ~drifting
+        passes.refused &= ~drifting
+    if passes.basis.loose.shape[1]:
         for k in np.flatnonzero(single & passes.settled & wrong.any(axis=1)).tolist():
             wrong[k] &= not passes.rests(k, wrong[k])
     passes.store(iterate)
@@ -130,13 +120,12 @@ class _Passes:
         self,
         structure: Structure,
         loading: Loading,
-        basis: Basis,
         states: States,
         rows: Numbers,
         iterate: Iterate,
     ) -> None:
-        self.structure, self.loading, self.basis = structure, loading, basis
-        self.states, self.rows = states, rows
+        self.structure, self.loading, self.basis = structure, loading, structure.basis(states)
+        self.states, self.rows, basis = states, rows, self.basis
         columns, count = basis.columns, len(rows)
         shape = (count, len(columns))
         self.load = np.broadcast_to(pick(loading.load, rows), (count, structure.size))
