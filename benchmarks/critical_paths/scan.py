@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -11,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.critical_paths.draw import Path
-from loadshare.array_types import States
 from loadshare.certify import Judge, Verdicts
 from loadshare.certify.bound import Bounds
 from loadshare.job.engines import engine_named
@@ -20,7 +18,7 @@ from loadshare.job.many import solve_blocks
 from loadshare.scene.loading import Loading
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import contact_states as at
-from loadshare.solver.hot.exchange import Engine, Found, exchange
+from loadshare.solver.hot.exchange import Found, exchange
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.study.follow.line import Line
 from loadshare.train.equilibria import Equilibria
@@ -37,8 +35,6 @@ BLOCK = 8192
 """Samples solved together."""
 CLIMBING = 20
 """Samples of a block at most that climb the ladder where the hot path has no answer."""
-SPACING = 32
-"""Of so many samples one is solved first, for the others to begin at."""
 FEW, ROUNDS = 8, 6
 """Samples searched at a time for others to begin at, and how many times."""
 
@@ -120,53 +116,22 @@ class Scan(Machine):
         """Its certificate."""
         return Balance(self.train)
 
-    def _trial_samples(
-        self,
-        parts: Sequence[slice],
-        loading: Loading,
-        iterate: Iterate,
-        states: States,
-        engine: Engine,
-    ) -> Found:
-        """Solve every how many-th sample; those in between begin where it stands."""
-        trial_samples = _only(
-            np.arange(0, loading.count, SPACING), np.zeros(loading.count, dtype=bool)
-        )
-        found = exchange(self.structure, loading, iterate, engine, states, only=trial_samples)
-        left = trial_samples & ~found.solved
-        found = self._search(loading, iterate, found, left, CERTIFY.tolerance)
-        self._begin_beside(found, iterate, states, np.flatnonzero(~found.solved))
-        return found
-
     def _search(
         self, loading: Loading, iterate: Iterate, found: Found, rows: Flags, tolerance: float
-    ) -> Found:
+    ) -> None:
         """Search a few at a time, and begin with the others where their neighbours stand."""
         left = np.flatnonzero(rows)
         for _ in range(ROUNDS):
-            few = _only(_thinned(left, FEW), rows)
-            found = super()._search(loading, iterate, found, few, tolerance)
-            left = left[~found.solved[left]]
-            if not len(left) or not found.solved.any():
+            super()._search(loading, iterate, found, _only(_thinned(left, FEW), rows), tolerance)
+            known, left = np.flatnonzero(found.solved), left[~found.solved[left]]
+            if not (len(left) and len(known)):
                 break
-            states = found.states.copy()
-            self._begin_beside(found, iterate, states, left)
-            engine, only = engine_named(self.engine, loading.count), _only(left, rows)
-            more = exchange(self.structure, loading, iterate, engine, states, only=only)
-            found = found.completed(more)
-            left = left[~found.solved[left]]
-        return found
-
-    def _begin_beside(
-        self, found: Found, iterate: Iterate, states: States, left: NDArray[np.intp]
-    ) -> None:
-        """Let samples begin where the next ones stand that are solved."""
-        known = np.flatnonzero(found.solved)
-        if len(known):
             near = known[np.clip(np.searchsorted(known, left), 0, len(known) - 1)]
-            for array in (iterate.x, iterate.force, iterate.root, iterate.floor, iterate.stays):
-                array[left] = array[near]
-            states[left] = found.states[near]
+            there, engine = iterate.take(near), engine_named(self.engine, loading.count)
+            more = exchange(self.structure, loading.take(left), there, engine, found.states[near])
+            iterate.put(left[more.solved], there.take(np.flatnonzero(more.solved)))
+            found.put(left, more)
+            left = left[~found.solved[left]]
 
 
 def _only(rows: NDArray[np.intp], of: Flags) -> Flags:

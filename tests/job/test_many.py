@@ -286,17 +286,18 @@ def test_a_data_frame_will_do():
 
 
 def test_what_the_hot_path_leaves_climbs_and_says_so(monkeypatch):
-    """The engine declines every second sample: another rung answers those, all the same."""
+    """The engine declines the second of three samples: another rung answers it, all the same."""
     from loadshare.solver.hot import contact_states, vectorised
 
-    settle = vectorised.settle
+    settle, declined = vectorised.settle, []
 
     def moody(structure, loading, sets, parts, state, one_only):
         verdict, proposal = settle(structure, loading, sets, parts, state, one_only)
-        rows = np.concatenate(parts)
-        return np.where(
-            (rows % 2 == 1) & (loading.count > 1), contact_states.FAILED, verdict
-        ), proposal
+        if loading.count == 3 and not declined:
+            declined.append(loading.gap[1])
+        gap = loading.gap[np.concatenate(parts)]
+        is_declined = (gap == declined[0]).all(axis=1) if declined else False
+        return np.where(is_declined, contact_states.FAILED, verdict), proposal
 
     expected = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
     monkeypatch.setattr(vectorised, "settle", moody)

@@ -12,6 +12,7 @@ import typer
 from loadshare.cli.exits import writing
 from loadshare.cli.quiet import is_hushed
 from loadshare.cli.waiting import echo
+from loadshare.json_text import json_text
 from loadshare.output import STANDARD, write_whole
 
 
@@ -46,9 +47,7 @@ def write_document(path: Path, document: dict[str, Any]) -> None:
 
 def document_text(document: dict[str, Any]) -> str:
     """Return plain data as the text of a JSON file."""
-    import json
-
-    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(document)
 
 
 _outputs: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", default=())

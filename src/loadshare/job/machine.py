@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 
@@ -31,10 +31,9 @@ from loadshare.train.placed import standing
 from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations, situation_of, situations_of, stack
 
-Some = Flags | None
-"""Samples (S,) to solve; None for all."""
-Way = Callable[[Some], tuple[Iterate, Found]]
-"""How samples are solved."""
+"""Numbers of samples."""
+Way = Callable[[Loading, Numbers], tuple[Iterate, Found]]
+"""How some samples are solved, given with their numbers."""
 Outcome = TypeVar("Outcome")
 
 
@@ -48,12 +47,6 @@ def _compiling(engine: Engine, act: Callable[[Engine], Outcome]) -> Outcome:
         compilation.give_up(f"it does not compile ({compilation.words_of(error)})")
     compilation.tell_why_not()
     return act(vectorised.settle)
-
-
-def _parts(count: int, parts: int) -> list[slice]:
-    """Equal parts of so many samples."""
-    each = count // max(parts, 1)
-    return [slice(k * each, k * each + each) for k in range(parts)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,7 +217,7 @@ class Machine:
     ) -> Answers:
         loading, quick = loading_of(self.structure, situations), engine is not vectorised.settle
         ways, by_rule = self._ways(loading, engine, starts)
-        iterate, found = ways[0](None)
+        iterate, found = ways[0](loading, np.arange(loading.count))
         left = ~found.solved
         tries = np.ones(loading.count, dtype=np.intp)
         searched = np.zeros(loading.count, dtype=bool)
@@ -232,19 +225,20 @@ class Machine:
         # What a rule has end on the verge takes long to bound; another way may end clear of it.
         at_once = by_rule and quick and self.judge.compiles(situations)
         while True:
-            found = found.without(left)
+            found.solved[left] = False
             renewed = ~found.solved
             for number, way in enumerate(ways):
-                fresh = ~found.solved & ~searched & (tries == number)
-                if fresh.any():
-                    other, more = way(fresh)
-                    iterate.completed(other, fresh & more.solved)
-                    found = found.completed(more)
+                fresh = np.flatnonzero(~found.solved & ~searched & (tries == number))
+                if len(fresh):
+                    other, more = way(loading.take(fresh), fresh)
+                    found.put(fresh, more)
+                    better = np.flatnonzero(more.solved)
+                    iterate.put(fresh[better], other.take(better))
                     tries[fresh] += 1
             if not (starts or searched.any()) and found.solved.all():
                 self._last = self._as_start(loading, iterate, found)
             left = ~found.solved & ~searched
-            found = self._search(loading, iterate, found, left, tolerance)
+            self._search(loading, iterate, found, left, tolerance)
             searched |= left
             pin(self.structure, loading, iterate, found.states)
             verdicts = judging.renewed(renewed, bounded=not at_once)
@@ -282,42 +276,32 @@ class Machine:
             rule = self._taught(loading.take(some), engine) if len(some) else None
         ways: list[Way] = []
         if rule is not None:
-            ways.append(lambda _: self._by_rule(loading, engine, rule))
+            ways.append(lambda some, _: self._by_rule(some, engine, rule))
         # To find where the train itself stands takes as long as a few samples.
         if loading.count > len(starts) > 0 or self._beside(loading.count) is not None:
-            ways.append(lambda some: self._from_near(loading, engine, starts, some))
-        ways.append(lambda some: self._from_rest(loading, engine, some))
+            near = partial(self._near_ones, loading.count, starts, engine)
+            ways.append(lambda some, rows: self._from_near(some, engine, near(rows)))
+        ways.append(lambda some, _: self._from_rest(some, engine))
         if engine is not numpy:
-            ways.append(lambda some: self._from_rest(loading, numpy, some))
-        ways.append(lambda some: self._from_rest(loading, numpy, some, singly=True))
+            ways.append(lambda some, _: self._from_rest(some, numpy))
+        ways.append(lambda some, _: self._from_rest(some, numpy, singly=True))
         return ways, rule is not None
 
     def _from_rest(
-        self,
-        loading: Loading,
-        engine: Engine,
-        some: Some,
-        singly: bool = False,
+        self, loading: Loading, engine: Engine, singly: bool = False
     ) -> tuple[Iterate, Found]:
         iterate = at_rest(self.structure, loading)
-        return iterate, exchange(self.structure, loading, iterate, engine, only=some, singly=singly)
+        return iterate, exchange(self.structure, loading, iterate, engine, singly=singly)
 
     def _from_near(
-        self,
-        loading: Loading,
-        engine: Engine,
-        starts: Sequence[int],
-        some: Some,
+        self, loading: Loading, engine: Engine, near: Sequence[tuple[Numbers, _Start]]
     ) -> tuple[Iterate, Found]:
         """Let samples begin where the train itself stands, or a machine that differs little."""
         iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
-        parts = _parts(loading.count, len(starts)) if starts else [slice(None)]
-        known = self._at_starts(starts, engine) if starts else [self._beside(loading.count)]
-        for part, start in zip(parts, known, strict=True):
-            if start is not None:
-                states[part, : self.structure.rows] = start.states
-                iterate.begin(part, start.share, loading)
-        return iterate, exchange(self.structure, loading, iterate, engine, states, only=some)
+        for rows, start in near:
+            states[rows, : self.structure.rows] = start.states
+            iterate.begin(rows, start.share, loading)
+        return iterate, exchange(self.structure, loading, iterate, engine, states)
 
     def _taught(self, loading: Loading, engine: Engine) -> Rule | None:
         """Return the rule that samples teach; None if none of them is solved."""
@@ -344,7 +328,7 @@ class Machine:
         found: Found,
         rows: Flags,
         tolerance: float,
-    ) -> Found:
+    ) -> None:
         """Search an equilibrium of single samples by the proximal method."""
         for row in np.flatnonzero(rows).tolist():
             alone = loading.one(row)
@@ -352,9 +336,8 @@ class Machine:
                 continue
             one, more = search(self.structure, alone)
             if more.solved[0]:
-                iterate.put(row, one)
-                found = found.replaced(row, more)
-        return found
+                iterate.put(np.array([row]), one)
+                found.put(np.array([row]), more)
 
     def _at_starts(self, indices: Sequence[int], engine: Engine) -> list[_Start | None]:
         """What the train itself does at some positions; None if the hot path does not know."""
@@ -368,6 +351,17 @@ class Machine:
                 start = _Start(every.states[k], every.share[k])
                 self._starts[index] = start if found.solved[k] else None
         return [self._starts[index] for index in indices]
+
+    def _near_ones(
+        self, count: int, starts: Sequence[int], engine: Engine, rows: Numbers
+    ) -> list[tuple[Numbers, _Start]]:
+        """Where some of so many samples begin: numbers among them, and a start for these."""
+        if not starts:
+            every = cast(_Start, self._beside(count))
+            return [(np.arange(len(rows)), _Start(every.states[rows], every.share[rows]))]
+        which, known = rows // (count // len(starts)), self._at_starts(starts, engine)
+        parts = ((np.flatnonzero(which == k), start) for k, start in enumerate(known))
+        return [(part, start) for part, start in parts if start is not None]
 
     def _beside(self, count: int) -> _Start | None:
         """What a machine near by did in as many samples; None if nothing is known."""

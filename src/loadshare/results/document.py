@@ -76,13 +76,16 @@ def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
 
 def as_data(given: Any) -> Any:
     """Return dataclasses, mappings and tuples as JSON knows them; what is infinite is null."""
+    # Most are numbers: to ask whether they are mappings would take ten times as long.
+    if isinstance(given, float):
+        return None if math.isinf(given) else given
+    if given is None or isinstance(given, str | int):
+        return given
     if isinstance(given, Mapping):
         return {key: as_data(value) for key, value in given.items()}
     if is_dataclass(given):
         return {f.name: as_data(getattr(given, f.name)) for f in fields(given)}
-    if isinstance(given, list | tuple):
-        return [as_data(value) for value in given]
-    return None if isinstance(given, float) and math.isinf(given) else given
+    return [as_data(value) for value in given] if isinstance(given, list | tuple) else given
 
 
 def _position_document(p: Position) -> dict[str, Any]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from loadshare.json_text import json_text
 from loadshare.output import netcdf_of, write_whole
 from loadshare.results.digest import sealed
 from loadshare.results.document import to_document
@@ -27,7 +27,7 @@ def write_json(result: Result, path: str | Path | None = None) -> str:
 
 def text_of(result: Result) -> str:
     """Return the JSON text of a result."""
-    return json.dumps(to_document(result), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json_text(to_document(result))
 
 
 def write_netcdf(result: Result, path: str | Path) -> None:

@@ -40,7 +40,7 @@ def test_the_factor_is_zero_where_it_is_said_to_be(branches):
     there = np.linalg.cholesky(n.T * compliance @ n)
     r = n.shape[1]
     allowed = np.zeros((r, r), dtype=bool)
-    rows, columns = factor.entries(2)
+    rows, columns = factor.rows, factor.columns
     allowed[rows, columns] = True
     assert not there[~allowed].any()
     full = [factor.below[factor.starts[c] : factor.starts[c + 1]][-2:] for c in range(r)]
@@ -51,4 +51,4 @@ def test_the_factor_is_zero_where_it_is_said_to_be(branches):
 @pytest.mark.quick(2)
 def test_entries_of_the_factor_grow_with_the_branches_alone(branches):
     _, n = local(_statics(branches))
-    assert len(eliminated(n, n[:0], 0)[1].entries(0)[0]) < 4 * branches
+    assert len(eliminated(n, n[:0], 0)[1].rows) < 4 * branches

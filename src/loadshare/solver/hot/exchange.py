@@ -6,7 +6,7 @@ All samples take a turn together, those on the same set side by side.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise, permutations
 
 import numpy as np
@@ -50,29 +50,12 @@ class Found:
     turns: Numbers
     held: Flags
 
-    def completed(self, other: Found) -> Found:
-        """Return what was found here, and elsewhere what the other found."""
-        mine = self.solved
-        return Found(
-            mine | other.solved,
-            np.where(mine[:, None], self.states, other.states),
-            self.turns + other.turns,
-            np.where(mine, self.held, other.held),
-        )
-
-    def without(self, rows: Flags) -> Found:
-        """Return the same with some samples as not solved."""
-        return replace(self, solved=self.solved & ~rows)
-
-    def replaced(self, row: int, other: Found) -> Found:
-        """Return the same with a sample as the only one of another finding."""
-        here = np.arange(len(self.solved)) == row
-        return Found(
-            self.solved | here,
-            np.where(here[:, None], other.states, self.states),
-            self.turns + np.where(here, other.turns, 0),
-            np.where(here, other.held, self.held),
-        )
+    def put(self, rows: Numbers, other: Found) -> None:
+        """Let some samples be as those of another finding, in its order; turns add up."""
+        self.solved[rows] = other.solved
+        self.states[rows] = other.states
+        self.held[rows] = other.held
+        self.turns[rows] += other.turns
 
 
 def first_sets(structure: Structure, loading: Loading) -> States:
@@ -128,7 +111,6 @@ def exchange(
     iterate: Iterate,
     engine: Engine,
     states: States | None = None,
-    only: Flags | None = None,
     singly: bool = False,
     limit: int | None = None,
 ) -> Found:
@@ -144,8 +126,6 @@ def exchange(
         `vectorised.settle` or `compiled.settle`.
     states : ndarray of int8, shape (S, switches), optional
         Sets to begin with.
-    only : ndarray of bool, shape (S,), optional
-        Samples to solve; all by default.
     singly : bool
         Exchange one element at a time from the beginning.
     limit : int, optional
@@ -167,7 +147,7 @@ def exchange(
     one_only = np.full(count, singly)
     limit = limit or EXCHANGE.turns
     rounds = _Rounds(structure)
-    rows = np.arange(count) if only is None else np.flatnonzero(only)
+    rows = np.arange(count)
     turn = 0
     while len(rows):
         turn += 1

@@ -42,20 +42,14 @@ class Iterate:
         """Return some of the samples, as a copy."""
         return Iterate(*(getattr(self, field.name)[rows] for field in fields(self)))
 
-    def completed(self, other: Iterate, rows: Flags) -> Iterate:
-        """Return this iterate with some samples as they are in the other."""
-        for name in ("x", "force", "root", "floor", "stays"):
-            getattr(self, name)[rows] = getattr(other, name)[rows]
-        return self
-
-    def put(self, row: int, other: Iterate) -> None:
-        """Let a sample be as the only one of another iterate is."""
-        for name in ("x", "force", "root", "floor", "stays"):
-            getattr(self, name)[row] = getattr(other, name)[0]
+    def put(self, rows: Numbers, other: Iterate) -> None:
+        """Let some samples be as those of another iterate are, in its order."""
+        for field in fields(self):
+            getattr(self, field.name)[rows] = getattr(other, field.name)
 
     def begin(
         self,
-        samples: slice,
+        samples: Numbers | slice,
         share: Array,
         loading: Loading,
         which: Numbers | None = None,
@@ -64,7 +58,7 @@ class Iterate:
 
         Parameters
         ----------
-        samples : slice
+        samples : ndarray of int, or slice
         share : ndarray, shape (m,), (S, m) or (k, m)
             For all of them, for each, or for each that `which` names.
         loading : Loading
@@ -73,7 +67,7 @@ class Iterate:
         roots = np.cbrt(np.maximum(share[..., loading.bent], HOT.least_share))
         roots = roots if which is None else roots[which]
         of_load = loading.root[samples] if len(loading.root) > 1 else loading.root
-        np.multiply(of_load[:, None], roots, out=self.root[samples, loading.bent])
+        self.root[samples, loading.bent] = of_load[:, None] * roots
 
 
 def at_rest(structure: Structure, loading: Loading) -> Iterate:

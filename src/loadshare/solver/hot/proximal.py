@@ -301,7 +301,7 @@ def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
                     singly=True,
                     limit=SEARCH.exchanges,
                 )
-                found = found.completed(more)
+                found.put(np.zeros(1, dtype=int), more)
                 if found.solved[0]:
                     return _with_idle_open(structure, loading, iterate, found)
         before = key

@@ -5,7 +5,9 @@ Both keep the work of a pass proportional to the number of branches.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from itertools import accumulate, chain
 from typing import NamedTuple
 
 import numpy as np
@@ -25,20 +27,14 @@ class Factor(NamedTuple):
         Where the rows of each column begin.
     below : ndarray of int
         Numbers below the diagonal, column by column.
+    rows, columns : ndarray of int
+        All entries, each column from its diagonal on, without borders.
     """
 
     starts: Numbers
     below: Numbers
-
-    def entries(self, borders: int) -> tuple[Numbers, Numbers]:
-        """Numbers and columns of all entries, each column from its diagonal on, without borders."""
-        r = len(self.starts) - 1 - borders
-        column = np.repeat(np.arange(r + borders), np.diff(self.starts))
-        kept = self.below < r
-        row = np.concatenate([np.arange(r), self.below[kept]])
-        column = np.concatenate([np.arange(r), column[kept]])
-        order = np.lexsort((row, column))
-        return row[order], column[order]
+    rows: Numbers
+    columns: Numbers
 
 
 def local(basis: Basis) -> tuple[Array, Array]:
@@ -52,7 +48,7 @@ def local(basis: Basis) -> tuple[Array, Array]:
     from scipy.linalg import qr
 
     n = basis.redundant
-    _, _, by_size = qr(n.T, mode="economic", pivoting=True)
+    _, by_size = qr(n.T, mode="r", pivoting=True, check_finite=False)
     chosen, others = by_size[: n.shape[1]], by_size[n.shape[1] :]
     redundant = _chained(_clean(np.linalg.solve(n[chosen].T, n.T).T))
     redundant /= np.sqrt((redundant * redundant).sum(axis=0))
@@ -65,8 +61,8 @@ def local(basis: Basis) -> tuple[Array, Array]:
 
 def _clean(matrix: NDArray[np.floating]) -> Array:
     """The matrix without what is round-off beside its largest entry."""
-    small = np.abs(matrix) < STATICS.nothing * np.abs(matrix).max()
-    return np.asarray(np.where(small, 0.0, matrix), dtype=np.float64)
+    size = np.abs(matrix)
+    return np.asarray(np.where(size < STATICS.nothing * size.max(), 0.0, matrix), dtype=np.float64)
 
 
 def _chained(redundant: Array) -> Array:
@@ -74,17 +70,18 @@ def _chained(redundant: Array) -> Array:
 
     All would be coupled through it, the matrix full.
     """
+    acts = redundant != 0.0
     for row in range(len(redundant)):
-        at = np.flatnonzero(redundant[row])
-        if len(at) <= STATICS.many:
+        if np.count_nonzero(acts[row]) <= STATICS.many:
             continue
+        at = np.flatnonzero(acts[row])
         ratio = redundant[row, at[:-1]] / redundant[row, at[1:]]
         if np.abs(np.log(np.abs(ratio))).max() < STATICS.uneven:
             passed = redundant.copy()
             passed[:, at[:-1]] -= ratio * redundant[:, at[1:]]
             passed = _clean(passed)
             if _coupled(passed).sum() < _coupled(redundant).sum():
-                redundant = passed
+                redundant, acts = passed, passed != 0.0
     return redundant
 
 
@@ -111,29 +108,45 @@ def eliminated(redundant: Array, turned: Array, borders: int) -> tuple[Array, Fa
     coupled = _coupled(redundant) | _coupled(np.abs(turned[::2]) + np.abs(turned[1::2]))
     if coupled.all():
         return redundant, full(r, borders)
-    order, place, left = np.arange(r), np.arange(r), np.ones(r, dtype=bool)
-    below = []
-    for k in range(r):
-        c = int(np.where(left, coupled.sum(axis=1, where=left), r + 1).argmin())
-        left[c] = False
-        order[k], place[c] = c, k
-        rows = np.flatnonzero(coupled[c] & left)
-        coupled[np.ix_(rows, rows)] = True
-        below.append(rows)
-    factor = _factor([np.sort(place[rows]) for rows in below], borders)
-    return np.ascontiguousarray(redundant[:, order]), factor
+    # Sets of redundants as the bits of whole numbers.
+    beside = [_bits_of(row) for row in coupled]
+    left, order, found = (1 << r) - 1, list[int](), list[int]()
+    for _ in range(r):
+        c = min(_members(left), key=lambda one: (beside[one] & left).bit_count())
+        left &= ~(1 << c)
+        order.append(c)
+        found.append(beside[c] & left)
+        for one in _members(found[-1]):
+            beside[one] |= found[-1]
+    place = {c: k for k, c in enumerate(order)}
+    below = [sorted(place[c] for c in _members(rows)) for rows in found]
+    return np.ascontiguousarray(redundant[:, order]), _factor(below, borders)
 
 
+def _factor(below: Sequence[Sequence[int]], borders: int) -> Factor:
+    """Factor with some rows below the diagonal of each column; borders are full."""
+    r = len(below)
+    at = range(r, r + borders)
+    all_below = [*([*rows, *at] for rows in below), *(at[k + 1 :] for k in range(borders))]
+    entries = [(row, c) for c, rows in enumerate(below) for row in (c, *rows)]
+    rows, columns = np.array(entries, dtype=np.intp).reshape(-1, 2).T.copy()
+    starts = np.array([0, *accumulate(map(len, all_below))], dtype=np.intp)
+    return Factor(starts, np.array([*chain.from_iterable(all_below)], np.intp), rows, columns)
+
+
+def _bits_of(flags: Flags) -> int:
+    return int.from_bytes(np.packbits(flags, bitorder="little").tobytes(), "little")
+
+
+def _members(bits: int) -> Iterator[int]:
+    """Numbers of the bits that are set, from the lowest on."""
+    while bits:
+        lowest = bits & -bits
+        yield lowest.bit_length() - 1
+        bits ^= lowest
+
+
+@lru_cache
 def full(r: int, borders: int) -> Factor:
     """Return a factor of which nothing is zero."""
-    return _factor([np.arange(c + 1, r) for c in range(r)], borders)
-
-
-def _factor(below: Sequence[Numbers], borders: int) -> Factor:
-    """Factor of some columns, with borders, which are full, as further rows and columns."""
-    at_border = np.arange(len(below), len(below) + borders)
-    columns = [np.concatenate([rows, at_border]) for rows in below]
-    columns += [at_border[k + 1 :] for k in range(borders)]
-    starts = np.zeros(len(columns) + 1, dtype=np.intp)
-    np.cumsum([len(rows) for rows in columns], out=starts[1:])
-    return Factor(starts, np.concatenate([np.zeros(0, dtype=np.intp), *columns]))
+    return _factor([range(c + 1, r) for c in range(r)], borders)

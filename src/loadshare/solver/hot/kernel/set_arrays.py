@@ -11,7 +11,7 @@ differ from sample to sample, radial elements on their first piece or pinned).
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from loadshare.scene.structure import Structure
 from loadshare.solver.hot.contact_states import OPEN, PINNED, SLIP, STICK
 from loadshare.solver.hot.kernel.options import allocating
 from loadshare.solver.hot.kernel.redundants import eliminated, full, local
-from loadshare.solver.hot.products import rows_of
+from loadshare.solver.hot.products import Rows, rows_of
 
 
 class Samples(NamedTuple):
@@ -257,25 +257,24 @@ def _structure(
     turning_radials = (columns[springs : springs + turned : 2] - first_radial) // 2
     slips = states[structure.rows + turning_radials] == SLIP
     borders = int(slips.sum())
-    factor = full(n.shape[1], borders)
     if n.shape[1] and not len(inverse):
-        particular, n = (table[order] for table in local(basis))
+        particular, n = (table[order] for table in _local(structure, basis))
         n, factor = eliminated(n, n[springs : springs + turned], borders)
+    else:
+        factor = full(n.shape[1], borders)
     contacts, row_end = columns[springs:], renewed + rows
     arcs = contacts - first - flanks
     acting = np.flatnonzero((arcs >= 0) & (contacts < first_radial))
     open_rows = np.flatnonzero(states[:flanks] == OPEN)
     open_arcs = np.flatnonzero(states[flanks : structure.rows] == OPEN)
-    known = _known_of_arcs(structure, loading)
-    arc_starts, arc_coordinates, _ = rows_of(known.astype(float))
+    known, (arc_starts, arc_coordinates, _), by_rows = _every_set(structure)
     turning = np.flatnonzero(known[arcs[acting]].any(axis=0))
-    starts, coordinates, entries = rows_of(structure.vectors)
+    starts, coordinates, entries = by_rows
     compliances = np.array(loading.bending[0, columns[:springs]])
     held, of_springs, touching = particular[:springs], n[:springs], n[springs:]
     yields = held[:, turning].T * compliances
     by_springs = of_springs.T * compliances @ of_springs
-    entries_at = factor.entries(borders)
-    products = (touching[:, entries_at[0]] * touching[:, entries_at[1]]).T
+    products = (touching[:, factor.rows] * touching[:, factor.columns]).T
     product_starts, product_contacts, product_values = rows_of(products[:, :renewed])
     arrays = [
         particular[springs:].T,
@@ -288,7 +287,7 @@ def _structure(
         by_springs,
         product_values[None],
         products[:, renewed:],
-        by_springs[entries_at][None],
+        by_springs[factor.rows, factor.columns][None],
         particular[springs:, turning],
         held[:, turning],
         (yields @ of_springs).T,
@@ -327,11 +326,31 @@ def _structure(
     return arrays, lists, [powers, turned, row_end, first, first_radial, flanks]
 
 
-def _known_of_arcs(structure: Structure, loading: Loading) -> Flags:
-    """Which coordinates the arcs know of, (arcs, n)."""
-    known = (loading.relative != 0.0).any(axis=1)
-    first = structure.springs + structure.flat
-    return np.asarray(known | (structure.vectors[first : first + len(known)] != 0.0))
+def _local(structure: Structure, basis: Basis) -> tuple[Array, Array]:
+    """P and N as `local` has them, found once for all sets of the same elements."""
+    key = "local", basis.columns.tobytes()
+    known = structure.cache.get(key) or structure.remember(key, local(basis))
+    return cast(tuple[Array, Array], known)
+
+
+def _every_set(structure: Structure) -> tuple[Flags, Rows, Rows]:
+    """What is the same in every set.
+
+    Returns
+    -------
+    known : ndarray of bool, shape (arcs, n)
+        Which coordinates the arcs know of.
+    of_arcs, by_rows : tuple of ndarray
+        The same, and A, row by row.
+    """
+    known = structure.cache.get(("every set",))
+    if known is None:
+        arcs, first = len(structure.relative), structure.springs + structure.flat
+        found = (structure.relative != 0.0).any(axis=1)
+        found |= structure.vectors[first : first + arcs] != 0.0
+        known = found, rows_of(found.astype(float)), rows_of(structure.vectors)
+        structure.remember(("every set",), known)
+    return cast(tuple[Flags, Rows, Rows], known)
 
 
 def _radial_at(structure: Structure, contacts: Numbers) -> Numbers:
@@ -351,19 +370,14 @@ def _order(
     # Columns of radial elements come in pairs, all others before them one by one.
     number = np.where(is_radial, (columns - structure.springs + structure.rows) // 2, 0)
     place = np.where(is_radial, np.append(states, OPEN)[number], OPEN)
-    is_table = loading.tabulated[columns] >= 0
-    sort = np.select(
-        [
-            is_spring & loading.steady[columns],
-            is_radial & (place != STICK) & (place != PINNED),
-            is_radial | is_spring,
-            is_table,
-            loading.curved[columns],
-        ],
-        [0, 1, 5, 3, 2],
-        4,
-    )
-    return np.argsort(sort, kind="stable"), tuple(int((sort == k).sum()) for k in range(5))
+    # What is said last counts.
+    sort = np.where(loading.curved[columns], 2, 4)
+    sort[loading.tabulated[columns] >= 0] = 3
+    sort[is_radial | is_spring] = 5
+    sort[is_radial & (place != STICK) & (place != PINNED)] = 1
+    sort[is_spring & loading.steady[columns]] = 0
+    counts = np.bincount(sort, minlength=6)[:5].tolist()
+    return np.argsort(sort, kind="stable"), tuple(counts)
 
 
 def _inverse(
