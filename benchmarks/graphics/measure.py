@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from benchmarks.graphics.kernel import ASKED, floats_of, settling
 from benchmarks.workloads import Workload
+from loadshare.array_types import States
 from loadshare.job.machine import Machine
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.structure import Structure
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import compiled
 from loadshare.solver.hot.contact_states import DONE
-from loadshare.solver.hot.exchange import Found, States, exchange, first_sets
+from loadshare.solver.hot.exchange import Found, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.kernel.set_arrays import Samples, packed_sets
 from loadshare.solver.hot.kernel.work import Given

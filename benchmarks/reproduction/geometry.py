@@ -14,8 +14,8 @@ import numpy as np
 
 from benchmarks.reproduction import printed
 from benchmarks.reproduction.seed import PINIONS, Seed, first, pair_omega
+from loadshare.array_types import Array
 from loadshare.case import Case
-from loadshare.scene.scene import Array
 
 RATIO = 2.5
 """I46, as in the reconstruction."""

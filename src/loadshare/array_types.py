@@ -11,6 +11,8 @@ Array: TypeAlias = NDArray[np.float64]
 Flags: TypeAlias = NDArray[np.bool_]
 Numbers: TypeAlias = NDArray[np.intp]
 """Of elements, samples, places in another array."""
+States: TypeAlias = NDArray[np.int8]
+"""Of elements: how each acts, one small number (`contact_states`)."""
 
 
 def floats(given: Any) -> Any:

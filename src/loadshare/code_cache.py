@@ -7,7 +7,7 @@ import pickle
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from types import CodeType, FunctionType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 from numba.core.caching import (
@@ -40,8 +40,11 @@ def fingerprint(function: Callable[..., Any]) -> str:
         # The printed form of a code object contains its address in memory.
         constants = [c for c in code.co_consts if not isinstance(c, CodeType)]
         parts.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
-        for name in code.co_names:
-            value = one.__globals__.get(name)
+        known = {name: one.__globals__.get(name) for name in code.co_names}
+        for module in [value for value in known.values() if isinstance(value, ModuleType)]:
+            read = [name for name in code.co_names if hasattr(module, name)]
+            known |= {f"{module.__name__}.{name}": getattr(module, name) for name in read}
+        for name, value in known.items():
             called = getattr(value, "py_func", value)
             if isinstance(called, FunctionType):
                 if called not in seen:

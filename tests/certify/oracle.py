@@ -23,6 +23,7 @@ from loadshare.train.elements import Spline
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.memory import SlipFriction, SlipStop
+from loadshare.train.mesh import Mesh
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
@@ -34,6 +35,19 @@ def turned(wedge: float, band: float, distance: float) -> float:
     """Angle [rad] within which a band [m] leaves the direction between two arcs (`squeezes`)."""
     across = 2.0 * band / distance
     return across / (wedge + math.sqrt(wedge * wedge + across))
+
+
+def approach(
+    mesh: Mesh,
+    drive: bool,
+    position: int,
+    rotations: tuple[float, float],
+    apart: Vector,
+) -> float:
+    """Approach of a flank [m] from the rotations of both gears and their displacement apart."""
+    on_driver, on_driven, normal = mesh.direction(drive)
+    turned = on_driver * rotations[0] + on_driven * rotations[1]
+    return turned + float(normal @ apart) - mesh.gap(position, drive)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,8 +161,8 @@ class ClaimedState:
                     name=name,
                     gear=None,
                     force=self.answer.flank_force[name],
-                    approach=mesh.approach(drive, position, turned, relative),
-                    at_rest=mesh.approach(drive, position, (0.0, 0.0), errors),
+                    approach=approach(mesh, drive, position, turned, relative),
+                    at_rest=approach(mesh, drive, position, (0.0, 0.0), errors),
                     law=mesh.law(position),
                     normal=mesh.direction(drive)[2],
                     pushed=mesh.driven,
@@ -384,7 +398,7 @@ class ClaimedState:
         moved += [float(np.abs(self.moved(g)).max()) for g in gears]
         positions, still = self.train.flank_positions(self.answer.index), np.zeros(3)
         gaps = [
-            abs(mesh.approach(drive, positions[mesh.flank_name(drive)], (0.0, 0.0), still))
+            abs(approach(mesh, drive, positions[mesh.flank_name(drive)], (0.0, 0.0), still))
             for mesh in self.train.meshes.values()
             for drive in mesh.flanks
         ]

@@ -19,7 +19,7 @@ from tests.support import mostly_slow, shipped
 
 from benchmarks.reference import reference
 from benchmarks.workloads import workloads
-from loadshare import compilation
+from loadshare import compilation, numbering
 from loadshare.certify import Judge
 from loadshare.certify.bound import Columns, bounds, kernel
 from loadshare.certify.bound.batch import is_covered, judged
@@ -91,7 +91,8 @@ def errors(columns: Columns, here: Situations, one: Equilibria, other: Equilibri
 def plain():
     """The kernel as it is written."""
     with pytest.MonkeyPatch.context() as patch:
-        for name in [m for m in sys.modules if m.startswith(kernel.__name__)]:
+        rooms = kernel.__name__, numbering.__name__
+        for name in [m for m in sys.modules if m.startswith(rooms)]:
             patch.delitem(sys.modules, name)
         patch.setattr(sys.modules[kernel.__package__.rpartition(".")[0]], "kernel", kernel)
         for way in ("jit", "within"):

@@ -300,16 +300,24 @@ def test_at_hand_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_numbers_of_another_file_that_change_are_compiled_anew(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("imported", "most"),
+    [("from numbers_of import N", "N.most"), ("import numbers_of as of", "of.MOST")],
+    ids=["of a table", "of a module"],
+)
+def test_numbers_of_another_file_that_change_are_compiled_anew(
+    tmp_path, monkeypatch, imported, most
+):
     """Numba itself looks at the function's own file only."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
     (tmp_path / "numbers_of.py").write_text(
         "from typing import NamedTuple\nclass N(NamedTuple):\n    most: float = 1.0\nN = N()\n"
+        "MOST = 1.0\n"
     )
     (tmp_path / "called_by.py").write_text(
-        "from loadshare.compilation import jit\nfrom numbers_of import N\n"
+        f"from loadshare.compilation import jit\n{imported}\n"
         "@jit()\ndef outer(x):\n    return inner(x)\n"
-        "@jit()\ndef inner(x):\n    return x > N.most\n"
+        f"@jit()\ndef inner(x):\n    return x > {most}\n"
     )
     script = f"""
 import sys; sys.path.insert(0, {str(tmp_path)!r})

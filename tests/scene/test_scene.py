@@ -6,7 +6,15 @@ Source: formulation, sections 4 and 11.
 
 import numpy as np
 import pytest
-from tests.support import answer, driver_torques, furthest, round_ring, shipped, with_backlash
+from tests.certify.oracle import approach
+from tests.support import (
+    answer,
+    driver_torques,
+    furthest,
+    round_ring,
+    shipped,
+    with_backlash,
+)
 
 from benchmarks import families
 from loadshare.contact.plan import Linearisation, Role, programme
@@ -160,7 +168,7 @@ def test_a_scene_is_what_the_train_says(name):
             for drive in mesh.flanks:
                 row = rows[mesh.flank_name(drive)]
                 position = positions[row.name]
-                expected = mesh.approach(drive, position, ends, apart)
+                expected = approach(mesh, drive, position, ends, apart)
                 assert row.vector @ x - row.gap == pytest.approx(expected, abs=1e-17)
                 assert row.law.compression(700.0) == pytest.approx(
                     mesh.law(position).compression(700.0), rel=1e-14

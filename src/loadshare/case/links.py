@@ -184,7 +184,7 @@ class Range(Element):
     """Float up, to the left of the way from the first neighbour to the second [length]."""
 
     down: Distance
-    """Float down, to the right of it [length]."""
+    """Float down, to the right of the way from the first neighbour to the second [length]."""
 
 
 class Backlashes(Element):

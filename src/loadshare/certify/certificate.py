@@ -15,9 +15,9 @@ import numpy as np
 
 from loadshare.certify.bound import Bound
 from loadshare.certify.bound.one import bound_of_one
+from loadshare.certify.fault import fault_of
 from loadshare.certify.floats import FloatState, float_states
 from loadshare.certify.mechanics import mechanics_of
-from loadshare.certify.pulls import fault_of
 from loadshare.certify.residuals import FIGURES, RESIDUALS, scales, worst_of_one
 from loadshare.certify.state import ClaimedState
 from loadshare.certify.tolerance import checked_tolerance
@@ -117,6 +117,15 @@ class Certificate:
     def failing(self) -> dict[str, Residual]:
         """Residuals beyond the tolerance."""
         return {n: r for n, r in self.residuals.items() if not r.scaled <= self.tolerance}
+
+    @property
+    def shortfall(self) -> str:
+        """These in words."""
+        return "; ".join(
+            f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} ({r.scaled:.1e} of the "
+            f"case, allowed {self.tolerance:.0e})"
+            for name, r in self.failing.items()
+        )
 
 
 def certify_later(

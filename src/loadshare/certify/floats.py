@@ -10,11 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.case.table import Table
 from loadshare.certify.state import ClaimedState, size
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 STAGES = ("stick", "slip", "stop")
 """Of a spline, in the order of the pieces of its graph."""
@@ -232,7 +230,7 @@ class Rests:
             words.append(label or ("inside" if settled else "undetermined"))
         return np.array(words, dtype=str)[which.reshape(-1)]
 
-    def stage(self, gear: str) -> NDArray[np.intp]:
+    def stage(self, gear: str) -> Numbers:
         """Stage of its spline, (S,), as a number of `STAGES`; −1 of a gear without one.
 
         The last piece of its graph that its radius has entered and its force has reached. With

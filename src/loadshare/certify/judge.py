@@ -5,9 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags
 from loadshare.certify.bound import Bounds, Columns, bounds, completed
 from loadshare.certify.bound.batch import is_covered, judged
 from loadshare.certify.bound.one import columns_of
@@ -128,9 +127,7 @@ class Judge:
             return worst, state.load, state.deflection
 
 
-def _is_soft(
-    situations: Situations, load: Array, deflection: Array, tolerance: float
-) -> NDArray[np.bool_]:
+def _is_soft(situations: Situations, load: Array, deflection: Array, tolerance: float) -> Flags:
     """Whether a force [N] within the tolerance is more energy in a spring than the tolerance is.
 
     The gap that an error f of a spring's force leaves is f²/2K, the scale of energies that of loads

@@ -72,6 +72,9 @@ class Mechanics:
         Names of the radial elements.
     claimed : ndarray, shape (radials,)
         Place of each among the claimed reactions.
+    gears, gear_names, bearings, bearing_names, turning_gears, squeezed_names : tuple of str
+        Names of all gears, and as elements; of those that can be displaced, and of their bearings;
+        of the first gear of every group that turns; of both arcs of the drums under `squeezed`.
     """
 
     def __init__(self, train: Train) -> None:
@@ -85,6 +88,7 @@ class Mechanics:
         self._put_shafts()
         self._put_drums()
         self._put_radials()
+        self._put_names()
 
     def _put_flanks(self) -> None:
         train, order, count = self.train, self.order, len(self.order)
@@ -155,6 +159,15 @@ class Mechanics:
         self.claimed = np.array([*range(rounds, len(named)), *range(rounds)], dtype=np.intp)
         self.pulls = tuple(named[k][0] for k in self.claimed)
         self.pulled = np.array([self.order[named[k][1]] for k in self.claimed], dtype=np.intp)
+
+    def _put_names(self) -> None:
+        self.gears = tuple(self.order)
+        self.gear_names = tuple(f"gear {g}" for g in self.gears)
+        self.bearings = tuple(self.gears[g] for g in self.moving)
+        self.bearing_names = tuple(f"bearing {g}" for g in self.bearings)
+        self.turning_gears = tuple(self.gears[group[0]] for group in self.turning_groups)
+        squeezed = (self.train.drums[d].gear for d in self.squeezed)
+        self.squeezed_names = tuple(f"ring {gear}: arcs" for gear in squeezed)
 
     def loaded(self, push: Array) -> tuple[Array, Array]:
         """Moments [N·m] and forces [N] of forces from outside on gears, (gears, S), (gears, 3, S).
@@ -237,37 +250,6 @@ class Mechanics:
             *flanks,
             *(n for r in drums for n in (*map(r.arc_name, r.neighbours), *r.stop_names)),
         )
-
-    @cached_property
-    def gears(self) -> tuple[str, ...]:
-        """Names of all gears."""
-        return tuple(self.order)
-
-    @cached_property
-    def bearings(self) -> tuple[str, ...]:
-        """Gears that can be displaced."""
-        return tuple(self.gears[g] for g in self.moving)
-
-    @cached_property
-    def bearing_names(self) -> tuple[str, ...]:
-        """Names of their bearings."""
-        return tuple(f"bearing {g}" for g in self.bearings)
-
-    @cached_property
-    def gear_names(self) -> tuple[str, ...]:
-        """Names of the gears as elements."""
-        return tuple(f"gear {g}" for g in self.order)
-
-    @cached_property
-    def turning_gears(self) -> tuple[str, ...]:
-        """First gear of every group that turns."""
-        return tuple(self.gears[group[0]] for group in self.turning_groups)
-
-    @cached_property
-    def squeezed_names(self) -> tuple[str, ...]:
-        """Names of both arcs of the drums between whose arcs nothing gives way."""
-        drums = self.train.drums
-        return tuple(f"ring {drums[d].gear}: arcs" for d in self.squeezed)
 
 
 @lru_cache(maxsize=CERTIFY.trains)

@@ -31,9 +31,7 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.mechanics import mechanics_of
-from loadshare.certify.pulls import Pull, pulls_of
-from loadshare.certify.state import ClaimedState
-from loadshare.contact.radial import Piece
+from loadshare.certify.state import ClaimedState, size
 from loadshare.settings import CERTIFY
 from loadshare.train.elements import Spline
 from loadshare.train.equilibria import Equilibria
@@ -121,13 +119,14 @@ class _System:
         train = state.of.train
         self.columns = columns_of(train)
         self.rows = self.columns.matrix.high
-        size = len(self.columns.coordinates)
+        count = len(self.columns.coordinates)
         self.load = CERTIFY.carries * float(state.load[0])
         self.near = CERTIFY.carries * float(state.deflection[0])
-        self.stiffness = np.zeros((size, size))
-        self.taken = np.zeros((size, size))
+        self.stiffness = np.zeros((count, count))
+        self.taken = np.zeros((count, count))
         self.rigid: list[Array] = []
-        self.pulls = pulls_of(state)
+        self.splines = list(train.splines.values())
+        self.radius = state.radius[:, 0] if state.of.pulls else np.zeros(0)
 
     @cached_property
     def bent(self) -> tuple[str, ...]:
@@ -135,18 +134,18 @@ class _System:
         of = self.state.of
         carrying = np.argwhere(self.state.ring_force[:, :2, 0] > self.load).tolist()
         arcs = [of.contacts[len(of.flanks) + 4 * d + k] for d, k in carrying]
-        return (*arcs, *(p.name for p in self.pulls if self._follows(p)))
+        return (*arcs, *(s.name for k, s in enumerate(self.splines) if self._follows(k)))
 
     def _assemble(self) -> None:
         self._flanks()
         self._drums()
         self._springs()
-        train = self.state.of.train
-        for pull in self.pulls:
-            if pull.is_ring or train.slip is None:
-                self._pull(pull)
-        for k, spline in enumerate(train.splines.values() if train.slip is not None else ()):
-            self._remembering(k, spline, self.pulls[k])
+        remembering = self.state.of.train.slip is not None
+        of_splines = 2 * len(self.splines) if remembering else 0
+        for q in range(of_splines, len(self.radius)):
+            self._pull(q)
+        for k, spline in enumerate(self.splines if remembering else ()):
+            self._remembering(k, spline)
 
     def _hold(self, row: Array, stiffness: float) -> None:
         if math.isinf(stiffness):
@@ -200,55 +199,65 @@ class _System:
             rows = self.rows[some]
             self.stiffness += rows.T @ (stiffness[:, None] * rows)
 
-    def _follows(self, pull: Pull) -> bool:
-        """Whether the force of a radial element follows the torque where the element is."""
-        spline = self.state.of.train.splines.get(pull.gear)
-        if pull.is_ring or spline is None or pull.name != spline.name or not _follows(spline):
+    def _follows(self, k: int) -> bool:
+        """Whether the force of a spline follows the torque where the spline is."""
+        if not _follows(self.splines[k]) or self.radius[k] <= self.near:
             return False
-        if pull.radius <= self.near:
-            return False
-        if self.state.of.train.slip is not None:
-            return True
-        return _piece(pull, self.near, self.load)[0].name != "stick"
+        return self.state.of.train.slip is not None or self._piece(k)[0] != "stick"
 
-    def _pull(self, pull: Pull) -> None:
+    def _piece(self, q: int) -> tuple[str, float]:
+        """The piece of its graph on which a radial element is, and its slope [N/m]."""
+        first, stick, bound, reach, last = (float(figure[q, 0]) for figure in self.state.graph)
+        radius, force = self.radius[q], float(size(self.state.reaction[q], axis=0)[0])
+        rigid = math.isinf(last) and math.isfinite(reach)
+        if rigid and radius >= reach - self.near and force > bound + self.load:
+            return "stop", math.inf
+        pieces = [
+            ("stick", stick > 0.0, 0.0, 0.0, first),
+            ("slip", reach > stick, stick, bound, 0.0),
+            ("stop", math.isfinite(stick) and math.isfinite(last), reach, bound, last),
+        ]
+        there = [piece for piece in pieces if piece[1]]
+        reached = [p for p in there if radius >= p[2] - self.near and force >= p[3] - self.load]
+        name, *_, slope = [*there[:1], *reached][-1] if there else ("slip", 0.0)
+        return name, slope
+
+    def _pull(self, q: int) -> None:
         """A radial element: the slope of its piece along, force over radius across."""
-        train = self.state.of.train
-        pair = self._pair(self._radial(pull))
-        radius, force = pull.radius, pull.force
-        piece, at_stop = _piece(pull, self.near, self.load)
-        held = math.inf if at_stop else piece.stiffness
+        state = self.state
+        pair, radius, held = self._pair(self._radial(q)), self.radius[q], self._piece(q)[1]
         if radius <= self.near:
             for row in pair:
                 self._hold(row, held)
             return
-        outward, beside = _along_and_across(train.gears[pull.gear].frame @ pull.offset / radius)
+        gear = state.of.train.gears[state.of.gears[state.of.pulled[q]]]
+        outward, beside = _along_and_across(gear.frame @ state.offset[q, :, 0] / radius)
         along = outward @ pair
         self._hold(along, held)
-        self._hold(beside @ pair, force / radius)
-        if not self._follows(pull):
+        self._hold(beside @ pair, float(size(state.reaction[q], axis=0)[0]) / radius)
+        if q >= len(self.splines) or not self._follows(q):
             return
-        k = list(train.splines).index(pull.gear)
-        torque = float(self.state.transmitted[k, 0])
-        per_torque = train.splines[pull.gear].friction_per_torque
-        follow = math.copysign(per_torque, torque) * self.torque_slope[k]
+        per_torque = self.splines[q].friction_per_torque
+        follow = math.copysign(per_torque, state.transmitted[q, 0]) * self.torque_slope[q]
         coupling = np.outer(along, follow)
         self.taken -= 0.5 * (coupling + coupling.T)
 
-    def _radial(self, pull: Pull) -> int:
+    def _radial(self, q: int) -> int:
         """First of the two columns of a radial element."""
-        return int(self.columns.radials.start + 2 * self.state.of.claimed[pull.number])
+        return int(self.columns.radials.start + 2 * self.state.of.claimed[q])
 
-    def _remembering(self, k: int, spline: Spline, friction: Pull) -> None:
+    def _remembering(self, k: int, spline: Spline) -> None:
         """A spline with memory: held by its shaft where the slip is, and by nothing elsewhere."""
-        if friction.radius <= self.near:
-            self.rigid += list(self._pair(self._radial(friction)))
+        if self.radius[k] <= self.near:
+            self.rigid += list(self._pair(self._radial(k)))
             for row in self._pair(self.columns.bends.start + 2 * k):
                 self._hold(row, spline.bending_stiffness)
 
     def curvature(self) -> float:
         """Largest κ of M z = κ K z on the moves that rigid contacts leave, at least 0."""
-        if self.state.of.train.slip is not None and any(map(self._follows, self.pulls)):
+        if self.state.of.train.slip is not None and any(
+            map(self._follows, range(len(self.splines)))
+        ):
             return math.inf
         self._assemble()
         free = np.eye(len(self.stiffness))
@@ -260,8 +269,8 @@ class _System:
         values, vectors = np.linalg.eigh(stiffness)
         held = values > CERTIFY.flat * max(float(values.max(initial=0.0)), 0.0)
         loose = vectors[:, ~held]
-        size = float(np.abs(self.taken).max())
-        if loose.size and float(np.abs(taken @ loose).max(initial=0.0)) > CERTIFY.rank * size:
+        most = float(np.abs(self.taken).max())
+        if loose.size and float(np.abs(taken @ loose).max(initial=0.0)) > CERTIFY.rank * most:
             return math.inf
         root = vectors[:, held] / np.sqrt(values[held])
         largest = float(np.linalg.eigvalsh(root.T @ taken @ root).max(initial=0.0))
@@ -271,15 +280,3 @@ class _System:
 def _along_and_across(along: Array) -> tuple[Array, Array]:
     """A unit vector of a plane, and the one across it."""
     return along, np.array([-along[1], along[0]])
-
-
-def _piece(pull: Pull, near: float, load: float) -> tuple[Piece, bool]:
-    """The piece of a graph on which it is, and whether it leans on a rigid stop."""
-    law, radius, force = pull.law, pull.radius, pull.force
-    at_stop = math.isfinite(law.reach) and radius >= law.reach - near
-    at_stop = at_stop and force > law.pieces[-1].end_force + load
-    here = law.pieces[0]
-    for k, piece in enumerate(law.pieces):
-        if radius >= law.start(k) - near and force >= piece.force - load:
-            here = piece
-    return here, at_stop

@@ -34,8 +34,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Numbers
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import first_of_largest
 from loadshare.settings import CERTIFY
@@ -45,8 +45,6 @@ from loadshare.train.gear import cross
 from loadshare.train.mesh import Mesh
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 NEITHER = "neither"
 """A mesh that is open where loads may press either flank."""
@@ -216,7 +214,7 @@ class Measuring:
         return found
 
     def _room_of_idle(
-        self, situations: Situations, answers: Equilibria, room: Array, rows: NDArray[np.intp]
+        self, situations: Situations, answers: Equilibria, room: Array, rows: Numbers
     ) -> Array:
         """Room of the flanks of some answers [m], (flanks, rows), as gears without force turn."""
         force = np.abs(answers.flank_force[rows].T)

@@ -7,9 +7,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound import Bounds
 
 
@@ -37,7 +36,7 @@ class Verdicts:
     displaced: Array
     bounds: Bounds
 
-    def replaced(self, samples: NDArray[np.intp], others: Verdicts) -> Verdicts:
+    def replaced(self, samples: Numbers, others: Verdicts) -> Verdicts:
         """Return the same with other verdicts on some samples."""
         arrays = _replaced(self, others, samples, ("worst", "load", "deflection", "displaced"))
         names = ("relative", "torque", "force", "coordinate")
@@ -45,13 +44,13 @@ class Verdicts:
         return replace(self, **arrays, bounds=bounds)
 
     @cached_property
-    def passed(self) -> NDArray[np.bool_]:
+    def passed(self) -> Flags:
         """Whether every residual, and the error of every torque, is within the tolerance."""
         return np.asarray((self.worst <= self.tolerance) & (self.bounds.relative <= self.tolerance))
 
 
 def _replaced(
-    mine: object, others: object, samples: NDArray[np.intp], names: tuple[str, ...]
+    mine: object, others: object, samples: Numbers, names: tuple[str, ...]
 ) -> dict[str, Any]:
     """Arrays with others in the places of some samples; None where either has none."""
     found: dict[str, Any] = dict.fromkeys(names)

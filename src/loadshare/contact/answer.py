@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.backends.backend import backend
 from loadshare.contact.conflict import conflict
 from loadshare.contact.findings import Unsolved
 from loadshare.contact.left_open import left_open
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan
-from loadshare.contact.problem import Array, ContactProblem, Row
+from loadshare.contact.problem import ContactProblem, Row
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.contact.runaway import runaway
@@ -207,12 +208,7 @@ def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: 
 def _answer(problem: ContactProblem, settled: Settled) -> ContactAnswer:
     """Turn what was settled into an answer and judge it."""
     force = {r.name: max(settled.forces.get(r.name, 0.0), 0.0) for r in problem.rows_at(settled.x)}
-    pull = dict(settled.radial_forces)
-    for radial in problem.radials:
-        if radial.name not in pull:
-            first = settled.laws[radial.name].pieces[0]
-            offset = radial.matrix @ settled.x - radial.centre
-            pull[radial.name] = np.asarray(first.stiffness * offset)
+    pull = settled.pulls(problem)
     place = dict(zip(problem.coordinates, settled.x.tolist(), strict=True))
     loose = left_open(problem, settled.x, force, pull)
     found = residuals(problem, settled.x, force, pull)

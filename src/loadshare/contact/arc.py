@@ -6,11 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import floats
-
-Vector = NDArray[np.float64]
+from loadshare.array_types import Array, floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,8 +27,8 @@ class Arc:
         c_x [m].
     """
 
-    nominal: Vector
-    shift: Vector
+    nominal: Array
+    shift: Array
     clearance: float
 
     def __post_init__(self) -> None:
@@ -44,20 +41,20 @@ class Arc:
         return math.sqrt(float(self.nominal @ self.nominal))
 
     @property
-    def start(self) -> Vector:
+    def start(self) -> Array:
         """d₀ [m]."""
         return np.asarray(self.nominal + self.shift)
 
-    def normal(self, relative: Vector) -> Vector:
+    def normal(self, relative: Array) -> Array:
         """Unit outward push on the body at the relative displacement Δ (3,) [m]."""
         d = self.nominal if self.beyond(relative) else self.start + relative
         return d / math.sqrt(float(d @ d))
 
-    def beyond(self, relative: Vector) -> bool:
+    def beyond(self, relative: Array) -> bool:
         """Whether Δ (3,) [m] leads past the neighbour, where no body can be."""
         return not float(self.nominal @ (self.start + relative)) > 0.0
 
-    def margin(self, relative: Vector) -> float:
+    def margin(self, relative: Array) -> float:
         """Distance beyond the arc [m], |d₀ + Δ| − a + c_x, free of cancellation for small Δ.
 
         At rest and without errors it is the clearance, to the last digit.
@@ -67,13 +64,13 @@ class Arc:
             return float(self.nominal @ moved) / self.distance + self.clearance
         return float(rolled(self.nominal, moved)[2]) + self.clearance
 
-    def face(self, relative: Vector) -> tuple[Vector, float]:
+    def face(self, relative: Array) -> tuple[Array, float]:
         """Tangent half-plane at Δ: unit normal n (3,) and bound g [m] of n·Δ ≥ −g."""
         n = self.normal(relative)
         return n, self.margin(relative) - float(n @ relative)
 
 
-def rolled(nominal: Vector, moved: Vector) -> tuple[Vector, Vector, Vector]:
+def rolled(nominal: Array, moved: Array) -> tuple[Array, Array, Array]:
     """Ways between centres, their lengths, and by how much these grew [m], free of cancellation.
 
     Parameters

@@ -9,9 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.settings import CONTACT
 
 
@@ -28,7 +27,7 @@ class Condensation:
         [m].
     """
 
-    kept: NDArray[np.intp]
+    kept: Numbers
     expansion: Array
     constant: Array
 
@@ -42,7 +41,7 @@ def nothing_condensed(size: int) -> Condensation:
     return Condensation(np.arange(size), np.eye(size), np.zeros(size))
 
 
-def condense(stiffness: Array, load: Array, touched: NDArray[np.bool_]) -> Condensation:
+def condense(stiffness: Array, load: Array, touched: Flags) -> Condensation:
     """Condense the coordinates that no contact touches.
 
     Parameters

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.contact.law import PowerLaw
 from loadshare.contact.problem import ContactProblem, Row
 from loadshare.settings import PLACES
@@ -28,7 +28,7 @@ class Overlap:
     """
 
     size: float
-    place: NDArray[np.float64]
+    place: Array
     names: tuple[str, ...]
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.plan import Plan, Role
 from loadshare.contact.problem import ContactProblem
-from loadshare.contact.programme import Array
 from loadshare.contact.radial import RadialLaw
 
 

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.findings import Work
 from loadshare.contact.kkt import solve_symmetric
-from loadshare.contact.programme import Array, Cone, Point, Programme
+from loadshare.contact.programme import Cone, Point, Programme
 from loadshare.contact.radial import nearest
 from loadshare.settings import CONTACT
 

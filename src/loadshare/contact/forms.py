@@ -20,8 +20,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.backends.conic import ConicForm, conic_form
-from loadshare.contact.programme import Array, Point, Programme
+from loadshare.contact.programme import Point, Programme
 from loadshare.settings import CONTACT
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.contact.programme import Array
+from loadshare.array_types import Array
 from loadshare.settings import CONTACT
 
 

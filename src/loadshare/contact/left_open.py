@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.contact.problem import Array, ContactProblem, Radial, of_unit_norm
+from loadshare.array_types import Array
+from loadshare.contact.problem import ContactProblem, Radial, of_unit_norm
 from loadshare.settings import CONTACT, PLACES
 
 

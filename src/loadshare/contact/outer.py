@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.backends.backend import Backend
 from loadshare.contact.energy import potential
 from loadshare.contact.findings import Unsolved, Work
@@ -25,7 +26,7 @@ from loadshare.contact.inner import Inner, solve_programme
 from loadshare.contact.law import Law, PowerLaw
 from loadshare.contact.plan import Linearisation, Plan, Role, Units, programme
 from loadshare.contact.problem import ContactProblem
-from loadshare.contact.programme import Array, Point
+from loadshare.contact.programme import Point
 from loadshare.contact.radial import RadialLaw, RollingLaw
 from loadshare.contact.record import Iteration, Options
 from loadshare.settings import CONTACT
@@ -55,6 +56,13 @@ class Settled:
     laws: dict[str, RadialLaw]
     kind: str
     iterations: tuple[Iteration, ...]
+
+    def pulls(self, problem: ContactProblem) -> dict[str, Array]:
+        """Force of every radial element along its offset, whether it was in play or not."""
+        idle = [r for r in problem.radials if r.name not in self.radial_forces]
+        first = {r.name: self.laws[r.name].pieces[0].stiffness for r in idle}
+        offsets = {r.name: np.asarray(r.matrix @ self.x - r.centre) for r in idle}
+        return self.radial_forces | {name: first[name] * p for name, p in offsets.items()}
 
 
 @dataclass(slots=True)

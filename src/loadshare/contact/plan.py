@@ -13,10 +13,11 @@ from enum import Enum
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.condense import Condensation, nothing_condensed
 from loadshare.contact.law import PowerLaw
 from loadshare.contact.problem import ContactProblem, Row
-from loadshare.contact.programme import Array, Cone, Programme
+from loadshare.contact.programme import Cone, Programme
 from loadshare.contact.radial import RadialLaw
 
 

@@ -18,17 +18,14 @@ from functools import cached_property
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import floats
+from loadshare.array_types import Array, floats
 from loadshare.contact.arc import Arc
 from loadshare.contact.condense import Condensation, condense
 from loadshare.contact.law import Law
 from loadshare.contact.law_checks import law_faults
 from loadshare.contact.radial import RadialLaw, RollingLaw
 from loadshare.settings import CONTACT
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

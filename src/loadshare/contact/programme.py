@@ -20,12 +20,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.contact.radial import RadialLaw
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,7 +74,7 @@ class Programme:
     gaps: Array
     linear: Array
     hertz: Array
-    assumed_closed: Mask
+    assumed_closed: Flags
     cones: tuple[Cone, ...]
 
     @property

@@ -18,9 +18,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.exact import ActiveSet, at_rest, first_guess, solve_exact
 from loadshare.contact.findings import Unsolved, Work
-from loadshare.contact.programme import Array, Point, Programme
+from loadshare.contact.programme import Point, Programme
 from loadshare.settings import CONTACT
 
 

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.settings import LAWS
 
-Figure = TypeVar("Figure", float, NDArray[np.float64])
+Figure = TypeVar("Figure", float, Array)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from loadshare.contact.problem import Array, ContactProblem
+from loadshare.array_types import Array
+from loadshare.contact.problem import ContactProblem
 from loadshare.settings import PLACES
 
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.keys import dotted
 from loadshare.case.writer import toml_text
@@ -24,7 +25,6 @@ from loadshare.job.engines import at_hand
 from loadshare.job.positions import prepared
 from loadshare.report.numbers import interval
 from loadshare.report.records import Cell, Column, Table
-from loadshare.scene.scene import Array
 from loadshare.settings import EXPLORE, JOB, TOLERANCE
 from loadshare.study.parameter import Value, read_value
 from loadshare.study.tolerance.figures import KINDS, SYSTEM

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from loadshare.array_types import Numbers
 from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
@@ -49,7 +50,7 @@ class Part:
         What has no answer, likewise.
     """
 
-    rows: NDArray[np.intp]
+    rows: Numbers
     positions: tuple[int, ...]
     samples: Samples
     solved: Solved
@@ -62,7 +63,7 @@ class Part:
             yield p * len(self.rows) + row, index
 
     @cached_property
-    def there(self) -> NDArray[np.intp]:
+    def there(self) -> Numbers:
         """Numbers of what has an answer."""
         every = np.arange(len(self.rows) * len(self.positions))
         return np.delete(every, list(self.refused))
@@ -194,9 +195,7 @@ def answer_samples(
     return Answered(every, tuple(parts), lacking)
 
 
-def _part(
-    machine: Machine, rows: NDArray[np.intp], samples: Samples, positions: tuple[int, ...]
-) -> Part:
+def _part(machine: Machine, rows: Numbers, samples: Samples, positions: tuple[int, ...]) -> Part:
     """Solve samples at some positions; what the hot path leaves climbs the ladder."""
     here = machine.at(positions[0])
     situations = stack([samples.situations(index) for index in positions])

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.certify.nonconvex import arc_curvature, is_convex
 from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
@@ -22,8 +22,6 @@ from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations, stack
-
-Array = NDArray[np.float64]
 
 RUNGS = ("none", HOT, SEARCHED, *(name for name, _ in rungs(Options())))
 """What answers samples, by number: nothing, the hot path without and with the proximal search, what
@@ -60,17 +58,17 @@ class Block:
         Why there is no answer.
     """
 
-    rows: NDArray[np.intp]
+    rows: Numbers
     positions: tuple[int, ...]
     equilibria: tuple[Equilibria, ...]
-    certified: NDArray[np.bool_]
+    certified: Flags
     residual: Array
     bound: Array
-    determined: NDArray[np.bool_]
+    determined: Flags
     displaced: Array
-    convex: NDArray[np.bool_]
+    convex: Flags
     arc_curvature: Array
-    rung: NDArray[np.int8]
+    rung: States
     message: Mapping[tuple[int, int], str]
 
     def over(self, positions: tuple[int, ...]) -> Block:
@@ -153,7 +151,7 @@ class _Open:
 
 def solve_block(
     machine: Machine,
-    rows: NDArray[np.intp],
+    rows: Numbers,
     samples: Samples,
     positions: tuple[int, ...],
     tolerance: float,

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
+from loadshare.array_types import Array
 from loadshare.results.share import MeshTorques, shares
 from loadshare.train.elements import Stage
-
-Array = NDArray[np.float64]
 
 
 class _Shares(BackendArray):

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Flags
 from loadshare.certify import Certificate
 from loadshare.certify.bound import bound_of
 from loadshare.certify.certificate import certify_later
@@ -48,7 +48,7 @@ class Solved:
         self._least: dict[int, Equilibrium] = {}
 
     @cached_property
-    def small(self) -> NDArray[np.bool_]:
+    def small(self) -> Flags:
         """Whether displacements are known to be clear of where they are refused, (S,)."""
         found = self.found
         if (found.verdicts.displaced < JOB.small).all():

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Flags
 from loadshare.certify import Judge, Verdicts
 from loadshare.scene.structure import Structure
 from loadshare.solver.hot.answer import equilibria
@@ -49,7 +49,7 @@ class Judging:
         self.answers: Equilibria
         self._verdicts: Verdicts | None = None
 
-    def renewed(self, rows: NDArray[np.bool_], bounded: bool = True) -> Verdicts:
+    def renewed(self, rows: Flags, bounded: bool = True) -> Verdicts:
         """Judge samples that have changed, the first time all; return the verdicts on all.
 
         Errors are bounded with every effort, or only where that takes no time (see `Judge.judge`).

@@ -273,15 +273,10 @@ def _with_large(refusal: Refused, part: _Part | None) -> Refused:
 
 def uncertified(index: int, certificate: Certificate) -> Refused:
     """Return the refusal of an answer whose certificate does not pass."""
-    failing = certificate.failing
-    text = "; ".join(
-        f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} "
-        f"({r.scaled:.1e} of the case, allowed {certificate.tolerance:.0e})"
-        for name, r in failing.items()
-    )
-    figures = {name: r.scaled for name, r in failing.items()}
-    if failing:
-        return Refused(f"position {index}: the answer is not an equilibrium: {text}", figures)
+    figures = {name: r.scaled for name, r in certificate.failing.items()}
+    if figures:
+        text = f"the answer is not an equilibrium: {certificate.shortfall}"
+        return Refused(f"position {index}: {text}", figures)
     error, allowed = certificate.proved, certificate.tolerance
     proved = "not proved at all" if math.isinf(error) else f"proved to {error:.1e} only"
     return Refused(

@@ -8,9 +8,9 @@ from functools import cached_property, partial
 from typing import TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare import compilation
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
 from loadshare.job.judging import Judging
@@ -21,7 +21,7 @@ from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import pin, without_noise
 from loadshare.solver.hot.determined import determined
-from loadshare.solver.hot.exchange import Engine, Found, States, exchange, first_sets
+from loadshare.solver.hot.exchange import Engine, Found, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.proximal import search
 from loadshare.solver.hot.rule import Rule, rule_of, samples_to_learn
@@ -31,9 +31,8 @@ from loadshare.train.placed import standing
 from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations, situation_of, situations_of, stack
 
-Rows = NDArray[np.intp]
 """Numbers of samples."""
-Way = Callable[[Loading, Rows], tuple[Iterate, Found]]
+Way = Callable[[Loading, Numbers], tuple[Iterate, Found]]
 """How some samples are solved, given with their numbers."""
 Outcome = TypeVar("Outcome")
 
@@ -75,14 +74,14 @@ class Answers:
     loading: Loading
     equilibria: Equilibria
     verdicts: Verdicts
-    passed: NDArray[np.bool_]
+    passed: Flags
     states: States
-    turns: NDArray[np.intp]
-    searched: NDArray[np.bool_]
-    determine: Callable[[], NDArray[np.bool_]]
+    turns: Numbers
+    searched: Flags
+    determine: Callable[[], Flags]
 
     @cached_property
-    def determined(self) -> NDArray[np.bool_]:
+    def determined(self) -> Flags:
         """Whether the forces determine every displacement of a sample, shape (S,).
 
         Where they do not, the place given is one possible choice.
@@ -99,7 +98,7 @@ class _Start:
     """
 
     states: States
-    share: NDArray[np.float64]
+    share: Array
 
 
 class Machine:
@@ -295,7 +294,7 @@ class Machine:
         return iterate, exchange(self.structure, loading, iterate, engine, singly=singly)
 
     def _from_near(
-        self, loading: Loading, engine: Engine, near: Sequence[tuple[Rows, _Start]]
+        self, loading: Loading, engine: Engine, near: Sequence[tuple[Numbers, _Start]]
     ) -> tuple[Iterate, Found]:
         """Let samples begin where the train itself stands, or a machine that differs little."""
         iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
@@ -327,7 +326,7 @@ class Machine:
         loading: Loading,
         iterate: Iterate,
         found: Found,
-        rows: NDArray[np.bool_],
+        rows: Flags,
         tolerance: float,
     ) -> None:
         """Search an equilibrium of single samples by the proximal method."""
@@ -354,8 +353,8 @@ class Machine:
         return [self._starts[index] for index in indices]
 
     def _near_ones(
-        self, count: int, starts: Sequence[int], engine: Engine, rows: Rows
-    ) -> list[tuple[Rows, _Start]]:
+        self, count: int, starts: Sequence[int], engine: Engine, rows: Numbers
+    ) -> list[tuple[Numbers, _Start]]:
         """Where some of so many samples begin: numbers among them, and a start for these."""
         if not starts:
             every = cast(_Start, self._beside(count))

@@ -13,10 +13,10 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from loadshare.arguments import whole
+from loadshare.array_types import Numbers
 from loadshare.case import Case
 from loadshare.case.reader import opened
 from loadshare.case.recent import Recent
@@ -36,8 +36,6 @@ from loadshare.train.shape import shape_of
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Array = NDArray[np.float64]
 
 
 def solve_blocks(
@@ -69,7 +67,7 @@ def solve_blocks(
 
 def _solved(
     case: Case,
-    groups: Sequence[tuple[NDArray[np.intp], Samples]],
+    groups: Sequence[tuple[Numbers, Samples]],
     wanted: tuple[int, ...],
     tolerance: float,
     engine: str,
@@ -82,7 +80,7 @@ def _solved(
     total = sum(len(rows) for rows, _ in groups)
     size = max(JOB.block, JOB.together // len(wanted))
     solver = engine_named(engine, total * len(wanted))
-    tasks: list[tuple[Machine, NDArray[np.intp], Samples, slice]] = []
+    tasks: list[tuple[Machine, Numbers, Samples, slice]] = []
     for rows, group in groups:
         machine = _machine(case, group)
         # Equal blocks: a short one takes more time for every sample.
@@ -91,7 +89,7 @@ def _solved(
         if each < len(rows):
             machine.learn(group, _there(group, wanted), solver)
 
-    def work(task: tuple[Machine, NDArray[np.intp], Samples, slice]) -> Block:
+    def work(task: tuple[Machine, Numbers, Samples, slice]) -> Block:
         machine, rows, group, part = task
         samples = group.take(part)
         there = _there(group, wanted)

@@ -9,9 +9,9 @@ from itertools import starmap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare._version import __version__
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.job.block import RUNGS, Block
 from loadshare.results.dataset import VARIABLES, Variable
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from loadshare.job.positions import Progress
-
-Array = NDArray[np.float64]
 
 
 EVERY = ("sample", "position")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from loadshare.case.table import Table
-from loadshare.train.equilibria import Names
+from loadshare.train.equilibria import Names, carried
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.train import Train
 
@@ -76,17 +76,9 @@ class Claim:
 
 def claim_of(train: Train, found: Equilibrium) -> Claim:
     """Return what an equilibrium claims, with what it leaves to follow from displacements."""
-    phi, torque, force = found.rotation, {}, {}
-    for name, shaft in train.shafts.items():
-        if not math.isinf(shaft.stiffness):
-            wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
-            torque[name] = float(found.shaft_torque.get(name, shaft.stiffness * wind))
-    for name, gear in train.gears.items():
-        if gear.support is not None:
-            moved = gear.frame @ np.asarray(found.displacement[name])
-            force[name] = found.support_force.get(name, gear.support * moved)
+    torque, force = carried(train, found)
     return Claim(
-        rotation=_plain(phi),
+        rotation=_plain(found.rotation),
         displacement=_tuples(found.displacement),
         flank_force=_plain(found.flank_force),
         ring_force=_plain(found.ring_force),

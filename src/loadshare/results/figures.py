@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.certify.bound import torque_bounds
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.bound.tangent import Tangents, tangents_of
@@ -28,8 +29,6 @@ from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Range
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 COMPONENTS = ("x", "y")
 """Of a displacement in the gear's transverse frame."""
@@ -266,7 +265,7 @@ class Figures:
         return self._rests.margin.T
 
     @property
-    def on_boundary(self) -> NDArray[np.bool_]:
+    def on_boundary(self) -> Flags:
         """Whether every float rests on a boundary, (S, floats)."""
         return self._rests.on_boundary.T
 

@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.results.figures import Figures
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations, situations_of
@@ -16,8 +16,6 @@ from loadshare.train.train import Train
 
 if TYPE_CHECKING:
     from loadshare.results.result import Position
-
-Array = NDArray[np.float64]
 
 
 def figures_of(positions: Sequence[Position]) -> list[Figures]:

@@ -270,12 +270,7 @@ def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
     for at, p in enumerate(positions):
         path: Path = ("positions", at, "claim")
         if not p.certificate.passed:
-            failing = "; ".join(
-                f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} ({r.scaled:.1e} of "
-                f"the case, allowed {p.certificate.tolerance:.0e})"
-                for name, r in p.certificate.failing.items()
-            )
-            failing = failing or "its torques are not bounded closely enough"
+            failing = p.certificate.shortfall or "its torques are not bounded closely enough"
             message = f"position {p.position} is no equilibrium of the case under input: {failing}"
             yield path, "", message, ""
         elif p.validity.refused:

@@ -8,14 +8,13 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.case.table import Table
 from loadshare.settings import CERTIFY
 from loadshare.train.elements import Stage
 from loadshare.train.train import Train
 
-Array = NDArray[np.float64]
 Torque = TypeVar("Torque", float, Array)
 
 

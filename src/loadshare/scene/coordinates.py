@@ -6,11 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,9 +11,8 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.scene.coordinates import Array
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.scene.structure import Structure
 from loadshare.train.situations import Situations
 
@@ -52,7 +51,7 @@ class Loading:
     gap: Array
     bending: Array
     hertz: Array
-    tabulated: NDArray[np.intp]
+    tabulated: Numbers
     tables: Array
     nominal: Array
     shift: Array
@@ -61,7 +60,7 @@ class Loading:
     radial: Array
     carried: Array
 
-    def take(self, rows: NDArray[np.intp]) -> Loading:
+    def take(self, rows: Numbers) -> Loading:
         """Return some of the samples."""
         varying = {
             f.name: value[rows]
@@ -76,7 +75,7 @@ class Loading:
         return self.take(np.array([row]))
 
     @cached_property
-    def loaded(self) -> NDArray[np.intp]:
+    def loaded(self) -> Numbers:
         """Coordinates with a load in some sample."""
         return np.flatnonzero(self.load.any(axis=0))
 
@@ -86,12 +85,12 @@ class Loading:
         return np.asarray(np.abs(self.load[:, self.loaded]).max(axis=1, initial=0.0))
 
     @cached_property
-    def steady(self) -> NDArray[np.bool_]:
+    def steady(self) -> Flags:
         """Elements whose b is the same in all samples, shape (m,)."""
         return np.asarray((self.bending == self.bending[:1]).all(axis=0))
 
     @cached_property
-    def curved(self) -> NDArray[np.bool_]:
+    def curved(self) -> Flags:
         """Elements with c > 0 in some sample, shape (m,)."""
         return np.asarray(self.hertz.any(axis=0))
 
@@ -117,7 +116,7 @@ class Loading:
         return self.curved.tobytes() + self.tabulated.tobytes() + constant.tobytes()
 
     @cached_property
-    def follows(self) -> NDArray[np.bool_]:
+    def follows(self) -> Flags:
         """Radial elements whose friction follows the torque in some sample, shape (radials,)."""
         return np.asarray(np.isnan(self.radial[:, :, 3]).any(axis=0))
 

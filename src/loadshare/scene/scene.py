@@ -7,15 +7,13 @@ from functools import cached_property
 from statistics import median
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.contact.problem import ContactProblem, Radial
 from loadshare.scene.coordinates import Rotation
 from loadshare.settings import CONTACT
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.scene.coordinates import Array
+from loadshare.array_types import Array, Numbers
 from loadshare.settings import STATICS
 
 
@@ -30,7 +29,7 @@ class Basis:
         pseudo-inverse, so that coordinates are of least norm.
     """
 
-    columns: NDArray[np.intp]
+    columns: Numbers
     directions: Array
     particular: Array
     redundant: Array
@@ -47,7 +46,7 @@ def _rank(sizes: Array) -> int:
     return int((sizes > STATICS.rank * sizes.max(initial=0.0)).sum())
 
 
-def basis_of(columns: NDArray[np.intp], directions: Array) -> Basis:
+def basis_of(columns: Numbers, directions: Array) -> Basis:
     """Return the statics of a set whose elements push along some directions (k, n)."""
     left, sizes, right = np.linalg.svd(directions, full_matrices=True)
     rank = _rank(sizes)

@@ -25,9 +25,9 @@ from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.scene.coordinates import Array, Coordinates, coordinates_of
+from loadshare.array_types import Array, States
+from loadshare.scene.coordinates import Coordinates, coordinates_of
 from loadshare.scene.statics import Basis, basis_of
 from loadshare.scene.units import units_of
 from loadshare.settings import STATICS
@@ -330,7 +330,7 @@ class Structure:
     def _bases(self) -> dict[bytes, Basis]:
         return {}
 
-    def basis(self, states: NDArray[np.int8]) -> Basis:
+    def basis(self, states: States) -> Basis:
         """Return the statics of a set, computed once.
 
         Parameters

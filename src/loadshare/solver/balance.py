@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import CERTIFY, PLACES
 

@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.conflict import is_rigid, least_overlap
 from loadshare.contact.law import PowerLaw
 from loadshare.contact.problem import Row
-from loadshare.contact.programme import Array
 from loadshare.scene.scene import GearRadial, Scene
 from loadshare.settings import PLACES
 

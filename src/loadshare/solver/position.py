@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.backends.backend import Backend, backend
 from loadshare.contact.findings import Unsolved, Work
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan, Role
-from loadshare.contact.programme import Array
 from loadshare.contact.record import Options, Record
 from loadshare.errors import Refused
 from loadshare.later import Later
@@ -180,7 +180,7 @@ def equilibrium_of(scene: Scene, settled: Settled) -> Equilibrium:
     """Turn an answer into physical terms, least-norm where it leaves displacements undetermined."""
     train = scene.train
     settled = _without_noise(scene, settled)
-    pulls = _radial_forces(scene, settled)
+    pulls = settled.pulls(scene)
     found = places(free_set(scene, settled.x, settled.forces, pulls, settled.laws))
     flanks = {r.name for r in scene.rows if r.kind.endswith("flank")}
     contacts = [r.name for r in scene.rows if r.kind == "stop"] + [a.name for a in scene.arcs]
@@ -275,13 +275,3 @@ def _places_of(scene: Scene, found: Equilibrium, x: Array) -> Places:
         r.name: r.law(scene.train.transmitted(r.gear, found.flank_force), x) for r in scene.radials
     }
     return places(free_set(scene, x, forces, pulls, laws))
-
-
-def _radial_forces(scene: Scene, settled: Settled) -> dict[str, Array]:
-    """Force of every radial element along its offset [N], whether it was in play or not."""
-    forces = dict(settled.radial_forces)
-    for radial in scene.radials:
-        if radial.name not in forces:
-            first = settled.laws[radial.name].pieces[0]
-            forces[radial.name] = first.stiffness * (radial.matrix @ settled.x - radial.centre)
-    return forces

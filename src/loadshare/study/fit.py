@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loadshare.arguments import whole
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import solve
 from loadshare.pictures import picture
 from loadshare.results import Result
-from loadshare.scene.scene import Array
 from loadshare.settings import FIT
 from loadshare.study.compare import Comparison, Deviation, Target, computed, needed, slope, targets
 from loadshare.study.parameter import (

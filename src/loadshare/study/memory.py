@@ -16,6 +16,7 @@ from itertools import combinations, islice, product
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.certify import certify
 from loadshare.contact.findings import Work
 from loadshare.contact.outer import Settled
@@ -27,7 +28,7 @@ from loadshare.job.ladder import rungs
 from loadshare.scene import assemble
 from loadshare.scene.assemble import scene_of
 from loadshare.scene.loading import loading_of
-from loadshare.scene.scene import Array, Scene
+from loadshare.scene.scene import Scene
 from loadshare.scene.structure import structure_of
 from loadshare.settings import CERTIFY, MARCH
 from loadshare.solver import Options, Record, solve_scene

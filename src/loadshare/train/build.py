@@ -184,9 +184,7 @@ def _supported(case: spec.Case, gear: Gear) -> Gear:
     return replace(gear, support=stiffness[::-1], frame=ways @ gear.frame)
 
 
-def _each(
-    value: spec.Quantity | tuple[spec.Quantity, ...] | None,
-) -> tuple[spec.Quantity, ...]:
+def _each(value: spec.Quantity | tuple[spec.Quantity, ...] | None) -> tuple[spec.Quantity, ...]:
     if value is None:
         return ()
     return value if isinstance(value, tuple) else (value,)

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.case.keys import Path, dotted, parse, with_unit
 from loadshare.case.quantity import as_text
 from loadshare.case.units import si_factor
@@ -65,7 +66,7 @@ class Column:
             return f"{value!r} {self.unit}"
         return int(value) if isinstance(value, float) and value.is_integer() else value
 
-    def in_si(self, unit: str) -> NDArray[np.float64]:
+    def in_si(self, unit: str) -> Array:
         """Values (S,) in an SI unit, empty for bare numbers.
 
         Raises

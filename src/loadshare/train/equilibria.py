@@ -6,14 +6,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
+from itertools import compress
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Numbers
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -102,39 +101,28 @@ class Equilibria:
         """Return some of the samples, as a view."""
         return self.mapped(lambda array: array[samples])
 
-    def take(self, samples: NDArray[np.intp]) -> Equilibria:
+    def take(self, samples: Numbers) -> Equilibria:
         """Return some of the samples, as a copy."""
         return self.mapped(lambda array: array[samples])
 
     def one(self, sample: int, index: int) -> Equilibrium:
         """Return a sample as an equilibrium of position `index`."""
-        names = self.names
+        names, train = self.names, self.names.train
+        torques = zip(train.shafts, self.shaft_torque[sample].tolist(), strict=True)
+        forces = zip(train.gears, self.support_force[sample], strict=True)
+        elastic = (not math.isinf(s.stiffness) for s in train.shafts.values())
+        moving = (g.support is not None for g in train.gears.values())
         return Equilibrium(
             index=index,
             rotation=dict(zip(names.gears, self.rotation[sample].tolist(), strict=True)),
             displacement=dict(zip(names.gears, self.displacement[sample], strict=True)),
             flank_force=dict(zip(names.flanks, self.flank_force[sample].tolist(), strict=True)),
             ring_force=dict(zip(names.contacts, self.ring_force[sample].tolist(), strict=True)),
-            radial_reaction={
-                name: force
-                for (name, _), force in zip(
-                    names.radials, self.radial_reaction[sample], strict=True
-                )
-            },
-            shaft_torque={
-                shaft.name: float(torque)
-                for shaft, torque in zip(
-                    names.train.shafts.values(), self.shaft_torque[sample], strict=True
-                )
-                if not math.isinf(shaft.stiffness)
-            },
-            support_force={
-                gear.name: force
-                for gear, force in zip(
-                    names.train.gears.values(), self.support_force[sample], strict=True
-                )
-                if gear.support is not None
-            },
+            radial_reaction=dict(
+                zip((n for n, _ in names.radials), self.radial_reaction[sample], strict=True)
+            ),
+            shaft_torque=dict(compress(torques, elastic)),
+            support_force=dict(compress(forces, moving)),
         )
 
     @classmethod
@@ -169,7 +157,7 @@ class Equilibria:
         for array in self.arrays:
             array[sample] = np.nan
 
-    def put_all(self, samples: NDArray[np.intp], answers: Equilibria) -> None:
+    def put_all(self, samples: Numbers, answers: Equilibria) -> None:
         """Write answers in the places of some samples."""
         for here, others in zip(self.arrays, answers.arrays, strict=True):
             here[samples] = others
@@ -183,19 +171,26 @@ class Equilibria:
         self.ring_force[sample] = [answer.ring_force[c] for c in names.contacts]
         for j, (name, _) in enumerate(names.radials):
             self.radial_reaction[sample, j] = answer.radial_reaction[name]
-        phi = answer.rotation
-        for s, (name, shaft) in enumerate(train.shafts.items()):
-            torque = 0.0
-            if not math.isinf(shaft.stiffness):
-                wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
-                torque = answer.shaft_torque.get(name, shaft.stiffness * wind)
-            self.shaft_torque[sample, s] = torque
-        for g, (name, gear) in enumerate(train.gears.items()):
-            force = np.zeros(2)
-            if gear.support is not None:
-                moved = gear.frame @ answer.displacement[name]
-                force = answer.support_force.get(name, gear.support * moved)
-            self.support_force[sample, g] = force
+        torque, force = carried(train, answer)
+        self.shaft_torque[sample] = [torque.get(name, 0.0) for name in train.shafts]
+        self.support_force[sample] = [force.get(name, (0.0, 0.0)) for name in train.gears]
+
+
+def carried(train: Train, answer: Equilibrium) -> tuple[dict[str, float], dict[str, Array]]:
+    """Torques of elastic shafts [N·m] and forces of bearings that can yield [N].
+
+    What is not claimed follows from displacements.
+    """
+    phi, torque, force = answer.rotation, {}, {}
+    for name, shaft in train.shafts.items():
+        if not math.isinf(shaft.stiffness):
+            wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
+            torque[name] = float(answer.shaft_torque.get(name, shaft.stiffness * wind))
+    for name, gear in train.gears.items():
+        if gear.support is not None:
+            moved = gear.frame @ np.asarray(answer.displacement[name])
+            force[name] = answer.support_force.get(name, gear.support * moved)
+    return torque, force
 
 
 CLAIMED = tuple(f.name for f in fields(Equilibria) if f.name != "names")

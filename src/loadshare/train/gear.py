@@ -8,6 +8,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
+
 Vector = NDArray[np.float64]
 
 ORIGIN: Vector = np.zeros(3)
@@ -21,7 +23,7 @@ def cross(first: Vector, second: Vector) -> Vector:
     return np.array([b * r - c * q, c * p - a * r, a * q - b * p])
 
 
-def transverse_frame(axis: Vector, turned: float = 0.0) -> NDArray[np.float64]:
+def transverse_frame(axis: Vector, turned: float = 0.0) -> Array:
     """Two unit vectors (2, 3) that span the plane across `axis`, right-handed about it.
 
     The first is the global x direction projected into the plane; y for a gear whose axis is x
@@ -32,7 +34,7 @@ def transverse_frame(axis: Vector, turned: float = 0.0) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=256)
-def _frame_across(along: tuple[float, ...], turned: float) -> NDArray[np.float64]:
+def _frame_across(along: tuple[float, ...], turned: float) -> Array:
     axis, seed = np.array(along), np.array([1.0, 0.0, 0.0])
     if abs(axis @ seed) > 1.0 - 1e-9:
         seed = np.array([0.0, 1.0, 0.0])
@@ -98,7 +100,7 @@ class Gear:
     kind: str
     centre: Vector
     axis: Vector
-    frame: NDArray[np.float64]
+    frame: Array
     base_radius: float
     sense: int
     teeth: float | None
@@ -114,7 +116,7 @@ class Gear:
     seen_at: float = 0.0
 
     @property
-    def plane(self) -> NDArray[np.float64]:
+    def plane(self) -> Array:
         """Unit vectors of the transverse plane, shape (2, 3), along which components are given."""
         return transverse_frame(self.axis, self.seen_at)
 

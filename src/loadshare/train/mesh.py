@@ -12,6 +12,7 @@ import numpy as np
 from loadshare.contact.law import Law
 from loadshare.train.gear import Gear, Vector, cross
 from loadshare.train.rim import bent
+from loadshare.train.ring import transverse
 
 
 class MeshGeometryError(ValueError):
@@ -43,77 +44,6 @@ class Contact:
             along * math.cos(pressure_angle) * self.tangential
             + math.sin(pressure_angle) * self.radial
         )
-
-
-def parallel_contact(
-    driver_centre: Vector,
-    driver_axis: Vector,
-    driver_sense: int,
-    driver_internal: bool,
-    driven_centre: Vector,
-    driven_axis: Vector,
-    driven_internal: bool,
-) -> Contact:
-    """Contact of two gears with parallel axes.
-
-    ĉ points from the driver's centre to the pitch point: towards an external partner, away from the
-    centre of an internal one. A driver that is itself the internal gear pushes its pinion towards
-    its own centre.
-
-    Raises
-    ------
-    MeshGeometryError
-        If the centres coincide in the transverse plane.
-    """
-    between = driven_centre - driver_centre
-    between = between - (between @ driver_axis) * driver_axis
-    distance = math.hypot(*between.tolist())
-    if distance == 0.0:
-        raise MeshGeometryError("the two centres coincide in the transverse plane")
-    outward = between / distance
-    to_pitch = -outward if driven_internal else outward
-    tangential = driver_sense * cross(driver_axis, to_pitch)
-    # The pitch point lies beyond the pinion's centre in an internal pair, between the centres
-    # otherwise.
-    arm = to_pitch if (driven_internal or driver_internal) else -to_pitch
-    sense = 1 if driven_axis @ cross(arm, tangential) > 0.0 else -1
-    return Contact(-to_pitch if driver_internal else to_pitch, tangential, sense)
-
-
-def face_contact(
-    pinion_centre: Vector,
-    pinion_axis: Vector,
-    face_centre: Vector,
-    face_axis: Vector,
-    driver_sense: int,
-    pinion_drives: bool,
-) -> Contact:
-    """Contact of a pinion with a face gear.
-
-    The push lies in the pinion's transverse plane with its radial part along the face gear's axis.
-    The pitch point is at the acting radius of the face gear, on the side of the pinion.
-
-    Raises
-    ------
-    MeshGeometryError
-        If the pinion's centre gives no side of the face gear to mesh on.
-    """
-    towards = pinion_centre - face_centre
-    along = float(towards @ pinion_axis)
-    height = float(towards @ face_axis)
-    if along == 0.0:
-        raise MeshGeometryError("the pinion's centre lies on the face gear's axis")
-    if height == 0.0:
-        raise MeshGeometryError("the pinion's centre lies in the face gear's pitch plane")
-    arm = math.copysign(1.0, along) * pinion_axis
-    to_face = -math.copysign(1.0, height) * face_axis
-    if pinion_drives:
-        tangential = driver_sense * cross(pinion_axis, to_face)
-        sense = 1 if face_axis @ cross(arm, tangential) > 0.0 else -1
-        return Contact(to_face, tangential, sense)
-    tangential = driver_sense * cross(face_axis, arm)
-    sense = 1 if pinion_axis @ cross(to_face, tangential) > 0.0 else -1
-    return Contact(-to_face, tangential, sense)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -238,33 +168,6 @@ class Mesh:
             return driver, -driven, self.drive_normal
         return -driver, driven, self.coast_normal
 
-    def approach(
-        self,
-        drive: bool,
-        position: int,
-        rotations: tuple[float, float],
-        relative_offset: Vector,
-    ) -> float:
-        r"""Approach of a flank along the line of action [m]; positive when compressed.
-
-        .. math:: \delta = r_{bi}\varphi_i - r_{bj}\varphi_j + n\cdot((p_i + c_i) - (p_j + c_j)) -
-        \text{gap}
-
-        Parameters
-        ----------
-        drive : bool
-            Drive flank, or coast flank.
-        position : int
-            Position of its laws at which the flank is, 0-based.
-        rotations : tuple of float
-            φ of driver and driven gear [rad].
-        relative_offset : ndarray, shape (3,)
-            (p_i + c_i) − (p_j + c_j) [m].
-        """
-        on_driver, on_driven, normal = self.direction(drive)
-        turned = on_driver * rotations[0] + on_driven * rotations[1]
-        return turned + float(normal @ relative_offset) - self.gap(position, drive)
-
 
 @dataclass(frozen=True, slots=True)
 class Approach:
@@ -284,7 +187,11 @@ class Approach:
 
 
 def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
-    """Return how the approach of a flank follows from the bodies of a train."""
+    r"""Return how the approach of a flank follows from the bodies of a train.
+
+    .. math:: \delta = r_{bi}\varphi_i - r_{bj}\varphi_j + n\cdot((p_i + c_i) - (p_j + c_j)) -
+        \text{gap}
+    """
     on_driver, on_driven, normal = mesh.direction(drive)
     turning = {mesh.driver: on_driver, mesh.driven: on_driven}
     shifting = {mesh.driver: normal, mesh.driven: -normal}
@@ -315,21 +222,59 @@ def running_contact(
 
 
 def contact_of(driver: Gear, driven: Gear) -> Contact:
-    """Contact of two placed gears, face or parallel."""
-    if driven.kind == "face":
-        return face_contact(
-            driver.centre, driver.axis, driven.centre, driven.axis, driver.sense, True
-        )
-    if driver.kind == "face":
-        return face_contact(
-            driven.centre, driven.axis, driver.centre, driver.axis, driver.sense, False
-        )
-    return parallel_contact(
-        driver.centre,
-        driver.axis,
-        driver.sense,
-        driver.kind == "internal",
-        driven.centre,
-        driven.axis,
-        driven.kind == "internal",
-    )
+    """Contact of two placed gears, face or parallel.
+
+    Raises
+    ------
+    MeshGeometryError
+        If they cannot mesh where they are.
+    """
+    return (_face if "face" in (driver.kind, driven.kind) else _parallel)(driver, driven)
+
+
+def _parallel(driver: Gear, driven: Gear) -> Contact:
+    """Contact of two gears with parallel axes.
+
+    ĉ points from the driver's centre to the pitch point: towards an external partner, away from the
+    centre of an internal one. A driver that is itself the internal gear pushes its pinion towards
+    its own centre.
+    """
+    between = transverse(driven.centre - driver.centre, driver.axis)
+    distance = math.hypot(*between.tolist())
+    if distance == 0.0:
+        raise MeshGeometryError("the two centres coincide in the transverse plane")
+    outward = between / distance
+    to_pitch = -outward if driven.kind == "internal" else outward
+    # The pitch point lies beyond the pinion's centre in an internal pair, between the centres
+    # otherwise.
+    arm = to_pitch if "internal" in (driver.kind, driven.kind) else -to_pitch
+    radial = -to_pitch if driver.kind == "internal" else to_pitch
+    return _pushed(driver, driven, to_pitch, arm, radial)
+
+
+def _face(driver: Gear, driven: Gear) -> Contact:
+    """Contact of a pinion with a face gear.
+
+    The push lies in the pinion's transverse plane with its radial part along the face gear's axis.
+    The pitch point is at the acting radius of the face gear, on the side of the pinion.
+    """
+    pinion, face = (driver, driven) if driven.kind == "face" else (driven, driver)
+    towards = pinion.centre - face.centre
+    along = float(towards @ pinion.axis)
+    height = float(towards @ face.axis)
+    if along == 0.0:
+        raise MeshGeometryError("the pinion's centre lies on the face gear's axis")
+    if height == 0.0:
+        raise MeshGeometryError("the pinion's centre lies in the face gear's pitch plane")
+    arm = math.copysign(1.0, along) * pinion.axis
+    to_face = -math.copysign(1.0, height) * face.axis
+    if driver is pinion:
+        return _pushed(driver, driven, to_face, arm, to_face)
+    return _pushed(driver, driven, arm, to_face, -to_face)
+
+
+def _pushed(driver: Gear, driven: Gear, to_pitch: Vector, arm: Vector, radial: Vector) -> Contact:
+    """Contact at a pitch point, seen from the driver's centre and, as an arm, from the driven's."""
+    tangential = driver.sense * cross(driver.axis, to_pitch)
+    sense = 1 if driven.axis @ cross(arm, tangential) > 0.0 else -1
+    return Contact(radial, tangential, sense)

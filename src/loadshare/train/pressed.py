@@ -20,17 +20,15 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare import case as spec
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.case.power_flow import from_the_other_end, has_sets
 from loadshare.errors import CaseError
 from loadshare.train.gear import Gear
 from loadshare.train.operation import forces_of
 from loadshare.train.period import Period
 from loadshare.train.willis import NOISE, Links
-
-Flags = NDArray[np.bool_]
 
 
 class Pressed(NamedTuple):
@@ -102,7 +100,7 @@ def pressed_flanks(
     return found
 
 
-def _against_the_names(case: spec.Case, torque: NDArray[np.float64]) -> Flags:
+def _against_the_names(case: spec.Case, torque: Array) -> Flags:
     """Whether torques (positions, S) run against the names of the meshes: all that are not 0."""
     other_end = from_the_other_end(case)
     against = np.where(torque != 0.0, (torque < 0.0) != other_end, True)
@@ -110,8 +108,8 @@ def _against_the_names(case: spec.Case, torque: NDArray[np.float64]) -> Flags:
 
 
 def _pressed(
-    case: spec.Case, gears: Mapping[str, Gear], torque: NDArray[np.float64], period: Period | None
-) -> dict[str, tuple[NDArray[np.intp], Flags]]:
+    case: spec.Case, gears: Mapping[str, Gear], torque: Array, period: Period | None
+) -> dict[str, tuple[Numbers, Flags]]:
     """Signs of the torques of meshes (positions, S), by statics (see `Links.pressed`)."""
     operating = case.operating
     torques: dict[str, Any] = {
@@ -146,7 +144,7 @@ def _open_to_forces(case: spec.Case, gears: Mapping[str, Gear]) -> set[str]:
 
 def _moments(
     case: spec.Case, gears: Mapping[str, Gear], count: int, period: Period | None
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, Array]:
     """Moments of forces from outside about carriers [N·m], in their senses.
 
     At all positions where the torque has `count` of them; else where they are least and largest.
@@ -175,9 +173,7 @@ def _moments(
     return {n: np.where(np.abs(m) > NOISE * size[n], m, 0.0)[rows] for n, m in found.items()}
 
 
-def _turned(
-    case: spec.Case, gears: Mapping[str, Gear], period: Period | None
-) -> NDArray[np.float64]:
+def _turned(case: spec.Case, gears: Mapping[str, Gear], period: Period | None) -> Array:
     """Angles [rad] by which the input has turned at all positions."""
     operating, march = case.operating, case.march
     if march is not None:

@@ -13,9 +13,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from loadshare import case as spec
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.case.element import Element
 from loadshare.case.keys import Path, dotted
 from loadshare.case.recent import Recent
@@ -30,8 +31,6 @@ from loadshare.train.placed import standing
 from loadshare.train.pressed import pressed_flanks
 from loadshare.train.situations import Situations, situations_of
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,9 +90,7 @@ class Samples:
         return train_of(_with(self.case, self.values), self.geometry, (self.case, self.train))
 
 
-def samples_of(
-    case: spec.Case, samples: Mapping[str, ArrayLike]
-) -> list[tuple[NDArray[np.intp], Samples]]:
+def samples_of(case: spec.Case, samples: Mapping[str, ArrayLike]) -> list[tuple[Numbers, Samples]]:
     """Turn a table of samples into groups that share a machine.
 
     Parameters
@@ -116,7 +113,7 @@ def samples_of(
     return groups_of(case, columns_of(samples))
 
 
-def groups_of(case: spec.Case, columns: Sequence[Column]) -> list[tuple[NDArray[np.intp], Samples]]:
+def groups_of(case: spec.Case, columns: Sequence[Column]) -> list[tuple[Numbers, Samples]]:
     """Turn samples, read as columns, into groups; see `samples_of`."""
     first = case.replace({dotted(c.path): c.text(0) for c in columns})
     units = {c.path: u for c in columns if (u := array_unit(first, c)) is not None}
@@ -158,7 +155,7 @@ def _built(case: spec.Case, base: spec.Case) -> tuple[Geometry, Train]:
 
 def _pressed_alike(
     case: spec.Case, geometry: Geometry, values: Mapping[Path, Array], count: int
-) -> NDArray[np.bool_]:
+) -> Flags:
     """Whether samples press the flanks that the geometry has, (count,)."""
     loads = {path: si for path, si in values.items() if path[0] == "operating"}
     alike = np.ones(count, dtype=bool)
@@ -223,7 +220,7 @@ def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> dict[int, Cas
     table = {column.key: np.asarray(column.values) for column in columns_of(samples)}
     found: dict[int, CaseError] = {}
 
-    def judge(rows: NDArray[np.intp]) -> None:
+    def judge(rows: Numbers) -> None:
         try:
             for _, group in samples_of(case, {key: values[rows] for key, values in table.items()}):
                 group.build()
@@ -238,7 +235,7 @@ def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> dict[int, Cas
     return found
 
 
-def _groups(columns: Sequence[Column], count: int) -> list[NDArray[np.intp]]:
+def _groups(columns: Sequence[Column], count: int) -> list[Numbers]:
     """Rows with the same values in all of these columns."""
     if not columns:
         return [np.arange(count)]

@@ -16,14 +16,13 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from loadshare.array_types import Array, Numbers
 from loadshare.contact.arc import Arc
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.train.ring import DrumRing, transverse
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +71,7 @@ class Situations:
 
     train: Train
     count: int
-    index: NDArray[np.intp]
+    index: Numbers
     offset: Array
     torque: Array
     push: Array
@@ -92,7 +91,7 @@ class Situations:
     round_power: Array
     spline: Array
 
-    def take(self, rows: NDArray[np.intp] | slice) -> Situations:
+    def take(self, rows: Numbers | slice) -> Situations:
         """Return some of the samples; what holds for all is a row that is not repeated."""
         chosen = {
             name: value[rows] if len(value) > 1 else value for name, value in self._arrays().items()

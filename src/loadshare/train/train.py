@@ -6,11 +6,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, overload
+from typing import Any, TypeVar, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Numbers
 from loadshare.train.elements import Shaft, Spline, Stage
 from loadshare.train.gear import ORIGIN, Gear, Vector
 from loadshare.train.mesh import Approach, Mesh, approach_of
@@ -18,7 +18,8 @@ from loadshare.train.offset import Angle, Offset, turned_about
 from loadshare.train.period import Period
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
 
-Indices = NDArray[np.intp]
+At = TypeVar("At", int, Numbers)
+"""A position (1-based), or many of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,9 +175,9 @@ class Train:
     def rotations(self, index: int) -> dict[str, float]: ...
 
     @overload
-    def rotations(self, index: Indices) -> dict[str, Vector]: ...
+    def rotations(self, index: Numbers) -> dict[str, Vector]: ...
 
-    def rotations(self, index: int | Indices) -> dict[str, float] | dict[str, Vector]:
+    def rotations(self, index: int | Numbers) -> dict[str, float] | dict[str, Vector]:
         """Angle [rad] by which every gear has turned at position `index` (1-based).
 
         At many positions at once where there is an array of them.
@@ -270,39 +271,17 @@ class Train:
         now, then = (self.frame_angle(gear, self.rotations(k)) for k in (index, index + 1))
         return turned_about(here, slip, then - now if self.uneven else now - then)
 
-    @overload
-    def mesh_positions(
-        self, index: int, rotation: Mapping[str, float] | None = None
-    ) -> dict[str, int]: ...
-
-    @overload
-    def mesh_positions(
-        self, index: Indices, rotation: Mapping[str, Vector] | None = None
-    ) -> dict[str, Indices]: ...
-
-    def mesh_positions(
-        self, index: int | Indices, rotation: Mapping[str, Any] | None = None
-    ) -> dict[str, int] | dict[str, Indices]:
+    def mesh_positions(self, index: At) -> dict[str, At]:
         """Position (0-based) of its laws at which every drive flank is, by mesh.
 
         As `flank_positions`, which has coast flanks as well.
         """
-        found: dict[str, Any] = self.flank_positions(index, rotation)
+        found = self.flank_positions(index)
         return {mesh: found[mesh] for mesh in self.meshes}
 
-    @overload
     def flank_positions(
-        self, index: int, rotation: Mapping[str, float] | None = None
-    ) -> dict[str, int]: ...
-
-    @overload
-    def flank_positions(
-        self, index: Indices, rotation: Mapping[str, Vector] | None = None
-    ) -> dict[str, Indices]: ...
-
-    def flank_positions(
-        self, index: int | Indices, rotation: Mapping[str, Any] | None = None
-    ) -> dict[str, int] | dict[str, Indices]:
+        self, index: At, rotation: Mapping[str, Any] | None = None
+    ) -> dict[str, At]:
         """Position (0-based) of its laws at which every flank is at position `index` (1-based).
 
         In a mesh cycle all meshes go through theirs together, each flank from its own phase; over

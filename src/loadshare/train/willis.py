@@ -17,12 +17,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.train.gear import Gear
 from loadshare.train.mesh import running_contact
 
-Array = NDArray[np.float64]
 Ends = tuple[str, str]
 
 LOCKED = 1e-3
@@ -106,7 +106,7 @@ class Links:
 
     def pressed(
         self, torques: Mapping[str, ArrayLike], free: Iterable[str]
-    ) -> dict[str, tuple[NDArray[np.intp], NDArray[np.bool_]]]:
+    ) -> dict[str, tuple[Numbers, Flags]]:
         """Tell which flank of every mesh loads press, and whether it may be the other one.
 
         It may where statics leaves open how loads are shared, and some stiffnesses of the links
@@ -153,7 +153,7 @@ class Links:
         balance = self.matrix[:, turning].T
         return turning, balance, np.linalg.pinv(balance, rcond=NOISE).astype(float, copy=False)
 
-    def _either(self, balance: Array, response: Array, load: Array) -> NDArray[np.bool_]:
+    def _either(self, balance: Array, response: Array, load: Array) -> Flags:
         """Whether links may pass on loads (gears, ...) either way, (links, ...)."""
         either = np.zeros((len(response), *load.shape[1:]), dtype=bool)
         if not _idle(balance, response).any():
@@ -166,7 +166,7 @@ class Links:
         return np.asarray((force > least).any(axis=0) & (force < -least).any(axis=0))
 
 
-def _idle(balance: Array, response: Array) -> NDArray[np.bool_]:
+def _idle(balance: Array, response: Array) -> Flags:
     """Whether forces in balance without a load may run through links: statics leaves those open."""
     left = np.abs(np.eye(len(response)) - response @ balance)
     return np.asarray(left.max(axis=1, initial=0.0) > NOISE)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.array_types import Array, Flags
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.settings import BOUND
 
@@ -81,6 +81,20 @@ def unmoved(claim: Claim, distance: Array) -> Flags:
         at = len(train.rounds) + k
         found[:, at] = distance[:, at] <= EPS * (before + place)
     return found
+
+
+def alike(codes: Acts | Flags) -> list[Numbers]:
+    """Rows with the same codes."""
+    if (codes == codes[:1]).all():
+        return [np.arange(len(codes))]
+    group = np.zeros(len(codes), dtype=np.int64)
+    for at in range(0, codes.shape[1], BOUND.digits):
+        digits = codes[:, at : at + BOUND.digits].astype(np.int64)
+        number = digits @ Act.WAYS ** np.arange(digits.shape[1])
+        _, number = np.unique(number, return_inverse=True)
+        _, group = np.unique(group * (number.max() + 1) + number, return_inverse=True)
+    order = np.argsort(group, kind="stable")
+    return np.split(order, np.cumsum(np.bincount(group))[:-1])
 
 
 def _radial_acts(claim: Claim, noise: Array) -> Acts:

@@ -25,10 +25,9 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array, Flags
-from loadshare.certify.bound.acts import Acts
+from loadshare.array_types import Array, Flags, Numbers
+from loadshare.certify.bound.acts import Acts, alike
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.elements import Elements
@@ -66,7 +65,7 @@ class Box:
         """Return the box of one claim."""
         return Box(*(getattr(self, f.name)[row : row + 1] for f in fields(self)))
 
-    def put(self, rows: NDArray[np.intp], other: Box) -> None:
+    def put(self, rows: Numbers, other: Box) -> None:
         """Write the boxes of some claims."""
         for f in fields(self):
             getattr(self, f.name)[rows] = getattr(other, f.name)
@@ -114,12 +113,9 @@ def _boxes(claim: Claim, act: Acts, scale: Array, verge: Flags, softest: float) 
     left, rounding = claim.balance(found.force)
     rounding = rounding + found.rounding @ np.abs(claim.columns.matrix.high)
     box = Box.unproved(claim, act)
-    _, first, group = np.unique(
-        np.packbits(found.active, axis=1), axis=0, return_index=True, return_inverse=True
-    )
-    for number, sample in enumerate(first):
-        rows = np.flatnonzero(group.reshape(-1) == number)
-        part = _Enclosure(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
+    for rows in alike(found.active):
+        acting = np.flatnonzero(found.active[rows[0]])
+        part = _Enclosure(claim, found, rows, acting, left, rounding)
         force, coordinate = part.solve(scale[rows])
         box.force[rows] = aside(claim, found, rows) + part.ended[:, None]
         box.force[np.ix_(rows, part.columns)] += force + part.shared
@@ -143,7 +139,7 @@ def rounding_of(force: Array, scale: Array) -> Array:
     return np.asarray(np.maximum(BOUND.balanced * scale, BOUND.rounded * largest))
 
 
-def aside(claim: Claim, found: Elements, rows: NDArray[np.intp] | slice) -> Array:
+def aside(claim: Claim, found: Elements, rows: Numbers | slice) -> Array:
     """What claimed forces are off by whatever acts: what it cannot carry, friction put aside.
 
     Shape (rows, m) [N].
@@ -201,7 +197,7 @@ class _Enclosure(Part):
             left, alike = more, alike and len(more) < len(left) - 1
         return force, coordinate
 
-    def _errors(self, response: Response, rows: NDArray[np.intp]) -> tuple[Array, Array]:
+    def _errors(self, response: Response, rows: Numbers) -> tuple[Array, Array]:
         """Errors of some claims; infinite where they are not proved."""
         known, size = self.statics, len(self.columns)
         soft, skew, misfit = self.soft[rows], self.skew[rows], self.misfit[rows]
@@ -264,7 +260,7 @@ class _Enclosure(Part):
         return found
 
     def _left_out(
-        self, rows: NDArray[np.intp], reach: Array, ways: Array, torques: Array
+        self, rows: Numbers, reach: Array, ways: Array, torques: Array
     ) -> tuple[Array, Array]:
         """What the linearisation leaves out of forces [N] and of lengths [m] in a box."""
         found, columns = self.found, self.columns

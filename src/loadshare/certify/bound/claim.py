@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Numbers
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.twofold import Twofold, exact, minus, plus, product, quotient
 from loadshare.certify.graphs import spline_graphs, wall
@@ -45,7 +44,7 @@ class Claim:
         """S."""
         return len(self.answers.rotation)
 
-    def take(self, rows: NDArray[np.intp]) -> Claim:
+    def take(self, rows: Numbers) -> Claim:
         """Return some of the claims."""
         answers = self.answers.take(rows)
         here = self.situations

@@ -15,13 +15,15 @@ sections 2 and 16.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate, pairwise
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.statics import Statics, force_at_end
 from loadshare.certify.bound.twofold import Twofold, quotient, two_product
 from loadshare.certify.mechanics import mechanics_of
@@ -50,6 +52,15 @@ class Turn:
     coordinate: int | None
     radius: float
     shafts: tuple[tuple[int, float], ...]
+
+
+class _Row(NamedTuple):
+    """A column: what rotations times arms, displacements along ways, and coordinates add to it."""
+
+    name: str
+    turned: Iterable[tuple[str, float]] = ()
+    moved: Iterable[tuple[str, Array]] = ()
+    unit: Mapping[int, float] = {}
 
 
 class Columns:
@@ -97,24 +108,14 @@ class Columns:
             self.slips[spline] = len(names)
             names += [f"{spline} slip x", f"{spline} slip y"]
         self.coordinates = tuple(names)
-        rows: list[Twofold] = []
-        self._labels: list[str] = []
-        self._turned: list[tuple[Twofold, int, float, float]] = []
-        self._placed: list[tuple[Twofold, int, Array, Array]] = []
-        self.flanks = self._add(rows, self._flank_rows())
-        self.shafts = self._add(rows, self._shaft_rows())
-        self.bearings = self._add(rows, self._bearing_rows())
-        self.stops = self._add(rows, self._stop_rows())
-        self.bends = self._add(rows, self._bend_rows())
-        self.arcs = self._add(rows, self._arc_rows())
-        self.radials = self._add(rows, self._radial_rows())
-        self.names = tuple(self._labels)
-        self._put_all()
-        shape = (len(rows), len(names))
-        self.matrix = Twofold(
-            np.array([r.high for r in rows]).reshape(shape),
-            np.array([r.low for r in rows]).reshape(shape),
+        kinds = list(self._kinds())
+        ends = list(accumulate(map(len, kinds), initial=0))
+        self.flanks, self.shafts, self.bearings, self.stops, self.bends, self.arcs, self.radials = (
+            slice(*pair) for pair in pairwise(ends)
         )
+        rows = [row for kind in kinds for row in kind]
+        self.names = tuple(row.name for row in rows)
+        self.matrix = self._matrix(rows)
         self.first_pair = self.arcs.start
         self.pairs = (len(rows) - self.first_pair) // 2
         self._statics: dict[bytes, Statics] = {}
@@ -202,13 +203,13 @@ class Columns:
         return np.asarray((terms + 4) * UNIT)
 
     @cached_property
-    def contacts(self) -> NDArray[np.intp]:
+    def contacts(self) -> Numbers:
         """Columns of flanks and stops."""
         every = np.arange(len(self.names))
         return np.concatenate([every[self.flanks], every[self.stops]])
 
     @cached_property
-    def is_contact(self) -> NDArray[np.bool_]:
+    def is_contact(self) -> Flags:
         """Which columns these are, shape (m,)."""
         found = np.zeros(len(self.names), dtype=bool)
         found[self.contacts] = True
@@ -232,7 +233,7 @@ class Columns:
         pairs = high[self.first_pair :].reshape(-1, 2, high.shape[1])
         return force_at_end(moves, high[self.contacts], pairs)
 
-    def statics(self, columns: NDArray[np.intp]) -> Statics:
+    def statics(self, columns: Numbers) -> Statics:
         """Return the statics of columns that act, computed once."""
         key = columns.tobytes()
         known = self._statics.get(key)
@@ -242,122 +243,74 @@ class Columns:
             known = self._statics[key] = Statics.of(self.matrix.high[columns])
         return known
 
-    def _add(self, rows: list[Twofold], new: list[tuple[str, Twofold]]) -> slice:
-        start = len(rows)
-        self._labels += [name for name, _ in new]
-        rows += [row for _, row in new]
-        return slice(start, len(rows))
-
-    def _empty(self) -> Twofold:
-        return Twofold(np.zeros(len(self.coordinates)), np.zeros(len(self.coordinates)))
-
-    def _put_turn(self, row: Twofold, gear: str, arm: float) -> None:
-        """Note what a gear's rotation times an arm [m] contributes."""
-        turn = self.turns[gear]
-        if turn.coordinate is not None:
-            self._turned.append((row, turn.coordinate, arm, turn.radius))
-
-    def _put_place(self, row: Twofold, first: int, frame: Array, direction: Array) -> None:
-        """Note what a displacement in a frame contributes along a direction (3,)."""
-        self._placed.append((row, first, frame, direction))
-
-    def _put_all(self) -> None:
-        """Add what was noted."""
-        if self._turned:
-            rows, at, arms, radii = zip(*self._turned, strict=True)
-            high, low = quotient(np.array(arms), np.array(radii))
-            for row, k, *parts in zip(rows, at, high.tolist(), low.tolist(), strict=True):
-                row.high[k] += parts[0]
-                row.low[k] += parts[1]
-        if self._placed:
-            rows, at, frames, directions = zip(*self._placed, strict=True)
-            terms = two_product(np.array(frames), np.array(directions)[:, None, :])
-            every = np.concatenate(terms, axis=2).tolist()
-            for row, first, along in zip(rows, at, every, strict=True):
-                for k, parts in enumerate(along):
-                    total = math.fsum(parts)
-                    row.high[first + k] += total
-                    row.low[first + k] += math.fsum([*parts, -total])
-
-    def _flank_rows(self) -> list[tuple[str, Twofold]]:
-        rows = []
-        for name, to in self.train.approaches.items():
-            row = self._empty()
-            for gear, arm in to.turning.items():
-                self._put_turn(row, gear, arm)
-            for gear, along in to.shifting.items():
+    def _matrix(self, rows: Sequence[_Row]) -> Twofold:
+        """A, shape (m, n)."""
+        found = Twofold(*np.zeros((2, len(rows), len(self.coordinates))))
+        turned, moved = [], []
+        for number, row in enumerate(rows):
+            for where, value in row.unit.items():
+                found.high[number, where] = value
+            for gear, arm in row.turned:
+                if (turn := self.turns[gear]).coordinate is not None:
+                    turned.append((number, turn.coordinate, arm, turn.radius))
+            for gear, way in row.moved:
                 if gear in self.places:
-                    frame = self.train.gears[gear].frame
-                    self._put_place(row, self.places[gear], frame, along)
-            rows.append((name, row))
-        return rows
+                    moved.append((number, self.places[gear], self.train.gears[gear].frame, way))
+        if turned:
+            numbers, firsts, arms, radii = map(np.array, zip(*turned, strict=True))
+            for total, part in zip(found, quotient(arms, radii), strict=True):
+                np.add.at(total, (numbers, firsts), part)
+        if moved:
+            *places, frames, ways = zip(*moved, strict=True)
+            terms = two_product(np.array(frames), np.array(ways)[:, None, :])
+            every = np.concatenate(terms, axis=2).tolist()
+            for number, first, along in zip(*places, every, strict=True):
+                for at, parts in enumerate(along, start=first):
+                    nearest = math.fsum(parts)
+                    found.high[number, at] += nearest
+                    found.low[number, at] += math.fsum([*parts, -nearest])
+        return found
 
-    def _shaft_rows(self) -> list[tuple[str, Twofold]]:
-        rows = []
-        for shaft in self.train.shafts.values():
-            if math.isinf(shaft.stiffness):
-                continue
-            row, arm = self._empty(), self.train.gears[shaft.first].base_radius
-            self._put_turn(row, shaft.first, arm)
-            self._put_turn(row, shaft.second, -arm)
-            rows.append((shaft.name, row))
-        return rows
-
-    def _unit(self, *entries: tuple[int, float]) -> Twofold:
-        row = self._empty()
-        for where, value in entries:
-            row.high[where] += value
-        return row
-
-    def _bearing_rows(self) -> list[tuple[str, Twofold]]:
-        return [
-            (f"bearing {gear}", self._unit((first + k, 1.0)))
+    def _kinds(self) -> Iterator[list[_Row]]:
+        """Yield the columns of every kind of element, in order."""
+        train, both = self.train, (0, 1)
+        gears, drums = train.gears, train.drums
+        yield [
+            _Row(name, to.turning.items(), to.shifting.items())
+            for name, to in train.approaches.items()
+        ]
+        elastic = (s for s in train.shafts.values() if not math.isinf(s.stiffness))
+        arms = ((s, gears[s.first].base_radius) for s in elastic)
+        yield [_Row(s.name, ((s.first, arm), (s.second, -arm))) for s, arm in arms]
+        yield [
+            _Row(f"bearing {gear}", unit={first + k: 1.0})
             for gear, first in self.places.items()
-            for k in (0, 1)
+            for k in both
         ]
-
-    def _stop_rows(self) -> list[tuple[str, Twofold]]:
-        rows = []
-        for ring in self.train.drums:
-            for name, sign in zip(ring.stop_names, (1.0, -1.0), strict=True):
-                row = self._empty()
-                frame = self.train.gears[ring.gear].frame
-                self._put_place(row, self.places[ring.gear], frame, sign * ring.across)
-                rows.append((name, row))
-        return rows
-
-    def _bend_rows(self) -> list[tuple[str, Twofold]]:
-        return [
-            (
-                f"{self.train.splines[g].name} shaft",
-                self._unit((self.places[g] + k, 1.0), (s + k, -1.0)),
+        yield [
+            _Row(name, moved=((ring.gear, sign * ring.across),))
+            for ring in drums
+            for name, sign in zip(ring.stop_names, (1.0, -1.0), strict=True)
+        ]
+        yield [
+            _Row(f"{train.splines[g].name} shaft", unit={self.places[g] + k: 1.0, slip + k: -1.0})
+            for g, slip in self.slips.items()
+            for k in both
+        ]
+        yield [
+            _Row(
+                ring.arc_name(neighbour),
+                moved=((neighbour, -gears[ring.gear].frame[k]),),
+                unit={self.places[ring.gear] + k: 1.0},
             )
-            for g, s in self.slips.items()
-            for k in (0, 1)
+            for ring in drums
+            for neighbour in ring.neighbours
+            for k in both
         ]
-
-    def _arc_rows(self) -> list[tuple[str, Twofold]]:
-        rows = []
-        for ring in self.train.drums:
-            frame = self.train.gears[ring.gear].frame
-            for neighbour in ring.neighbours:
-                for k in (0, 1):
-                    row = self._unit((self.places[ring.gear] + k, 1.0))
-                    if neighbour in self.places:
-                        other = self.train.gears[neighbour].frame
-                        self._put_place(row, self.places[neighbour], other, -frame[k])
-                    rows.append((ring.arc_name(neighbour), row))
-        return rows
-
-    def _radial_rows(self) -> list[tuple[str, Twofold]]:
-        train = self.train
         pairs = [(r.name, self.places[r.gear]) for r in train.rounds]
-        if train.slip is None:
-            pairs += [(s.name, self.places[g]) for g, s in train.splines.items()]
-        else:
-            pairs += [(s.name, self.slips[g]) for g, s in train.splines.items()]
-            pairs += [(s.stop_name, self.slips[g]) for g, s in train.splines.items()]
-        return [(name, self._unit((at + k, 1.0))) for name, at in pairs for k in (0, 1)]
+        pairs += [(s.name, (self.slips or self.places)[g]) for g, s in train.splines.items()]
+        pairs += [(train.splines[g].stop_name, slip) for g, slip in self.slips.items()]
+        yield [_Row(name, unit={at + k: 1.0}) for name, at in pairs for k in both]
 
 
 def _turns(train: Train) -> tuple[dict[str, Turn], list[str]]:

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array, Numbers
-
-Acts = NDArray[np.int8]
+from loadshare.certify.bound.acts import Acts
 
 
 class Found(NamedTuple):

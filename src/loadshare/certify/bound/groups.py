@@ -15,18 +15,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.array_types import Array, Flags, Numbers
-from loadshare.certify.bound.acts import CLOSED, OPEN
+from loadshare.certify.bound.acts import CLOSED, OPEN, Acts
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.figures import Found, Sets, Workspace
 from loadshare.certify.bound.layout import layout_of
 from loadshare.certify.bound.statics import Statics, force_at_end, held_moves
 from loadshare.settings import BOUND
-
-Acts = NDArray[np.int8]
 
 
 class Groups(NamedTuple):

@@ -13,9 +13,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.settings import BOUND
 
@@ -35,10 +34,10 @@ class Held:
     """
 
     claim: Claim
-    shared: NDArray[np.intp]
+    shared: Numbers
     turned: Array
 
-    def denied(self, force: Array) -> NDArray[np.bool_]:
+    def denied(self, force: Array) -> Flags:
         """Whether torques may change more, (S,), by errors (S, m) of the forces."""
         columns = self.claim.columns
         turned = force[:, columns.flanks] @ np.abs(columns.moments).T

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.certify.bound.acts import Act, Acts, first_acts
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
@@ -22,9 +22,6 @@ from loadshare.certify.bound.verge import on_the_verge
 from loadshare.settings import BOUND, CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array, Flags
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.acts import Act, Acts
 from loadshare.certify.bound.claim import EPS, TINY, Claim
 from loadshare.certify.bound.elements import Elements
@@ -136,7 +135,7 @@ def _flanks(
 
 
 def _tables(
-    claim: Claim, flanks: NDArray[np.intp], force: Array, scale: Array
+    claim: Claim, flanks: Numbers, force: Array, scale: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Slopes and values of tabulated laws (S, k), curvatures that cover corners close by, and room.
 
@@ -150,7 +149,7 @@ def _tables(
     k = np.clip((forces <= force[:, :, None]).sum(axis=2) - 1, 0, last)
     slopes = np.diff(values, axis=2) / np.diff(forces, axis=2)
 
-    def at(array: Array, place: NDArray[np.intp]) -> Array:
+    def at(array: Array, place: Numbers) -> Array:
         return np.take_along_axis(array, place[:, :, None], axis=2)[:, :, 0]
 
     slope = at(slopes, k)

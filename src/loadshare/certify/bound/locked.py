@@ -13,9 +13,8 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Numbers
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.settings import BOUND
@@ -100,7 +99,7 @@ def _supports(normals: Array, room: Array, direction: Array) -> Iterator[float]:
                 yield float(np.maximum(shares, EPS) @ room[[i, j]])
 
 
-def without(claim: Claim, gears: Mapping[str, float | Array]) -> tuple[Claim, NDArray[np.intp]]:
+def without(claim: Claim, gears: Mapping[str, float | Array]) -> tuple[Claim, Numbers]:
     """The claim for the train in which some gears are held where they are claimed.
 
     Parameters

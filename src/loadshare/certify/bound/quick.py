@@ -22,10 +22,9 @@ shown so is left to `boxes`. Source: formulation, section 16.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array, Flags
-from loadshare.certify.bound.acts import Act, Acts
+from loadshare.array_types import Array, Flags, Numbers
+from loadshare.certify.bound.acts import Act, Acts, alike
 from loadshare.certify.bound.bound import Box, aside, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.elements import Elements
@@ -125,21 +124,7 @@ def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
     return act, doubled
 
 
-def alike(codes: Acts) -> list[NDArray[np.intp]]:
-    """Rows with the same codes."""
-    if (codes == codes[:1]).all():
-        return [np.arange(len(codes))]
-    group = np.zeros(len(codes), dtype=np.int64)
-    for at in range(0, codes.shape[1], BOUND.digits):
-        digits = codes[:, at : at + BOUND.digits].astype(np.int64)
-        number = digits @ Act.WAYS ** np.arange(digits.shape[1])
-        _, number = np.unique(number, return_inverse=True)
-        _, group = np.unique(group * (number.max() + 1) + number, return_inverse=True)
-    order = np.argsort(group, kind="stable")
-    return np.split(order, np.cumsum(np.bincount(group))[:-1])
-
-
-def _groups(claim: Claim, act: Acts) -> list[NDArray[np.intp]]:
+def _groups(claim: Claim, act: Acts) -> list[Numbers]:
     """Rows with the same codes; of few claims that lean on a ring or spline, each by itself.
 
     By itself the turn of its line is one more compliance. Many share the line of one of them, and
@@ -152,9 +137,7 @@ def _groups(claim: Claim, act: Acts) -> list[NDArray[np.intp]]:
     return [row for rows in groups for row in np.split(rows, len(rows))]
 
 
-def _over_tangents(
-    claim: Claim, found: Elements, rows: NDArray[np.intp] | slice, scale: Array
-) -> Array:
+def _over_tangents(claim: Claim, found: Elements, rows: Numbers | slice, scale: Array) -> Array:
     """Largest compliance of flanks between two forces, over the tangent's, shape (rows, flanks).
 
     The tangent of a light Hertz contact is taken at more than its force.
@@ -178,7 +161,7 @@ class _Group:
         self,
         claim: Claim,
         found: Elements,
-        rows: NDArray[np.intp],
+        rows: Numbers,
         doubled: Flags,
         scale: Array,
         load: Array,

@@ -6,9 +6,8 @@ For the claims of which the same columns act. Source: formulation, section 16.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Numbers
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.elements import Elements
 from loadshare.settings import BOUND
@@ -21,8 +20,8 @@ class Part:
         self,
         claim: Claim,
         found: Elements,
-        rows: NDArray[np.intp],
-        columns: NDArray[np.intp],
+        rows: Numbers,
+        columns: Numbers,
         left: Array,
         rounding: Array,
     ) -> None:
@@ -88,7 +87,7 @@ class Part:
         return total
 
 
-def yielding(soft: Array, skew: Array, at: NDArray[np.intp], force: Array) -> Array:
+def yielding(soft: Array, skew: Array, at: Numbers, force: Array) -> Array:
     """D F: compliances, and those off the diagonal of the pairs that begin at some columns."""
     moved = soft * force
     moved[..., at] += skew * force[..., at + 1]

@@ -6,16 +6,15 @@ Source: formulation, section 16.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array, Flags
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.acts import Act, Acts
 from loadshare.certify.bound.claim import Claim
 from loadshare.certify.bound.elements import Elements
 
 
 def doubts(
-    claim: Claim, found: Elements, rows: NDArray[np.intp], errors: Array, moved: Array
+    claim: Claim, found: Elements, rows: Numbers, errors: Array, moved: Array
 ) -> tuple[Flags, Flags]:
     """Elements whose force or gap may change its sign within errors, shape (rows, elements).
 
@@ -55,7 +54,7 @@ def doubts(
     return doubtful, above
 
 
-def _level_errors(claim: Claim, errors: Array, rows: NDArray[np.intp] | slice) -> Array:
+def _level_errors(claim: Claim, errors: Array, rows: Numbers | slice) -> Array:
     """Errors of the levels of splines that follow the torque, shape (rows, radials) [N]."""
     columns, train = claim.columns, claim.columns.train
     found = np.zeros((len(errors), len(claim.radial_gears)))
@@ -72,7 +71,7 @@ def _level_errors(claim: Claim, errors: Array, rows: NDArray[np.intp] | slice) -
 def _room(
     claim: Claim,
     found: Elements,
-    rows: NDArray[np.intp] | slice,
+    rows: Numbers | slice,
     act: Acts,
     error: Array,
     moved: Array,

@@ -7,13 +7,13 @@ determined. Source: formulation, sections 4 and 6.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Flags
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.settings import BOUND
 
 
-def squeezed(claim: Claim) -> NDArray[np.bool_]:
+def squeezed(claim: Claim) -> Flags:
     """Columns of the limits between which a gear may be squeezed, shape (S, m)."""
     columns, here = claim.columns, claim.situations
     found = np.zeros((claim.count, len(columns.names)), dtype=bool)

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags
 from loadshare.settings import BOUND
 
 
@@ -64,7 +63,7 @@ class Statics:
         return cls(directions, z[:, :rank] @ solved, z[:, rank:], q[:, rank:])
 
     @cached_property
-    def loose(self) -> NDArray[np.bool_]:
+    def loose(self) -> Flags:
         """Coordinates that a move shifts, shape (n,)."""
         return np.asarray(np.abs(self.moves).max(axis=1, initial=0.0) > BOUND.loose)
 

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.acts import Act, first_acts
 from loadshare.certify.bound.claim import Claim
 from loadshare.certify.bound.elements import Elements
@@ -32,8 +32,6 @@ from loadshare.settings import BOUND
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,8 @@ from collections.abc import Iterable
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags
 from loadshare.certify.bound.acts import Act, Acts
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
@@ -90,7 +89,7 @@ def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
     return quick_boxes(claim, act, scale)
 
 
-def _each(claim: Claim, acts: Acts, scale: Array, verge: NDArray[np.bool_]) -> Box:
+def _each(claim: Claim, acts: Acts, scale: Array, verge: Flags) -> Box:
     """Boxes of one claim with its elements acting in several ways."""
     rows = np.zeros(len(acts), dtype=np.intp)
     return boxes(claim.take(rows), acts, scale[rows], np.broadcast_to(verge, acts.shape))
@@ -103,7 +102,7 @@ def _touching(acts: Acts, idle: Iterable[int]) -> Acts:
     return np.asarray(np.unique(touching, axis=0))
 
 
-def _held_by_twins(claim: Claim, box: Box) -> NDArray[np.bool_]:
+def _held_by_twins(claim: Claim, box: Box) -> Flags:
     """Stops of a drum without clearance that stay without force as the one opposite is pressed."""
     stops, first = claim.columns.stops, claim.columns.flanks.stop
     held = np.zeros(box.doubtful.shape[1], dtype=bool)
@@ -148,9 +147,7 @@ def _is_limit(claim: Claim, e: int) -> bool:
     return radial < 0 or bool(claim.graphs[0, radial, 2] <= BOUND.noise * largest)
 
 
-def _alone(
-    claim: Claim, act: Acts, some: list[int], verge: NDArray[np.bool_], scale: Array
-) -> set[int]:
+def _alone(claim: Claim, act: Acts, some: list[int], verge: Flags, scale: Array) -> set[int]:
     """Elements, of some that are closed, without part in any self-stress."""
     columns = claim.columns
     if not some:
@@ -170,7 +167,7 @@ def _alone(
     return {e for e in some if share(e) < BOUND.idle}
 
 
-def _closed(act: Acts, doubtful: Iterable[int]) -> tuple[Acts, NDArray[np.bool_]]:
+def _closed(act: Acts, doubtful: Iterable[int]) -> tuple[Acts, Flags]:
     """Ways of acting with all doubtful contacts closed, and which these are."""
     verge = np.zeros(act.shape, dtype=bool)
     verge[0, list(doubtful)] = True
@@ -201,7 +198,7 @@ def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
     return (act, chain[other]) if 0 <= other < len(chain) else (act,)
 
 
-def _largest(many: Box, held: NDArray[np.bool_]) -> Box:
+def _largest(many: Box, held: Flags) -> Box:
     """Largest errors over all the ways."""
     force = many.force[held].max(axis=0)[None]
     coordinate = many.coordinate[held].max(axis=0)[None]

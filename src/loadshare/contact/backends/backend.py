@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib import import_module
 from typing import Protocol
 
@@ -37,12 +36,8 @@ class Backend(Protocol):
 KINDS_QP = frozenset({"linear", "QP"})
 KINDS_CONIC = KINDS_QP | {"SOCP", "power cone"}
 
-_ROOMS: dict[str, str] = {
-    "clarabel": "loadshare.contact.backends.clarabel_",
-    "osqp": "loadshare.contact.backends.osqp_",
-    "cvxpy": "loadshare.contact.backends.cvxpy_",
-}
-SOLVERS = tuple(_ROOMS)
+SOLVERS = ("clarabel", "osqp", "cvxpy")
+"""Each is a class of its name, in a module of its own."""
 
 
 def backend(name: str) -> Backend:
@@ -54,5 +49,5 @@ def backend(name: str) -> Backend:
         If there is no such back-end.
     """
     one_of("solver", name, SOLVERS)
-    make: Callable[[], Backend] = import_module(_ROOMS[name]).make
-    return make()
+    found: Backend = getattr(import_module(f"{__package__}.{name}_"), name.capitalize())()
+    return found

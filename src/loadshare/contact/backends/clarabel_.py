@@ -27,7 +27,19 @@ def cones_of(form: ConicForm) -> list[Any]:
     ]
 
 
-class Clarabel:
+def settings_of(tolerance: float) -> Any:
+    """Return how Clarabel is to go on."""
+    import clarabel
+
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.presolve_enable = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
+    settings.max_iter = CONTACT.interior_steps
+    return settings
+
+
+class Clarabel(Backend):
     """Interior-point method for QP, SOCP and power cones."""
 
     name = "clarabel"
@@ -38,13 +50,13 @@ class Clarabel:
         import clarabel
 
         form = conic_form(programme)
-        settings = clarabel.DefaultSettings()
-        settings.verbose = False
-        settings.presolve_enable = False
-        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = CONTACT.interior
-        settings.max_iter = CONTACT.interior_steps
         answer = clarabel.DefaultSolver(
-            form.quadratic, form.linear, form.matrix, form.bounds, cones_of(form), settings
+            form.quadratic,
+            form.linear,
+            form.matrix,
+            form.bounds,
+            cones_of(form),
+            settings_of(CONTACT.interior),
         ).solve()
         z, dual = np.array(answer.x), np.array(answer.z)
         if not (np.isfinite(z).all() and np.isfinite(dual).all()):
@@ -52,8 +64,3 @@ class Clarabel:
         if "Infeasible" in str(answer.status):
             raise BackendFailure(f"Clarabel reports {answer.status}")
         return form.point(z, dual)
-
-
-def make() -> Backend:
-    """Return the back-end."""
-    return Clarabel()

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.contact.programme import Array, Point, Programme
+from loadshare.array_types import Array, Numbers
+from loadshare.contact.programme import Point, Programme
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
@@ -48,7 +48,7 @@ class ConicForm:
     matrix: csc_matrix
     bounds: Array
     cones: tuple[tuple[str, float], ...]
-    row_of: NDArray[np.intp]
+    row_of: Numbers
     cone_rows: tuple[int, ...]
     size: int
 

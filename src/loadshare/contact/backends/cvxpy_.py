@@ -87,7 +87,7 @@ def _radial(cone: Cone, x: Any, constraints: list[Any]) -> tuple[Any, Any]:
     return energy, cone.matrix @ x - cone.centre == total
 
 
-class Cvxpy:
+class Cvxpy(Backend):
     """CVXPY with Clarabel underneath: slow, short, written from the formulas."""
 
     name = "cvxpy"
@@ -115,8 +115,3 @@ def _square_root(matrix: np.ndarray) -> np.ndarray:
     """L with L Lᵀ = H for a semidefinite H."""
     values, vectors = np.linalg.eigh(matrix)
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
-
-
-def make() -> Backend:
-    """Return the back-end."""
-    return Cvxpy()

@@ -10,7 +10,7 @@ from loadshare.contact.programme import Point, Programme
 from loadshare.settings import CONTACT
 
 
-class Osqp:
+class Osqp(Backend):
     """Operator splitting with polish."""
 
     name = "osqp"
@@ -39,8 +39,3 @@ class Osqp:
         if z.size == 0 or not (np.isfinite(z).all() and np.isfinite(dual).all()):
             raise BackendFailure(f"OSQP gave no point (status {answer.info.status})")
         return form.point(z, dual)
-
-
-def make() -> Backend:
-    """Return the back-end."""
-    return Osqp()

@@ -7,14 +7,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
 from loadshare.solver.hot.contact_states import PINNED
-from loadshare.solver.hot.exchange import States
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.train.equilibria import Equilibria, Names
 
@@ -66,9 +64,7 @@ def pin(structure: Structure, loading: Loading, iterate: Iterate, states: States
             iterate.x[rows, at] = pins[rows] / structure.vectors[column, at]
 
 
-def without_noise(
-    structure: Structure, iterate: Iterate, rows: NDArray[np.bool_], searched: NDArray[np.bool_]
-) -> bool:
+def without_noise(structure: Structure, iterate: Iterate, rows: Flags, searched: Flags) -> bool:
     """Let radial elements of some samples drop what is round-off; return whether any do.
 
     What holds a gear that no load reaches pulls by what the sums of its contacts leave. Contacts

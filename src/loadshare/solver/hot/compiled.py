@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Flags, Numbers, States
 from loadshare.by_reference import by_reference, set_apart
 from loadshare.scene.loading import Loading
 from loadshare.scene.structure import Structure
@@ -24,8 +24,7 @@ from loadshare.solver.hot.kernel.conclude import conclude
 from loadshare.solver.hot.kernel.fill import fill
 from loadshare.solver.hot.kernel.options import bare, cached
 from loadshare.solver.hot.kernel.passes import give_up, run
-from loadshare.solver.hot.kernel.redundants import Rows
-from loadshare.solver.hot.kernel.set_arrays import Samples, States, packed_sets, unpacked
+from loadshare.solver.hot.kernel.set_arrays import Samples, packed_sets, unpacked
 from loadshare.solver.hot.kernel.work import Given, work_for
 
 UNDECIDED = -1
@@ -36,9 +35,9 @@ def settle(
     structure: Structure,
     loading: Loading,
     sets: States,
-    parts: Sequence[Rows],
+    parts: Sequence[Numbers],
     iterate: Iterate,
-    one_only: NDArray[np.bool_],
+    one_only: Flags,
 ) -> tuple[States, States]:
     """Solve samples, each on its set, and say what has the wrong sign.
 

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.radial import tangent_wall
-from loadshare.scene.scene import Array
 from loadshare.settings import LAWS
 
 OPEN = 0

@@ -13,16 +13,14 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.array_types import Flags
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.statics import unresisted
 from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES, STATICS
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
 from loadshare.solver.hot.elements import arc_at, pick
-from loadshare.solver.hot.exchange import States
 from loadshare.solver.hot.iterate import Iterate, pushes
 
 
@@ -48,71 +46,25 @@ def determined(
     compiled : bool
         With Numba: the same answer.
     """
-    least = PLACES.carries * pushes(loading)
+    least, batch = PLACES.carries * pushes(loading), _Batch(structure, loading, iterate)
     if compiled:
-        return _compiled(structure, loading, iterate, states, held, least)
+        return batch.compiled(states, held, least)
     first, last = structure.springs, structure.columns.contacts.stop
     force = iterate.force[:, first:last]
     carries = np.maximum(least, PLACES.carries * np.abs(force).max(axis=1, initial=0.0))
     idle = ((states[:, : structure.rows] != at.OPEN) & (force <= carries[:, None])).any(axis=1)
-    kinds = _kinds(structure, loading, iterate, carries)
+    kinds = batch.kinds(carries)
     unlike = (kinds != HELD) & (states[:, structure.rows :] != at.OPEN)
     found = held & ~idle & ~unlike.any(axis=1)
     rest = np.flatnonzero(~found)
     if len(rest):
         carry = iterate.force[rest, first:last] > carries[rest, None]
-        columns = structure.columns.flat
-        room = pick(loading.gap, rest)[:, columns] - iterate.x[rest] @ structure.vectors[columns].T
-        near = room <= PLACES.play
         for alike, some in _alike(np.hstack([carry.astype(np.int8), kinds[rest]])):
-            found[rest[alike]] = _fixed(structure, loading, iterate, some, rest[alike], near[alike])
+            found[rest[alike]] = batch.fixed(some, rest[alike])
     return np.asarray(found)
 
 
-def _compiled(
-    structure: Structure,
-    loading: Loading,
-    iterate: Iterate,
-    states: States,
-    held: Flags,
-    least: Array,
-) -> Flags:
-    """The same with Numba; NumPy decides for samples that touch something that may hold them."""
-    from loadshare.solver.hot.touching import Touching
-
-    touching = Touching(structure, loading, iterate, states, held, least)
-    number = touching.number
-    left_by = [_moves(structure, loading, some) for some in touching.sets]
-    # Of every set, and of none: whether no move is left, and how few limits hold none that is.
-    fixed = np.array([*(not of.moves.shape[1] for of in left_by), True])
-    few = np.array([*(of.fewest for of in left_by), 0])
-    found, rest = (
-        fixed[number],
-        np.flatnonzero(touching.met([of.met for of in left_by]) > few[number]),
-    )
-    for alike, (at_set,) in _alike(number[rest, None]) if len(rest) else ():
-        rows = rest[alike]
-        columns = structure.columns.flat
-        room = pick(loading.gap, rows)[:, columns] - iterate.x[rows] @ structure.vectors[columns].T
-        near = room <= PLACES.play
-        found[rows] = _fixed(structure, loading, iterate, touching.sets[at_set], rows, near)
-    return np.asarray(found)
-
-
-def _kinds(structure: Structure, loading: Loading, iterate: Iterate, carries: Array) -> States:
-    """How every radial element holds, shape (S, radials)."""
-    everyone = np.arange(loading.count)
-    kinds = np.empty((loading.count, len(structure.radials)), dtype=np.int8)
-    for j in range(kinds.shape[1]):
-        law = at.graph(pick(loading.radial, everyone)[:, j], iterate.force @ loading.carried[j])
-        column = structure.radial_column(j)
-        size = np.hypot(iterate.force[:, column], iterate.force[:, column + 1])
-        level = (np.abs(size - law.bound) <= carries) & (law.reach > law.stick)
-        kinds[:, j] = np.where(level, np.where(size <= carries, FREE, LEVEL), HELD)
-    return kinds
-
-
-def _alike(sets: NDArray[Any]) -> Iterator[tuple[NDArray[np.intp], NDArray[Any]]]:
+def _alike(sets: NDArray[Any]) -> Iterator[tuple[Numbers, NDArray[Any]]]:
     """Yield samples that have one set, and it."""
     order = np.lexsort(sets.T) if sets.shape[1] else np.arange(len(sets))
     changes = np.flatnonzero((sets[order][1:] != sets[order][:-1]).any(axis=1)) + 1
@@ -125,7 +77,7 @@ class _Moves(NamedTuple):
 
     moves: Array
     level: tuple[int, ...]  # radial elements on a level piece
-    flat: NDArray[np.intp]  # columns of flanks and stops that carry nothing
+    flat: Numbers  # columns of flanks and stops that carry nothing
     arcs: tuple[int, ...]
     radials: tuple[int, ...]
     # Whether level pieces, whatever their directions, leave some move.
@@ -136,92 +88,6 @@ class _Moves(NamedTuple):
     # many of these that a sample touches hold none of its moves.
     met: tuple[int, ...]
     fewest: int
-
-
-def _moves(structure: Structure, loading: Loading, some: States) -> _Moves:
-    """Put together what a set of carrying elements leaves; computed once."""
-    key = ("moves", some.tobytes())
-    known = structure.cache.get(key)
-    if known is not None:
-        return cast(_Moves, known)
-    carry, kinds = some[: structure.rows], some[structure.rows :]
-    flat, columns, vectors = structure.flat, structure.columns, structure.vectors
-    holding = [vectors[columns.springs], vectors[columns.flat][carry[:flat] != 0]]
-    holding += [loading.relative[a] for a in np.flatnonzero(carry[flat:])]
-    holding += [_radial(structure, j) for j in np.flatnonzero(kinds == HELD).tolist()]
-    moves = unresisted(np.vstack(holding))
-
-    def meets(matrix: Array) -> bool:
-        return bool(np.abs(matrix @ moves).max(initial=0.0) > PLACES.loose)
-
-    def radials(which: Flags) -> tuple[int, ...]:
-        return tuple(j for j in np.flatnonzero(which).tolist() if meets(_radial(structure, j)))
-
-    def leave(parts: list[Array]) -> bool:
-        met = np.vstack([np.zeros((1, len(moves))), *parts]) @ moves
-        return bool(unresisted(met).shape[1] > 0)
-
-    idle = structure.springs + np.flatnonzero(carry[:flat] == 0)
-    idle = idle[np.abs(vectors[idle] @ moves).max(axis=1, initial=0.0) > PLACES.loose]
-    level, free = radials(kinds == LEVEL), radials(kinds != HELD)
-    arcs = tuple(
-        a for a in np.flatnonzero(carry[flat:] == 0).tolist() if meets(loading.relative[a])
-    )
-    pieces = [_radial(structure, j) for j in level]
-    limits = [vectors[idle], *(loading.relative[a] for a in arcs)]
-    limits += [_radial(structure, j) for j in free]
-    some_left, may_be_held = leave(pieces), not leave(limits)
-    met: list[int] = []
-    if may_be_held and moves.shape[1]:
-        met += (idle - structure.springs).tolist()
-        met += [flat + a for a in arcs]
-        met += [structure.rows + j for j in free]
-    fewest = moves.shape[1] - len(level) if some_left else -1 if may_be_held else 0
-    found = _Moves(moves, level, idle, arcs, free, some_left, may_be_held, tuple(met), fewest)
-    structure.remember(key, found)
-    return found
-
-
-def _fixed(
-    structure: Structure,
-    loading: Loading,
-    iterate: Iterate,
-    some: States,
-    rows: NDArray[np.intp],
-    near: Flags,
-) -> Flags:
-    """Whether samples of one set of carrying elements are determined, shape (len(rows),).
-
-    `near`, shape (len(rows), flat), is which flanks and stops they touch.
-    """
-    left_by = _moves(structure, loading, some)
-    moves, level = left_by.moves, left_by.level
-    if not moves.shape[1]:
-        return np.ones(len(rows), dtype=bool)
-    found = np.zeros(len(rows), dtype=bool)
-    if not left_by.may_be_held:
-        return found
-    touched = _touched(structure, loading, iterate, some, left_by, rows, near)
-    # What no level piece could hold is pinched by contacts or moves.
-    some_touch = touched.flags.any(axis=1)
-    these = np.flatnonzero(some_touch) if left_by.some_left else np.arange(len(rows))
-    if not len(these):
-        return found
-    across = np.zeros((len(these), len(level), moves.shape[1]))
-    for k, j in enumerate(level):
-        across[:, k] = _across(structure, iterate, j, rows[these]) @ moves
-    left = moves.shape[1] - (np.linalg.svd(across, compute_uv=False) > STATICS.rank).sum(axis=1)
-    found[these] = left == 0
-    doubtful = (left > 0) & (touched.flags[these].sum(axis=1) > left)
-    for k in np.flatnonzero(doubtful).tolist():
-        one_sided = touched.directions(int(these[k]))
-        found[these[k]] = _pinched(np.vstack([across[k], -across[k], one_sided]))
-    return found
-
-
-def _radial(structure: Structure, j: int) -> Array:
-    column = structure.radial_column(j)
-    return structure.vectors[column : column + 2]
 
 
 class _Touched(NamedTuple):
@@ -237,46 +103,154 @@ class _Touched(NamedTuple):
         return np.asarray(every[self.flags[sample]])
 
 
-def _touched(
-    structure: Structure,
-    loading: Loading,
-    iterate: Iterate,
-    some: States,
-    left_by: _Moves,
-    rows: NDArray[np.intp],
-    near: Flags,
-) -> _Touched:
-    """Find what samples touch where they are."""
-    moves, flat, x = left_by.moves, left_by.flat, iterate.x[rows]
-    touches, directions = [near[:, flat - structure.springs]], []
+class _Batch(NamedTuple):
+    """Samples where they stand."""
 
-    def add(direction: Array, room: Array) -> None:
-        directions.append(direction)
-        met = (room <= PLACES.play) & (np.abs(direction).max(axis=1) > PLACES.loose)
-        touches.append(met[:, None])
+    structure: Structure
+    loading: Loading
+    iterate: Iterate
 
-    for a in left_by.arcs:
-        normal, margin = arc_at(loading, a, rows, x)
-        add(-normal @ loading.relative[a] @ moves, margin)
-    for j in left_by.radials:
-        column, matrix = structure.radial_column(j), _radial(structure, j)
-        law = at.graph(pick(loading.radial, rows)[:, j], iterate.force[rows] @ loading.carried[j])
-        offset = x @ matrix.T - pick(loading.gap[:, column : column + 2], rows)
-        radius = np.linalg.norm(offset, axis=1)
-        outward = offset / np.where(radius > 0.0, radius, 1.0)[:, None] @ matrix @ moves
-        add(outward, law.reach - radius)
-        if some[structure.rows + j] == LEVEL:
-            add(-outward, radius - law.stick)
-    return _Touched(np.concatenate(touches, axis=1), structure.vectors[flat] @ moves, directions)
+    def compiled(self, states: States, held: Flags, least: Array) -> Flags:
+        """The same with Numba; NumPy decides for samples that touch what may hold them."""
+        from loadshare.solver.hot.touching import Touching
 
+        touching = Touching(*self, states, held, least)
+        number = touching.number
+        left_by = [self.moves(some) for some in touching.sets]
+        # Of every set, and of none: whether no move is left, and how few limits hold none that is.
+        fixed = np.array([*(not of.moves.shape[1] for of in left_by), True])
+        few = np.array([*(of.fewest for of in left_by), 0])
+        found, rest = (
+            fixed[number],
+            np.flatnonzero(touching.met([of.met for of in left_by]) > few[number]),
+        )
+        for alike, (at_set,) in _alike(number[rest, None]) if len(rest) else ():
+            found[rest[alike]] = self.fixed(touching.sets[at_set], rest[alike])
+        return np.asarray(found)
 
-def _across(structure: Structure, iterate: Iterate, j: int, rows: NDArray[np.intp]) -> Array:
-    """Direction (k, n) across the force of a radial element."""
-    column = structure.radial_column(j)
-    pull = iterate.force[rows, column : column + 2]
-    pull = pull / np.linalg.norm(pull, axis=1)[:, None]
-    turned = np.stack([-pull[:, 1], pull[:, 0]], axis=1)
-    return np.asarray(turned @ _radial(structure, j))
+    def kinds(self, carries: Array) -> States:
+        """How every radial element holds, shape (S, radials)."""
+        structure, loading, iterate = self
+        everyone = np.arange(loading.count)
+        kinds = np.empty((loading.count, len(structure.radials)), dtype=np.int8)
+        for j in range(kinds.shape[1]):
+            law = at.graph(pick(loading.radial, everyone)[:, j], iterate.force @ loading.carried[j])
+            column = structure.radial_column(j)
+            size = np.hypot(iterate.force[:, column], iterate.force[:, column + 1])
+            level = (np.abs(size - law.bound) <= carries) & (law.reach > law.stick)
+            kinds[:, j] = np.where(level, np.where(size <= carries, FREE, LEVEL), HELD)
+        return kinds
+
+    def moves(self, some: States) -> _Moves:
+        """Put together what a set of carrying elements leaves; computed once."""
+        structure, loading, _ = self
+        key = ("moves", some.tobytes())
+        known = structure.cache.get(key)
+        if known is not None:
+            return cast(_Moves, known)
+        carry, kinds = some[: structure.rows], some[structure.rows :]
+        flat, columns, vectors = structure.flat, structure.columns, structure.vectors
+        holding = [vectors[columns.springs], vectors[columns.flat][carry[:flat] != 0]]
+        holding += [loading.relative[a] for a in np.flatnonzero(carry[flat:])]
+        holding += [structure.radials[j].matrix for j in np.flatnonzero(kinds == HELD).tolist()]
+        moves = unresisted(np.vstack(holding))
+
+        def meets(matrix: Array) -> bool:
+            return bool(np.abs(matrix @ moves).max(initial=0.0) > PLACES.loose)
+
+        def radials(which: Flags) -> tuple[int, ...]:
+            return tuple(
+                j for j in np.flatnonzero(which).tolist() if meets(structure.radials[j].matrix)
+            )
+
+        def leave(parts: list[Array]) -> bool:
+            met = np.vstack([np.zeros((1, len(moves))), *parts]) @ moves
+            return bool(unresisted(met).shape[1] > 0)
+
+        idle = structure.springs + np.flatnonzero(carry[:flat] == 0)
+        idle = idle[np.abs(vectors[idle] @ moves).max(axis=1, initial=0.0) > PLACES.loose]
+        level, free = radials(kinds == LEVEL), radials(kinds != HELD)
+        arcs = tuple(
+            a for a in np.flatnonzero(carry[flat:] == 0).tolist() if meets(loading.relative[a])
+        )
+        pieces = [structure.radials[j].matrix for j in level]
+        limits = [vectors[idle], *(loading.relative[a] for a in arcs)]
+        limits += [structure.radials[j].matrix for j in free]
+        some_left, may_be_held = leave(pieces), not leave(limits)
+        met: list[int] = []
+        if may_be_held and moves.shape[1]:
+            met += (idle - structure.springs).tolist()
+            met += [flat + a for a in arcs]
+            met += [structure.rows + j for j in free]
+        fewest = moves.shape[1] - len(level) if some_left else -1 if may_be_held else 0
+        found = _Moves(moves, level, idle, arcs, free, some_left, may_be_held, tuple(met), fewest)
+        structure.remember(key, found)
+        return found
+
+    def fixed(self, some: States, rows: Numbers) -> Flags:
+        """Whether samples of one set of carrying elements are determined, shape (len(rows),)."""
+        left_by = self.moves(some)
+        moves, level = left_by.moves, left_by.level
+        if not moves.shape[1]:
+            return np.ones(len(rows), dtype=bool)
+        found = np.zeros(len(rows), dtype=bool)
+        if not left_by.may_be_held:
+            return found
+        touched = self.touched(some, left_by, rows)
+        # What no level piece could hold is pinched by contacts or moves.
+        some_touch = touched.flags.any(axis=1)
+        these = np.flatnonzero(some_touch) if left_by.some_left else np.arange(len(rows))
+        if not len(these):
+            return found
+        across = np.zeros((len(these), len(level), moves.shape[1]))
+        for k, j in enumerate(level):
+            across[:, k] = self.across(j, rows[these]) @ moves
+        left = moves.shape[1] - (np.linalg.svd(across, compute_uv=False) > STATICS.rank).sum(axis=1)
+        found[these] = left == 0
+        doubtful = (left > 0) & (touched.flags[these].sum(axis=1) > left)
+        for k in np.flatnonzero(doubtful).tolist():
+            one_sided = touched.directions(int(these[k]))
+            found[these[k]] = _pinched(np.vstack([across[k], -across[k], one_sided]))
+        return found
+
+    def touched(self, some: States, left_by: _Moves, rows: Numbers) -> _Touched:
+        """Find what samples touch where they are."""
+        structure, loading, iterate = self
+        moves, flat, x = left_by.moves, left_by.flat, iterate.x[rows]
+        room = pick(loading.gap, rows)[:, flat] - x @ structure.vectors[flat].T
+        touches, directions = [room <= PLACES.play], []
+
+        def add(direction: Array, room: Array) -> None:
+            directions.append(direction)
+            met = (room <= PLACES.play) & (np.abs(direction).max(axis=1) > PLACES.loose)
+            touches.append(met[:, None])
+
+        for a in left_by.arcs:
+            normal, margin = arc_at(loading, a, rows, x)
+            add(-normal @ loading.relative[a] @ moves, margin)
+        for j in left_by.radials:
+            column, matrix = structure.radial_column(j), structure.radials[j].matrix
+            law = at.graph(
+                pick(loading.radial, rows)[:, j], iterate.force[rows] @ loading.carried[j]
+            )
+            offset = x @ matrix.T - pick(loading.gap[:, column : column + 2], rows)
+            radius = np.linalg.norm(offset, axis=1)
+            outward = offset / np.where(radius > 0.0, radius, 1.0)[:, None] @ matrix @ moves
+            add(outward, law.reach - radius)
+            if some[structure.rows + j] == LEVEL:
+                add(-outward, radius - law.stick)
+        return _Touched(
+            np.concatenate(touches, axis=1), structure.vectors[flat] @ moves, directions
+        )
+
+    def across(self, j: int, rows: Numbers) -> Array:
+        """Direction (k, n) across the force of a radial element."""
+        structure, _, iterate = self
+        column = structure.radial_column(j)
+        pull = iterate.force[rows, column : column + 2]
+        pull = pull / np.linalg.norm(pull, axis=1)[:, None]
+        turned = np.stack([-pull[:, 1], pull[:, 0]], axis=1)
+        return np.asarray(turned @ structure.radials[j].matrix)
 
 
 def _pinched(limits: Array) -> bool:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Numbers
 from loadshare.contact.arc import rolled
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
-
-Rows = NDArray[np.intp]
 
 
-def pick(array: Array, rows: Rows) -> Array:
+def pick(array: Array, rows: Numbers) -> Array:
     """Return the rows of an array, or its only one."""
     return array[rows] if len(array) > 1 else array
 
@@ -32,7 +29,7 @@ def piece(axis: Array, values: Array, where: Array) -> tuple[Array, Array, Array
     return x0, y0, (values[(*at, k + 1)] - y0) / (axis[(*at, k + 1)] - x0)
 
 
-def arc_at(loading: Loading, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
+def arc_at(loading: Loading, a: int, rows: Numbers, x: Array) -> tuple[Array, Array]:
     """Normal (k, 3) and margin (k,) of an arc at the coordinates x (k, n); see `Arc`."""
     nominal = loading.nominal[a]
     moved = pick(loading.shift, rows)[:, a] + x @ loading.relative[a].T

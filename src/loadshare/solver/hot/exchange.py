@@ -10,19 +10,17 @@ from dataclasses import dataclass
 from itertools import pairwise, permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.elements import pick
 from loadshare.solver.hot.iterate import Iterate
 
-States = NDArray[np.int8]
 Engine = Callable[
-    [Structure, Loading, States, Sequence[NDArray[np.intp]], Iterate, NDArray[np.bool_]],
+    [Structure, Loading, States, Sequence[Numbers], Iterate, Flags],
     tuple[States, States],
 ]
 
@@ -47,12 +45,12 @@ class Found:
         Whether the set leaves no coordinate loose.
     """
 
-    solved: NDArray[np.bool_]
+    solved: Flags
     states: States
-    turns: NDArray[np.intp]
-    held: NDArray[np.bool_]
+    turns: Numbers
+    held: Flags
 
-    def put(self, rows: NDArray[np.intp], other: Found) -> None:
+    def put(self, rows: Numbers, other: Found) -> None:
         """Let some samples be as those of another finding, in its order; turns add up."""
         self.solved[rows] = other.solved
         self.states[rows] = other.states
@@ -181,7 +179,7 @@ def exchange(
     return Found(solved, states[:, :switches], turns, held)
 
 
-def _alike(states: States) -> tuple[NDArray[np.intp], list[int]]:
+def _alike(states: States) -> tuple[Numbers, list[int]]:
     """Order in which equal sets, given in whole words, stand together, and where each begins.
 
     Should two sets have one key, a sample is solved on the other one: what it finds there is

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
 
@@ -37,23 +36,23 @@ class Iterate:
     force: Array
     root: Array
     floor: Array
-    stays: NDArray[np.bool_]
+    stays: Flags
 
-    def take(self, rows: NDArray[np.intp]) -> Iterate:
+    def take(self, rows: Numbers) -> Iterate:
         """Return some of the samples, as a copy."""
         return Iterate(*(getattr(self, field.name)[rows] for field in fields(self)))
 
-    def put(self, rows: NDArray[np.intp], other: Iterate) -> None:
+    def put(self, rows: Numbers, other: Iterate) -> None:
         """Let some samples be as those of another iterate are, in its order."""
         for field in fields(self):
             getattr(self, field.name)[rows] = getattr(other, field.name)
 
     def begin(
         self,
-        samples: NDArray[np.intp] | slice,
+        samples: Numbers | slice,
         share: Array,
         loading: Loading,
-        which: NDArray[np.intp] | None = None,
+        which: Numbers | None = None,
     ) -> None:
         """Take the laws of some samples first at forces in shares of the load.
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare import compilation
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array, Numbers
 
 compiled = compilation.jit(nogil=True, error_model="numpy")
 
@@ -16,8 +15,8 @@ compiled = compilation.jit(nogil=True, error_model="numpy")
 class Rows(NamedTuple):
     """Entries of a matrix that are not zero, row by row."""
 
-    start: NDArray[np.intp]
-    at: NDArray[np.intp]
+    start: Numbers
+    at: Numbers
     value: Array
 
 

@@ -19,15 +19,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loadshare.array_types import Flags
+from loadshare.array_types import Array, Flags, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import HOT, SEARCH
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.elements import arc_at
-from loadshare.solver.hot.exchange import Found, States, exchange, first_sets
+from loadshare.solver.hot.exchange import Found, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest
 from loadshare.solver.hot.radials import beyond
 from loadshare.solver.hot.softened import Laws

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Flags
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array, Flags, States
 from loadshare.settings import HOT
 from loadshare.solver.hot import contact_states as at
 
-States = NDArray[np.int8]
 _BOTH = np.eye(2)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import EXCHANGE
 
 

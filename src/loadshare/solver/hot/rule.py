@@ -14,14 +14,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Numbers, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.settings import RULE
-from loadshare.solver.hot.exchange import States
-
-Rows = NDArray[np.intp]
 
 
 class Part(NamedTuple):
@@ -37,7 +33,7 @@ class Part(NamedTuple):
     """
 
     name: str
-    used: Rows | None
+    used: Numbers | None
     weights: Array
 
 
@@ -59,7 +55,7 @@ class Rule:
     constant: Array
     parts: Sequence[Part] = ()
 
-    def named(self, loading: Loading) -> Rows:
+    def named(self, loading: Loading) -> Numbers:
         """Return the number of the set, one of `states`, on which each of S samples is to begin."""
         if not self.parts:
             return np.zeros(loading.count, dtype=np.intp)
@@ -73,7 +69,7 @@ class Rule:
         return np.asarray(fit.argmax(axis=1))
 
 
-def samples_to_learn(count: int) -> Rows:
+def samples_to_learn(count: int) -> Numbers:
     """Return numbers of the samples, of so many, from which a rule is learnt; none of few.
 
     Spread evenly over all of them, and over those of each position (multiples of the golden ratio).
@@ -122,7 +118,7 @@ def rule_of(loading: Loading, states: States, share: Array) -> Rule:
     return Rule(met, shares, constant, parts)
 
 
-def _learnt(numbers: Array, states: States, met: States, which: Rows) -> tuple[Array, Array]:
+def _learnt(numbers: Array, states: States, met: States, which: Numbers) -> tuple[Array, Array]:
     """Learn weights of numbers (T, N), and constants, that are largest for the set of a sample.
 
     Parameters
@@ -166,7 +162,7 @@ def _least_squares(numbers: Array, wanted: Array) -> tuple[Array, Array]:
     return weights, wanted.mean(axis=0) - mean @ weights
 
 
-def _discriminant(values: Array, which: Rows, sets: int) -> tuple[Array, Array]:
+def _discriminant(values: Array, which: Numbers, sets: int) -> tuple[Array, Array]:
     """Weights of values (T, V), and constants, that tell to which set these most likely belong.
 
     The values of every set are taken as normal, all with one spread.
@@ -182,7 +178,7 @@ def _discriminant(values: Array, which: Rows, sets: int) -> tuple[Array, Array]:
     return weights, np.log(times) - 0.5 * (means.T * weights).sum(axis=0)
 
 
-def _varying(loading: Loading) -> dict[str, tuple[Array, Rows]]:
+def _varying(loading: Loading) -> dict[str, tuple[Array, Numbers]]:
     """What varies among samples: arrays by name, as tables (T, numbers), and columns that do."""
     found = {}
     for name in ("load", "gap", "bending", "hertz", "shift", "clearance", "radial"):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.law import roots
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.solver.hot import contact_states as at
 

@@ -6,18 +6,17 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare import compilation
+from loadshare.array_types import Array, Flags, Numbers, States
+from loadshare.numbering import numbered
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES
 from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.products import Rows, rows_of
 
-States = NDArray[np.int8]
 _how = {"nogil": True, "error_model": "numpy", "_nrt": False}
 compiled = compilation.jit(**_how)
 inlined = compilation.within(forceinline=True, **_how)
@@ -72,7 +71,7 @@ class Touching:
         loading: Loading,
         iterate: Iterate,
         states: States,
-        held: NDArray[np.bool_],
+        held: Flags,
         least: Array,
     ) -> None:
         self._of = structure.cache.get(("touching",)) or structure.remember(
@@ -87,15 +86,8 @@ class Touching:
                 structure.columns.radials.start,
             ),
         )
-        figures = (
-            iterate.x,
-            iterate.force,
-            least,
-            loading.gap,
-            loading.shift,
-            loading.clearance,
-            loading.radial,
-        )
+        varying = (getattr(loading, name) for name in Figures._fields[3:])
+        figures = (iterate.x, iterate.force, least, *varying)
         self._here = Figures(*(np.require(array, np.float64, ["C"]) for array in figures))
         count = len(states)
         self.number, first = np.empty((2, count), dtype=np.intp)
@@ -107,7 +99,7 @@ class Touching:
         )
         self.sets = self._carries[first[:sets]]
 
-    def met(self, sets: Sequence[Sequence[int]]) -> NDArray[np.intp]:
+    def met(self, sets: Sequence[Sequence[int]]) -> Numbers:
         """How many elements every sample touches, (S,), of those wanted of its set.
 
         Elements are flanks and stops, then arcs, then radial elements.
@@ -135,8 +127,8 @@ def _number_all(of, here, states, held, number, carries, first, key):  # type: i
             certain &= states[s, contacts + j] == 0 or carries[s, contacts + j] == HELD
         number[s] = -1
         if not certain:
-            number[s], count = _numbered(s, carries, first, key, count, last)
-            last = number[s]
+            count, last = numbered(s, carries, first, key, count, last)
+            number[s] = last
     return count
 
 
@@ -227,26 +219,3 @@ def _margin(of, here, s, a):  # type: ignore[no-untyped-def]
     else:
         margin = along / distance
     return margin + here.clearance[_row(here.clearance, s), a]
-
-
-@inlined
-def _numbered(s, carries, first, key, count, last):  # type: ignore[no-untyped-def]
-    """Number of the set that carries, and how many sets there are."""
-    own = np.uint64(0)
-    for k in range(carries.shape[1]):
-        own = own * np.uint64(6364136223846793005) + np.uint64(1 + carries[s, k])
-    if last < count and key[last] == own and _same(carries, s, first[last]):
-        return last, count
-    for k in range(count):
-        if key[k] == own and _same(carries, s, first[k]):
-            return k, count
-    first[count], key[count] = s, own
-    return count, count + 1
-
-
-@inlined
-def _same(carries, one, other):  # type: ignore[no-untyped-def]
-    same = True
-    for k in range(carries.shape[1]):
-        same &= carries[one, k] == carries[other, k]
-    return same

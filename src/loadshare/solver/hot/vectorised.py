@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Flags
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.contact.law import roots
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
-from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
 from loadshare.solver.hot import contact_states as at
@@ -20,15 +17,12 @@ from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.radials import Block, beyond, block, misplaced, until
 from loadshare.solver.hot.rest import rest
 
-Rows = NDArray[np.intp]
-States = NDArray[np.int8]
-
 
 def settle(
     structure: Structure,
     loading: Loading,
     sets: States,
-    parts: Sequence[Rows],
+    parts: Sequence[Numbers],
     iterate: Iterate,
     one_only: Flags,
 ) -> tuple[States, States]:
@@ -53,50 +47,41 @@ def settle(
     proposal : ndarray of int8, shape (k, switches)
         Set to try next.
     """
-    found = [
-        _settle_set(structure, loading, structure.basis(states), states, rows, iterate, one_only)
-        for states, rows in zip(sets, parts, strict=True)
-    ]
+    with np.errstate(all="ignore"):
+        found = [
+            _settle_set(_Passes(structure, loading, states, rows, iterate), iterate, one_only[rows])
+            for states, rows in zip(sets, parts, strict=True)
+        ]
     verdicts, proposals = zip(*found, strict=True)
     return np.concatenate(verdicts), np.concatenate(proposals)
 
 
-def _settle_set(
-    structure: Structure,
-    loading: Loading,
-    basis: Basis,
-    states: States,
-    rows: Rows,
-    iterate: Iterate,
-    one_only: Flags,
-) -> tuple[States, States]:
+def _settle_set(passes: _Passes, iterate: Iterate, single: Flags) -> tuple[States, States]:
     """Solve samples on one set and say what has the wrong sign."""
-    with np.errstate(all="ignore"):
-        passes = _Passes(structure, loading, basis, states, rows, iterate)
-        drift = passes.drift()
-        drifting = (drift != 0.0).any(axis=1)
-        passes.run(one_only[rows] | drifting)
-        start = iterate.x[rows]
-        far = iterate.stays[rows] & (size_of(passes.x - start) > HOT.far * (1.0 + size_of(start)))
-        if far.any():
-            # What all but nothing resists has run away from where it began.
-            drift[far], drifting = (passes.x - start)[far], drifting | far
-            passes.x[far] = start[far]
-        wrong, moved = passes.wrong(HOT.sign)
-        staying = iterate.stays[rows] & wrong.any(axis=1)
-        if staying.any():
-            wrong, moved = passes.left_in_place(iterate.x[rows], staying, wrong, moved)
-        gross = passes.gross.any(axis=1)
-        wrong[gross] = passes.gross[gross]
-        moved[gross] = passes.gross_to[gross]
-        if drifting.any():
-            # Only what stops the drift is of interest.
-            stopping, other = passes.stopped_by(drift)
-            wrong[drifting], moved[drifting] = stopping[drifting], other[drifting]
-            passes.settled &= ~drifting
-            passes.refused &= ~drifting
-    single = one_only[rows]
-    if basis.loose.shape[1]:
+    rows, states = passes.rows, passes.states
+    drift = passes.drift()
+    drifting = (drift != 0.0).any(axis=1)
+    passes.run(single | drifting)
+    start = iterate.x[rows]
+    far = iterate.stays[rows] & (size_of(passes.x - start) > HOT.far * (1.0 + size_of(start)))
+    if far.any():
+        # What all but nothing resists has run away from where it began.
+        drift[far], drifting = (passes.x - start)[far], drifting | far
+        passes.x[far] = start[far]
+    wrong, moved = passes.wrong(HOT.sign)
+    staying = iterate.stays[rows] & wrong.any(axis=1)
+    if staying.any():
+        wrong, moved = passes.left_in_place(iterate.x[rows], staying, wrong, moved)
+    gross = passes.gross.any(axis=1)
+    wrong[gross] = passes.gross[gross]
+    moved[gross] = passes.gross_to[gross]
+    if drifting.any():
+        # Only what stops the drift is of interest.
+        stopping, other = passes.stopped_by(drift)
+        wrong[drifting], moved[drifting] = stopping[drifting], other[drifting]
+        passes.settled &= ~drifting
+        passes.refused &= ~drifting
+    if passes.basis.loose.shape[1]:
         for k in np.flatnonzero(single & passes.settled & wrong.any(axis=1)).tolist():
             wrong[k] &= not passes.rests(k, wrong[k])
     passes.store(iterate)
@@ -135,13 +120,12 @@ class _Passes:
         self,
         structure: Structure,
         loading: Loading,
-        basis: Basis,
         states: States,
-        rows: Rows,
+        rows: Numbers,
         iterate: Iterate,
     ) -> None:
-        self.structure, self.loading, self.basis = structure, loading, basis
-        self.states, self.rows = states, rows
+        self.structure, self.loading, self.basis = structure, loading, structure.basis(states)
+        self.states, self.rows, basis = states, rows, self.basis
         columns, count = basis.columns, len(rows)
         shape = (count, len(columns))
         self.load = np.broadcast_to(pick(loading.load, rows), (count, structure.size))
@@ -394,8 +378,7 @@ class _Passes:
         return found
 
     def _offset(self, j: int, x: Array | None = None) -> Array:
-        column = self.structure.radial_column(j)
-        matrix = self.structure.vectors[column : column + 2]
+        column, matrix = self.structure.radial_column(j), self.structure.radials[j].matrix
         centre = pick(self.loading.gap, self.rows)[:, column : column + 2]
         return np.asarray((self.x if x is None else x) @ matrix.T - centre)
 
@@ -499,10 +482,9 @@ class _Passes:
         states[:, : structure.rows] = at.CLOSED
         ends = [way]
         for j in range(structure.switches - structure.rows):
-            column = structure.radial_column(j)
             offset = self._offset(j)
             law = self._graph(j, offset)
-            velocity = drift @ structure.vectors[column : column + 2].T
+            velocity = drift @ structure.radials[j].matrix.T
             reached = until(offset, velocity, law.reach, fast[:, 0])
             free = self.states[structure.rows + j] == at.OPEN
             ends.append(np.where(free, reached, np.inf)[:, None])
@@ -547,8 +529,7 @@ class _Passes:
             vectors[row], room[row] = (-normal @ self.loading.relative[a])[0], margin[0]
         discs = []
         for j in np.flatnonzero(self.states[rows:] == at.OPEN).tolist():
-            column = structure.radial_column(j)
-            matrix = structure.vectors[column : column + 2] @ loose
+            matrix = structure.radials[j].matrix @ loose
             offset = self._offset(j)
             # A wall that is a power begins at the clearance, not where its tangent from here does.
             reach = float(self._graph(j, np.zeros_like(offset)).reach[k])
@@ -580,7 +561,7 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
     matrix : ndarray, shape (k, n, n)
     sides : ndarray, shape (k, n)
     size : int
-        Rows of the positive semidefinite part; the rest are constraints.
+        Numbers of the positive semidefinite part; the rest are constraints.
     """
     if not matrix.shape[1]:
         return sides

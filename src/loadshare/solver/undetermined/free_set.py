@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.problem import ArcRow, of_unit_norm
-from loadshare.contact.programme import Array
 from loadshare.contact.radial import RadialLaw
 from loadshare.scene.scene import GearRadial, Scene
 from loadshare.scene.statics import unresisted

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.contact.programme import Array
+from loadshare.array_types import Array
 from loadshare.scene.scene import Scene
 
 

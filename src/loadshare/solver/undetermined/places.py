@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.problem import Row
-from loadshare.contact.programme import Array
 from loadshare.later import Later
 from loadshare.scene.scene import Scene
 from loadshare.settings import PLACES

@@ -14,13 +14,11 @@ from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.contact.programme import Array
+from loadshare.array_types import Array, Numbers
+from loadshare.contact.backends.clarabel_ import settings_of
 from loadshare.scene.statics import unresisted
 from loadshare.settings import PLACES
-
-Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,10 +86,7 @@ class Region:
             rows += [np.zeros((1, self.size)), -disc.matrix]
             bounds += [np.array([disc.radius]), -disc.centre]
             cones.append(clarabel.SecondOrderConeT(3))
-        settings = clarabel.DefaultSettings()
-        settings.verbose = False
-        settings.presolve_enable = False
-        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = PLACES.cone
+        settings = settings_of(PLACES.cone)
         return csc_matrix(np.vstack(rows)), np.concatenate(bounds), cones, settings
 
     def beyond(self, u: Array) -> float:
@@ -160,7 +155,7 @@ class Region:
 
     def _reached(
         self, u: Array, slope: Array, limits: Array, discs: Array
-    ) -> Iterator[tuple[Indices, Indices]]:
+    ) -> Iterator[tuple[Numbers, Numbers]]:
         """Yield which bounds an optimum near u may reach, by their pushes, rows and discs."""
         slack = self.bounds - self.limits @ u
         gap = np.array([-disc.beyond(u) for disc in self.discs])
@@ -170,8 +165,8 @@ class Region:
         yield np.flatnonzero(slack < PLACES.almost), np.flatnonzero(gap < PLACES.almost)
 
     def _holding(
-        self, u: Array, pulled: Array, rows: Indices, rounds: Indices
-    ) -> tuple[Indices, Indices]:
+        self, u: Array, pulled: Array, rows: Numbers, rounds: Numbers
+    ) -> tuple[Numbers, Numbers]:
         """Of some bounds, those that hold a pull (d,) at u, and no more than it takes."""
         from scipy.optimize import nnls
 
@@ -184,8 +179,8 @@ class Region:
         u: Array,
         curvature: float,
         slope: Array,
-        rows: Indices,
-        rounds: Indices,
+        rows: Numbers,
+        rounds: Numbers,
     ) -> Array | None:
         """Newton's method on bounds that are reached; None if others are."""
         faces, discs = self.limits[rows], [self.discs[j] for j in rounds.tolist()]

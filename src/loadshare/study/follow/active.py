@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.contact.radial import Part, nearest
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import FOLLOW
 from loadshare.study.follow.equations import Equations, free_moves, scaling
 from loadshare.study.follow.numbers import Numbers

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import FOLLOW
 from loadshare.study.follow.active import WorkingSet
 from loadshare.study.follow.line import Missing

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.contact.arc import rolled
 from loadshare.contact.law import roots
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at

@@ -10,10 +10,10 @@ from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised

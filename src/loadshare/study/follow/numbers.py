@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.scene.loading import loading_of
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure, structure_of
 from loadshare.train import Train
 from loadshare.train.gear import Gear

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import FOLLOW
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.line import Line

@@ -14,8 +14,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.errors import Refused
-from loadshare.scene.scene import Array
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import States, WorkingSet, read_pieces

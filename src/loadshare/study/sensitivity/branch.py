@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.scene.structure import Structure, structure_of
 from loadshare.settings import EPS, SENSITIVITY
 from loadshare.solver.hot import contact_states as at

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job.answer import Answer
 from loadshare.results.share import carries, flank_torques, largest_of
-from loadshare.scene.scene import Array
 from loadshare.settings import SENSITIVITY
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import Setting

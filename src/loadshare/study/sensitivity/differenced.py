@@ -10,8 +10,8 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.errors import CaseError, Refused
-from loadshare.scene.scene import Array
 from loadshare.settings import SENSITIVITY
 from loadshare.study.sensitivity.variation import Variation, torques_of
 from loadshare.train import Train

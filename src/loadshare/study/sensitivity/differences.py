@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.errors import CaseError
-from loadshare.scene.scene import Array
 from loadshare.settings import EPS, SENSITIVITY
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import BranchLost

@@ -21,8 +21,8 @@ from typing import Protocol
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.errors import CaseError, Refused
-from loadshare.scene.scene import Array
 from loadshare.settings import EPS, SENSITIVITY
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import WorkingSet, read_pieces, switch_names

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import EPS, SENSITIVITY
 from loadshare.study.sensitivity.branch import Branch, Gauge
 from loadshare.study.sensitivity.differences import Slope

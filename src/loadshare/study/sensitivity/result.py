@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal
 
+from loadshare.array_types import Array
 from loadshare.pictures import picture
-from loadshare.scene.scene import Array
 from loadshare.study.parameter import Value
 from loadshare.view import View, Viewed, listed
 

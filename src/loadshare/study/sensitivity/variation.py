@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.results.share import flank_torques
-from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import SENSITIVITY
 from loadshare.study.follow.active import WorkingSet

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.statistics import Estimate
 

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import JOB, TOLERANCE
 from loadshare.study.tolerance.inputs import Inputs
 

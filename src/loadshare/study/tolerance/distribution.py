@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.case.study import NUMBERS, Spread
-from loadshare.scene.scene import Array
 from loadshare.settings import TOLERANCE
 from loadshare.study.parameter import Value, read_value
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.job.block import Block
 from loadshare.job.many import solve_blocks
 from loadshare.results.share import mesh_torques, shares
-from loadshare.scene.scene import Array
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import DrumRing

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.case import Case, Study
 from loadshare.case.iso1328 import tolerances_of
 from loadshare.case.keys import dotted, parse, with_unit
 from loadshare.case.study import CLASS, Group, Spread
 from loadshare.errors import CaseError, Problem
-from loadshare.scene.scene import Array
 from loadshare.settings import TOLERANCE
 from loadshare.study.parameter import matches, split_outside
 from loadshare.study.tolerance.distribution import (

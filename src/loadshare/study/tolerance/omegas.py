@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.result import OmegaStatistics

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.case.words import as_given
 from loadshare.errors import Problem, ResultError
-from loadshare.scene.scene import Array
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.folder import Folder, read_part
 from loadshare.study.tolerance.job import Job, Part

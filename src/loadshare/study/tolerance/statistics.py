@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array
 from loadshare.settings import TOLERANCE
 
 ROUND_OFF = 1e-12

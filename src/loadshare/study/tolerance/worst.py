@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.errors import CaseError, Problem, Refused, ResultError
 from loadshare.job import solve
-from loadshare.scene.scene import Array
 from loadshare.settings import JOB, TOLERANCE
 from loadshare.study.tolerance.figures import KINDS, SYSTEM, Solver
 from loadshare.study.tolerance.inputs import Inputs

@@ -20,6 +20,7 @@ from loadshare.certify.bound.kernel.lengths import put_gaps, put_lengths, put_li
 from loadshare.certify.bound.kernel.options import compiled, inlined, within
 from loadshare.certify.bound.kernel.residuals import put_displaced, put_worst
 from loadshare.extremes import larger, smaller
+from loadshare.numbering import numbered
 from loadshare.settings import BOUND, CERTIFY
 
 # As numbers among others, which a processor compares side by side.
@@ -56,7 +57,7 @@ def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-de
         before = count
         for v in range(width):
             put_pulls(of, here, claim, first + v, work, v, found)
-            count, last = _numbered(first + v, found.acts, sets, count, last)
+            count, last = numbered(first + v, found.acts, sets.first, sets.key, count, last)
             found.number[first + v] = last
             for q in range(len(of.pull_gear)):
                 at, soft = len(of.twin) + len(of.spring) + q, work.stiffest[q, v]
@@ -187,28 +188,3 @@ def _hold_both_ways(work, c, other, v):  # type: ignore[no-untyped-def]
     second = work.claimed[c, v] >= work.claimed[other, v]
     idle, held = (other, c) if second else (c, other)
     work.acts[idle, v], work.gap[idle, v], work.acts[held, v] = OPEN, np.inf, CLOSED
-
-
-@inlined
-def _numbered(s, acts, sets, count, last):  # type: ignore[no-untyped-def]
-    """Number what acts; returns how many sets there are, and the number, −1 if there are more."""
-    if last >= 0 and count > 0 and _same(acts, s, sets.first[last]):
-        return count, last
-    key = np.uint64(0)
-    for c in range(acts.shape[1]):
-        key = key * np.uint64(6364136223846793005) + np.uint64(1 + acts[s, c])
-    for k in range(count):
-        if sets.key[k] == key and _same(acts, s, sets.first[k]):
-            return count, k
-    if count == len(sets.first):
-        return count, -1
-    sets.first[count], sets.key[count] = s, key
-    return count + 1, count
-
-
-@inlined
-def _same(acts, one, other):  # type: ignore[no-untyped-def]
-    same = True
-    for c in range(acts.shape[1]):
-        same &= acts[one, c] == acts[other, c]
-    return same

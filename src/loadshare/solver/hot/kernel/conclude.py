@@ -6,10 +6,10 @@ import numpy as np
 
 from loadshare.settings import ABREAST, HOT
 from loadshare.solver.hot.contact_states import DONE, OTHER
+from loadshare.solver.hot.kernel import work as at
 from loadshare.solver.hot.kernel.options import bare
 from loadshare.solver.hot.kernel.signs import look_at_radials, look_at_rows, propose, stopped
 from loadshare.solver.hot.kernel.sums import add_product, clear
-from loadshare.solver.hot.kernel.work import BAND, DRIFTS, GIVEN_UP, MOVED, STATICS, STILL, TOTAL
 
 
 @bare
@@ -22,7 +22,7 @@ def conclude(s, work, given, count, width):  # type: ignore[no-untyped-def]
     look_at_rows(s, work, width)
     look_at_radials(s, work, width)
     for m in range(count):
-        i, row, sign = work.samples[m], work.at_row[m], work.each[BAND, m]
+        i, row, sign = work.samples[m], work.at_row[m], work.each[at.BAND, m]
         if sign == 0.0 and work.live[m] == 0.0:
             continue
         for d in range(work.x.shape[0]):
@@ -30,7 +30,7 @@ def conclude(s, work, given, count, width):  # type: ignore[no-untyped-def]
         for column in range(forces.shape[1]):
             forces[i, column] = 0.0
         for e in range(springs):
-            forces[i, s.springs[e]] = work.spring[STATICS, e, m]
+            forces[i, s.springs[e]] = work.spring[at.STATICS, e, m]
         for e in range(s.contacts.shape[0]):
             forces[i, s.contacts[e]] = force[e, m]
         for p in range(s.powers):
@@ -39,10 +39,10 @@ def conclude(s, work, given, count, width):  # type: ignore[no-untyped-def]
             roots[i, s.contacts[s.first_row + s.powers + p]] = np.cbrt(work.reached[p, m])
         if work.live[m] > 0.0:
             continue
-        if sign == HOT.sign and work.mistakes[m] == 0 and work.each[DRIFTS, m] == 0.0:
+        if sign == HOT.sign and work.mistakes[m] == 0 and work.each[at.DRIFTS, m] == 0.0:
             verdict[row] = DONE
             continue
-        if sign == HOT.gross and work.mistakes[m] == 0 and work.each[GIVEN_UP, m] > 0.0:
+        if sign == HOT.gross and work.mistakes[m] == 0 and work.each[at.GIVEN_UP, m] > 0.0:
             continue
         verdict[row] = OTHER
         if sign > HOT.sign and work.mistakes[m] == 0:
@@ -51,7 +51,7 @@ def conclude(s, work, given, count, width):  # type: ignore[no-untyped-def]
                 if force[s.first_row + p, m] <= 0.0:
                     work.wrong[s.switches[p], m] = True
         propose(s.states, work.wrong, work.better, m, given.one_only[i], proposal[row])
-        if work.each[DRIFTS, m] > 0.0:
+        if work.each[at.DRIFTS, m] > 0.0:
             # Only what stops the drift is of interest.
             verdict[row] = stopped(s, work, m, width, proposal[row], xs[i])
 
@@ -59,7 +59,7 @@ def conclude(s, work, given, count, width):  # type: ignore[no-untyped-def]
 @bare
 def _refine(s, work, width):  # type: ignore[no-untyped-def]
     """Forces of the springs and coordinates; sets that compatibility does not close are left."""
-    springs, total, moved = s.springs.shape[0], work.spring[TOTAL], work.spring[MOVED]
+    springs, total, moved = s.springs.shape[0], work.spring[at.TOTAL], work.spring[at.MOVED]
     r, yielded, misfit = s.redundant.shape[1], work.one, work.two
     for m in range(width):
         yielded[m] = work.largest[m]
@@ -68,9 +68,9 @@ def _refine(s, work, width):  # type: ignore[no-untyped-def]
     add_product(total, s.redundant_springs, work.z, width)
     add_product(total, s.turned_springs, work.load, width)
     for e in range(springs):
-        held, compliance = work.spring[STATICS, e], s.compliances[e]
+        held, compliance = work.spring[at.STATICS, e], s.compliances[e]
         for m in range(width):
-            moved[e, m] = work.spring[STILL, e, m] + compliance * total[e, m]
+            moved[e, m] = work.spring[at.STILL, e, m] + compliance * total[e, m]
             held[m] += total[e, m]
             f = abs(held[m])
             y = compliance * f
@@ -86,9 +86,9 @@ def _refine(s, work, width):  # type: ignore[no-untyped-def]
             misfit[m] = misfit[m] if y <= misfit[m] else y
     for m in range(width):
         closed = misfit[m] <= ABREAST.closed_by * yielded[m] or yielded[m] == 0.0
-        if work.each[BAND, m] == HOT.sign and not closed:
+        if work.each[at.BAND, m] == HOT.sign and not closed:
             # What the matrix of the redundants was too stiff or too flat for.
-            work.each[BAND, m] = 0.0
+            work.each[at.BAND, m] = 0.0
     clear(work.x, width)
     add_product(work.x, s.particular_springs, moved, width)
     add_product(work.x, s.particular, work.stretch, width)

@@ -6,24 +6,11 @@ import numpy as np
 
 from loadshare.settings import ABREAST, HOT
 from loadshare.solver.hot.contact_states import STICK
+from loadshare.solver.hot.kernel import work as at
 from loadshare.solver.hot.kernel.laws import piece
 from loadshare.solver.hot.kernel.options import bare
 from loadshare.solver.hot.kernel.radials import renew_bound
 from loadshare.solver.hot.kernel.sums import add_product, approach, clear
-from loadshare.solver.hot.kernel.work import (
-    BAND,
-    BEYONDS,
-    DRIFTS,
-    EXTRA,
-    GIVEN_UP,
-    PATIENT,
-    PREVIOUS,
-    STATICS,
-    STILL,
-    TURN,
-    U,
-    V,
-)
 
 
 @bare
@@ -36,10 +23,14 @@ def fill(s, work, given, waiting, first, count, width):  # type: ignore[no-untyp
     for m in range(width):
         i = samples[m]
         work.floor[m] = given.floors[i]
-        work.each[PATIENT, m] = HOT.patience if given.one_only[i] else ABREAST.patience
+        work.each[at.PATIENT, m] = HOT.patience if given.one_only[i] else ABREAST.patience
         work.live[m], work.go[m] = 1.0 if m < count else 0.0, 1.0
-        work.each[BAND, m], work.each[DRIFTS, m], work.singular[m] = 0.0, 0.0, 0.0
-        work.each[PREVIOUS, m], work.each[TURN, m], work.each[GIVEN_UP, m] = np.inf, 0.0, 0.0
+        work.each[at.BAND, m], work.each[at.DRIFTS, m], work.singular[m] = 0.0, 0.0, 0.0
+        work.each[at.PREVIOUS, m], work.each[at.TURN, m], work.each[at.GIVEN_UP, m] = (
+            np.inf,
+            0.0,
+            0.0,
+        )
     _load(s, work, width)
     _statics(s, work, width)
     _laws(s, work, width, given.xs, given.forces, given.roots)
@@ -66,13 +57,13 @@ def _load(s, work, width):  # type: ignore[no-untyped-def]
             for k in range(s.loaded.shape[0]):
                 drift += s.loose[s.loaded[k], c] * weight[k, m]
             if abs(drift) > HOT.drift * push[m]:
-                work.each[DRIFTS, m] = 1.0
+                work.each[at.DRIFTS, m] = 1.0
 
 
 @bare
 def _statics(s, work, width):  # type: ignore[no-untyped-def]
     """Forces without redundants, gaps, and what is linear of the laws."""
-    samples, weight, statics = work.samples, work.weight, work.spring[STATICS]
+    samples, weight, statics = work.samples, work.weight, work.spring[at.STATICS]
     one_gap, one_bending = s.gap.shape[0] == 1, s.bending.shape[0] == 1
     for e in range(s.springs.shape[0]):
         for m in range(width):
@@ -86,7 +77,7 @@ def _statics(s, work, width):  # type: ignore[no-untyped-def]
         compliance, column = s.compliances[e], s.springs[e]
         for m in range(width):
             gap = s.gap[0 if one_gap else samples[m], column]
-            work.spring[STILL, e, m] = gap + compliance * statics[e, m]
+            work.spring[at.STILL, e, m] = gap + compliance * statics[e, m]
     for e in range(s.contacts.shape[0]):
         column = s.contacts[e]
         for m in range(width):
@@ -156,11 +147,11 @@ def _radials(s, work, width, xs, forces):  # type: ignore[no-untyped-def]
     for t in range(pairs):
         j = s.turning_radials[t]
         column = s.first_radial + 2 * j
-        approach(s, samples, column, work.x, width, work.radial[t, U])
-        approach(s, samples, column + 1, work.x, width, work.radial[t, V])
+        approach(s, samples, column, work.x, width, work.radial[t, at.U])
+        approach(s, samples, column + 1, work.x, width, work.radial[t, at.V])
         for m in range(width):
-            work.radial[t, EXTRA, m] = 0.0
-            work.radial[t, BEYONDS, m] = 0.0
+            work.radial[t, at.EXTRA, m] = 0.0
+            work.radial[t, at.BEYONDS, m] = 0.0
         renew_bound(s, work, t, width)
 
 
@@ -170,9 +161,9 @@ def _linear(s, work, width):  # type: ignore[no-untyped-def]
     renewed = s.first_row + s.powers + s.tables_of.shape[0]
     clear(work.z, width)
     clear(work.base, width)
-    add_product(work.base, s.across_springs, work.spring[STILL], width)
+    add_product(work.base, s.across_springs, work.spring[at.STILL], width)
     clear(work.still, width)
-    add_product(work.still, s.moved_springs, work.spring[STILL], width)
+    add_product(work.still, s.moved_springs, work.spring[at.STILL], width)
     if s.inverse.shape[0] > 0:
         return
     for entry in range(work.linear.shape[0]):

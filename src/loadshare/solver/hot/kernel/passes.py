@@ -5,25 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.settings import ABREAST, HOT
+from loadshare.solver.hot.kernel import work as at
 from loadshare.solver.hot.kernel.arcs import follow_arcs, turn_arcs
 from loadshare.solver.hot.kernel.laws import renew_laws, renew_tables
 from loadshare.solver.hot.kernel.options import bare
 from loadshare.solver.hot.kernel.radials import follow_radials, lengthen, turn_radials
 from loadshare.solver.hot.kernel.sums import add_product, solve
-from loadshare.solver.hot.kernel.work import (
-    BAND,
-    BEYONDS,
-    BOUND,
-    DRIFTS,
-    DU,
-    DV,
-    EXTRA,
-    GIVEN_UP,
-    INNER,
-    OUTER,
-    PATIENT,
-    PREVIOUS,
-)
 
 
 @bare
@@ -50,7 +37,7 @@ def _matrix(s, work, width):  # type: ignore[no-untyped-def]
         law = work.radial[t]
         excess = work.one
         for m in range(width):
-            excess[m] = law[INNER, m] - law[OUTER, m]
+            excess[m] = law[at.INNER, m] - law[at.OUTER, m]
         for c in range(r):
             for k in range(s.below_starts[c] - 1, s.below_starts[c + 1]):
                 d = s.below[k] if k >= s.below_starts[c] else c
@@ -62,8 +49,8 @@ def _matrix(s, work, width):  # type: ignore[no-untyped-def]
         if border >= 0:
             p, q = work.force[2 * t], work.force[2 * t + 1]
             for m in range(width):
-                held = law[DU, m] * p[m] + law[DV, m] * q[m]
-                work.right[r + border, m] = work.go[m] * (law[BOUND, m] - held)
+                held = law[at.DU, m] * p[m] + law[at.DV, m] * q[m]
+                work.right[r + border, m] = work.go[m] * (law[at.BOUND, m] - held)
             for c in range(r):
                 for m in range(width):
                     matrix[r + border, c, m] = work.along[t, c, m]
@@ -117,7 +104,7 @@ def _pass(s, work, width):  # type: ignore[no-untyped-def]
         for t in range(pairs):
             if s.borders[t] >= 0:
                 for m in range(width):
-                    work.radial[t, EXTRA, m] += work.right[r + s.borders[t], m]
+                    work.radial[t, at.EXTRA, m] += work.right[r + s.borders[t], m]
     for m in range(width):
         work.largest[m] = 0.0
         work.strongest[m] = 0.0
@@ -150,24 +137,24 @@ def _judge(s, work, law_misfit, number, one_only, width):  # type: ignore[no-unt
         if work.live[m] == 0.0:
             continue
         stalled = number > 2 and misfit[m] <= HOT.stalled
-        stalled = stalled and misfit[m] >= 0.5 * work.each[PREVIOUS, m]
+        stalled = stalled and misfit[m] >= 0.5 * work.each[at.PREVIOUS, m]
         settled = misfit[m] <= HOT.settled or stalled
-        work.each[PREVIOUS, m] = misfit[m]
+        work.each[at.PREVIOUS, m] = misfit[m]
         # A set that is clearly wrong need not be settled.
         pulled = law_misfit[m] <= HOT.nearly and not one_only[work.samples[m]]
-        wrong = work.each[DRIFTS, m] > 0.0 or work.weakest[m] < -HOT.gross * work.strongest[m]
+        wrong = work.each[at.DRIFTS, m] > 0.0 or work.weakest[m] < -HOT.gross * work.strongest[m]
         pulled = pulled and wrong
         # Forces without bound and what is not a number are left undecided.
         burst = not work.strongest[m] <= HOT.burst * (work.push[m] if work.push[m] > 0.0 else 1.0)
         outside = False
         for t in range(s.turning_radials.shape[0]):
-            outside = outside or work.radial[t, BEYONDS, m] >= HOT.outside
-        hopeless = outside or work.longest[m] >= work.each[PATIENT, m]
+            outside = outside or work.radial[t, at.BEYONDS, m] >= HOT.outside
+        hopeless = outside or work.longest[m] >= work.each[at.PATIENT, m]
         # Far outside of its level piece a slip may leave nothing that resists.
         undecided = (work.singular[m] > 0.0 and not outside) or (burst and not settled)
         if settled or pulled or undecided or hopeless:
             sign = HOT.sign if settled else (HOT.gross if pulled else np.inf)
-            work.each[BAND, m] = 0.0 if undecided else sign
+            work.each[at.BAND, m] = 0.0 if undecided else sign
             work.live[m], work.go[m] = 0.0, 1.0 if settled and not undecided else 0.0
             judged += 1
     return judged
@@ -211,5 +198,5 @@ def give_up(work, count):  # type: ignore[no-untyped-def]
     for m in range(count):
         if work.live[m] > 0.0:
             nearly = work.misfit[m] <= HOT.nearly * HOT.settled / HOT.law
-            work.live[m], work.each[BAND, m] = 0.0, HOT.gross if nearly else 0.0
-            work.go[m], work.each[GIVEN_UP, m] = 0.0, 1.0
+            work.live[m], work.each[at.BAND, m] = 0.0, HOT.gross if nearly else 0.0
+            work.go[m], work.each[at.GIVEN_UP, m] = 0.0, 1.0

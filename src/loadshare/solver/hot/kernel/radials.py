@@ -6,22 +6,8 @@ import numpy as np
 
 from loadshare.settings import ABREAST, HOT, LAWS
 from loadshare.solver.hot.contact_states import CORNER, SLIP, STOP, WALL
+from loadshare.solver.hot.kernel import work as at
 from loadshare.solver.hot.kernel.options import bare
-from loadshare.solver.hot.kernel.work import (
-    BEGIN,
-    BEYONDS,
-    BOUND,
-    DU,
-    DV,
-    EXTRA,
-    FIRST_END,
-    INNER,
-    LAST,
-    OUTER,
-    REACH,
-    U,
-    V,
-)
 
 
 @bare
@@ -66,11 +52,11 @@ def renew_bound(s, work, t, width):  # type: ignore[no-untyped-def]
     j = s.turning_radials[t]
     torque_of(s.follows[j], s.carried[j], work.force, width, work.one)
     for m in range(width):
-        u, v = work.radial[t, U, m], work.radial[t, V, m]
+        u, v = work.radial[t, at.U, m], work.radial[t, at.V, m]
         radius = np.sqrt(u * u + v * v)
         _, stick, bound, reach, last, _ = graph(s, work.samples[m], j, work.one[m], radius)
-        work.radial[t, FIRST_END, m], work.radial[t, BOUND, m] = stick, bound
-        work.radial[t, REACH, m], work.radial[t, LAST, m] = reach, last
+        work.radial[t, at.FIRST_END, m], work.radial[t, at.BOUND, m] = stick, bound
+        work.radial[t, at.REACH, m], work.radial[t, at.LAST, m] = reach, last
 
 
 @bare
@@ -85,13 +71,13 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
         # Where it yields by less than the play before it, a turn of the offset looks like a force.
         wall = status == STOP and s.radial[0, s.turning_radials[t], 0] == 0.0
         for m in range(width):
-            a, b = (p[m], q[m]) if by_force else (law[U, m], law[V, m])
-            other_a, other_b = (law[U, m], law[V, m]) if by_force else (p[m], q[m])
+            a, b = (p[m], q[m]) if by_force else (law[at.U, m], law[at.V, m])
+            other_a, other_b = (law[at.U, m], law[at.V, m]) if by_force else (p[m], q[m])
             square = a * a + b * b
             one[m] = np.sqrt(square)
             if wall:
                 pull = np.sqrt(other_a * other_a + other_b * other_b)
-                if 0.0 < pull < law[LAST, m] * law[REACH, m]:
+                if 0.0 < pull < law[at.LAST, m] * law[at.REACH, m]:
                     a, b, square = other_a, other_b, pull * pull
                     # Its sign tells that this is a force.
                     one[m] = -pull
@@ -99,37 +85,37 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
             square = a * a + b * b
             inverse = 1.0 / np.sqrt(square) if square > 0.0 else 0.0
             a = a * inverse if square > 0.0 else 1.0
-            law[DU, m] = a if work.go[m] > 0.0 else law[DU, m]
-            law[DV, m] = b * inverse if work.go[m] > 0.0 else law[DV, m]
+            law[at.DU, m] = a if work.go[m] > 0.0 else law[at.DU, m]
+            law[at.DV, m] = b * inverse if work.go[m] > 0.0 else law[at.DV, m]
             two[m] = work.push[m] if work.push[m] > 1e-300 else 1e-300
         for m in range(width):
-            size, push, reach, bound = one[m], two[m], law[REACH, m], law[BOUND, m]
+            size, push, reach, bound = one[m], two[m], law[at.REACH, m], law[at.BOUND, m]
             if by_force:
-                begin = law[FIRST_END, m] if status == CORNER else reach
+                begin = law[at.FIRST_END, m] if status == CORNER else reach
                 inner, outer = 0.0, begin / (size if size > 0.0 else push)
             elif status == SLIP:
                 begin = 0.0
-                outer = max(size, law[FIRST_END, m])
+                outer = max(size, law[at.FIRST_END, m])
                 outer = min(outer, reach) / max(bound, HOT.faint * push)
                 inner = min(outer, ABREAST.yields)
             else:
-                inner, reached = 1.0 / law[LAST, m], max(size, reach)
+                inner, reached = 1.0 / law[at.LAST, m], max(size, reach)
                 begin = reach - bound * inner
-                pull = bound + law[LAST, m] * (reached - reach)
+                pull = bound + law[at.LAST, m] * (reached - reach)
                 if size < 0.0:
                     pull, reached = -size, reach - size * inner
                 outer = reached / pull if pull > 0.0 else inner
             outer = min(outer, HOT.softest)
             going = work.go[m] > 0.0
-            law[INNER, m] = inner if going else law[INNER, m]
-            law[OUTER, m] = outer if going else law[OUTER, m]
-            law[BEGIN, m] = begin if going else law[BEGIN, m]
-            work.tangent[2 * t, m] = work.tangent[2 * t + 1, m] = law[OUTER, m]
+            law[at.INNER, m] = inner if going else law[at.INNER, m]
+            law[at.OUTER, m] = outer if going else law[at.OUTER, m]
+            law[at.BEGIN, m] = begin if going else law[at.BEGIN, m]
+            work.tangent[2 * t, m] = work.tangent[2 * t + 1, m] = law[at.OUTER, m]
         for c in range(s.redundant.shape[1]):
             here, there = s.redundant[2 * t, c], s.redundant[2 * t + 1, c]
             along = work.along[t, c]
             for m in range(width):
-                along[m] = law[DU, m] * here + law[DV, m] * there
+                along[m] = law[at.DU, m] * here + law[at.DV, m] * there
 
 
 @bare
@@ -139,9 +125,9 @@ def lengthen(radial, force, stretch, width):  # type: ignore[no-untyped-def]
         law = radial[t]
         p, q = force[2 * t], force[2 * t + 1]
         for m in range(width):
-            du, dv = law[DU, m], law[DV, m]
-            size = law[BEGIN, m] + law[EXTRA, m]
-            size += (law[INNER, m] - law[OUTER, m]) * (du * p[m] + dv * q[m])
+            du, dv = law[at.DU, m], law[at.DV, m]
+            size = law[at.BEGIN, m] + law[at.EXTRA, m]
+            size += (law[at.INNER, m] - law[at.OUTER, m]) * (du * p[m] + dv * q[m])
             stretch[2 * t, m] += size * du
             stretch[2 * t + 1, m] += size * dv
 
@@ -158,12 +144,12 @@ def follow_radials(s, work, misfit, width):  # type: ignore[no-untyped-def]
         law = work.radial[t]
         p, q = work.force[2 * t], work.force[2 * t + 1]
         for m in range(width):
-            law[U, m] = work.stretch[2 * t, m] - work.gap[2 * t, m]
-            law[V, m] = work.stretch[2 * t + 1, m] - work.gap[2 * t + 1, m]
+            law[at.U, m] = work.stretch[2 * t, m] - work.gap[2 * t, m]
+            law[at.V, m] = work.stretch[2 * t + 1, m] - work.gap[2 * t + 1, m]
         if s.follows[j] or s.radial[0, j, 6] != 1.0:
             renew_bound(s, work, t, width)
         for m in range(width):
-            u, v = law[U, m], law[V, m]
+            u, v = law[at.U, m], law[at.V, m]
             radius, size = np.sqrt(u * u + v * v), np.sqrt(p[m] * p[m] + q[m] * q[m])
             scale = work.largest[m] if work.largest[m] > radius else radius
             scale = scale if scale > 0.0 else 1.0
@@ -171,18 +157,18 @@ def follow_radials(s, work, misfit, width):  # type: ignore[no-untyped-def]
             product, across = u * p[m] + v * q[m], abs(u * q[m] - v * p[m])
             over_radius = 1.0 / radius if radius > 0.0 else 0.0
             over_size = 1.0 / size if size > 0.0 else 0.0
-            bound = law[BOUND, m]
+            bound = law[at.BOUND, m]
             if status == SLIP:
                 gone = abs(product * over_radius - bound) / strongest
                 more = across / (bound if bound > HOT.faint * strongest else strongest) / scale
-                left = radius > HOT.beyond * law[REACH, m] or bound <= HOT.sign * work.push[m]
-                law[BEYONDS, m] = law[BEYONDS, m] + 1.0 if left else 0.0
+                left = radius > HOT.beyond * law[at.REACH, m] or bound <= HOT.sign * work.push[m]
+                law[at.BEYONDS, m] = law[at.BEYONDS, m] + 1.0 if left else 0.0
             elif status == STOP:
-                gone = law[REACH, m] + (product * over_radius - bound) / law[LAST, m] - radius
+                gone = law[at.REACH, m] + (product * over_radius - bound) / law[at.LAST, m] - radius
                 gone = abs(gone) / scale
-                more = across * over_radius * law[OUTER, m] / scale
+                more = across * over_radius * law[at.OUTER, m] / scale
             else:
-                limit = law[FIRST_END, m] if status == CORNER else law[REACH, m]
+                limit = law[at.FIRST_END, m] if status == CORNER else law[at.REACH, m]
                 gone = abs(product * over_size - limit) / scale
                 more = across * over_size / scale
             gone = (gone if gone > more else more) * (HOT.settled / HOT.law)

@@ -13,11 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.scene.statics import Basis
 from loadshare.settings import STATICS
-
-Rows = NDArray[np.intp]
 
 
 class Factor(NamedTuple):
@@ -28,15 +26,15 @@ class Factor(NamedTuple):
     starts : ndarray of int, shape (r + 1,)
         Where the rows of each column begin.
     below : ndarray of int
-        Rows below the diagonal, column by column.
+        Numbers below the diagonal, column by column.
     rows, columns : ndarray of int
         All entries, each column from its diagonal on, without borders.
     """
 
-    starts: Rows
-    below: Rows
-    rows: Rows
-    columns: Rows
+    starts: Numbers
+    below: Numbers
+    rows: Numbers
+    columns: Numbers
 
 
 def local(basis: Basis) -> tuple[Array, Array]:
@@ -87,7 +85,7 @@ def _chained(redundant: Array) -> Array:
     return redundant
 
 
-def _coupled(redundant: Array) -> NDArray[np.bool_]:
+def _coupled(redundant: Array) -> Flags:
     """Which redundants act in one element, (r, r)."""
     acts = (redundant != 0.0).astype(float)
     return np.asarray(acts.T @ acts > 0.0)
@@ -104,7 +102,7 @@ def eliminated(redundant: Array, turned: Array, borders: int) -> tuple[Array, Fa
     turned : ndarray, shape (2 t, r)
         Those of radial elements that turn, whose two columns act together.
     borders : int
-        Rows that are added below, full.
+        Numbers that are added below, full.
     """
     r = redundant.shape[1]
     coupled = _coupled(redundant) | _coupled(np.abs(turned[::2]) + np.abs(turned[1::2]))
@@ -136,7 +134,7 @@ def _factor(below: Sequence[Sequence[int]], borders: int) -> Factor:
     return Factor(starts, np.array([*chain.from_iterable(all_below)], np.intp), rows, columns)
 
 
-def _bits_of(flags: NDArray[np.bool_]) -> int:
+def _bits_of(flags: Flags) -> int:
     return int.from_bytes(np.packbits(flags, bitorder="little").tobytes(), "little")
 
 

@@ -14,24 +14,22 @@ from __future__ import annotations
 from typing import NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.scene.loading import Loading
-from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.solver.hot.contact_states import OPEN, PINNED, SLIP, STICK
 from loadshare.solver.hot.kernel.options import allocating
-from loadshare.solver.hot.kernel.redundants import Rows, eliminated, full, local
-
-States = NDArray[np.int8]
+from loadshare.solver.hot.kernel.redundants import eliminated, full, local
+from loadshare.solver.hot.products import Rows, rows_of
 
 
 class Samples(NamedTuple):
     """What differs from sample to sample, as in `Loading`."""
 
-    follows: NDArray[np.bool_]
-    loaded: Rows
+    follows: Flags
+    loaded: Numbers
     load: Array
     gap: Array
     bending: Array
@@ -75,26 +73,26 @@ class SetArrays(NamedTuple):
     entries: Array
     base: Array  # (acting arcs, n): rows of A
     carried: Array  # (j, c): torque that each radial element carries per force of the contacts
-    springs: Rows  # (s,): their columns
-    contacts: Rows  # (c,): columns of all others
-    switches: Rows  # (rows that act,): their numbers in the set
-    arc_contacts: Rows  # (acting arcs,)
-    arcs: Rows  # (acting arcs,): their numbers
-    turning: Rows  # (u,): coordinates that acting arcs know of
-    open_arcs: Rows  # numbers of the arcs that do not act
-    open_rows: Rows  # numbers of the other rows that do not act
-    starts: Rows  # CSR of A
-    coordinates: Rows
-    arc_starts: Rows  # coordinates that an arc knows of
-    arc_coordinates: Rows
-    radial_at: Rows  # (j,): first contact of each radial element, −1 where it does not act
-    turning_radials: Rows  # (t,): numbers of the radial elements whose direction turns
-    borders: Rows  # (t,): number of the border of each that slips, −1 for the others
-    tables_of: Rows  # numbers of the tables of the flanks that have one
-    below_starts: Rows  # (r and borders + 1,): where the rows of each column of the factor begin
-    below: Rows  # rows below the diagonal that are not zero, those of the borders last
-    product_starts: Rows  # where the products of each matrix entry begin
-    product_contacts: Rows  # the contact of each
+    springs: Numbers  # (s,): their columns
+    contacts: Numbers  # (c,): columns of all others
+    switches: Numbers  # (rows that act,): their numbers in the set
+    arc_contacts: Numbers  # (acting arcs,)
+    arcs: Numbers  # (acting arcs,): their numbers
+    turning: Numbers  # (u,): coordinates that acting arcs know of
+    open_arcs: Numbers  # numbers of the arcs that do not act
+    open_rows: Numbers  # numbers of the other rows that do not act
+    starts: Numbers  # CSR of A
+    coordinates: Numbers
+    arc_starts: Numbers  # coordinates that an arc knows of
+    arc_coordinates: Numbers
+    radial_at: Numbers  # (j,): first contact of each radial element, −1 where it does not act
+    turning_radials: Numbers  # (t,): numbers of the radial elements whose direction turns
+    borders: Numbers  # (t,): number of the border of each that slips, −1 for the others
+    tables_of: Numbers  # numbers of the tables of the flanks that have one
+    below_starts: Numbers  # (r and borders + 1,): where the rows of each column of the factor begin
+    below: Numbers  # rows below the diagonal that are not zero, those of the borders last
+    product_starts: Numbers  # where the products of each matrix entry begin
+    product_contacts: Numbers  # the contact of each
     powers: int  # flanks with a power law
     first_row: int  # first contact that is a row, 2t
     end_row: int  # first contact after them that is none
@@ -102,8 +100,8 @@ class SetArrays(NamedTuple):
     first_radial: int  # column of the first radial element
     flanks: int  # rows before the first arc
     states: States
-    follows: NDArray[np.bool_]  # (j,): whether friction follows the torque in some sample
-    loaded: Rows  # coordinates with a load
+    follows: Flags  # (j,): whether friction follows the torque in some sample
+    loaded: Numbers  # coordinates with a load
     load: Array
     gap: Array
     bending: Array
@@ -123,7 +121,9 @@ _FRONT = 3 * (_TABLES + _LISTS)
 """Where the numbers of a set are; before them three numbers of every table and list."""
 
 
-def packed_sets(structure: Structure, loading: Loading, sets: States) -> tuple[Array, Rows, Rows]:
+def packed_sets(
+    structure: Structure, loading: Loading, sets: States
+) -> tuple[Array, Numbers, Numbers]:
     """Pack sets one after another; what is known of each is kept for next time.
 
     Returns
@@ -150,7 +150,7 @@ def packed_sets(structure: Structure, loading: Loading, sets: States) -> tuple[A
     return np.concatenate(floats), np.concatenate(numbers), begins
 
 
-def _pack(tables: list[Array], lists: list[Rows], numbers: list[int]) -> tuple[Array, Rows]:
+def _pack(tables: list[Array], lists: list[Numbers], numbers: list[int]) -> tuple[Array, Numbers]:
     """One array of all tables, one of all lists and numbers."""
     front, start = [], 0
     for table in tables:
@@ -247,7 +247,7 @@ def unpacked(floats, rows, states, samples):  # type: ignore[no-untyped-def]
 
 def _structure(
     structure: Structure, loading: Loading, basis: Basis, states: States
-) -> tuple[list[Array], list[Rows], list[int]]:
+) -> tuple[list[Array], list[Numbers], list[int]]:
     """The fields of `SetArrays` that are the same for all samples: tables, lists, numbers."""
     first, flanks, first_radial = structure.springs, structure.flat, structure.radial_column(0)
     order, (springs, turned, powers, tables, rows) = _order(structure, loading, basis, states)
@@ -275,7 +275,7 @@ def _structure(
     yields = held[:, turning].T * compliances
     by_springs = of_springs.T * compliances @ of_springs
     products = (touching[:, factor.rows] * touching[:, factor.columns]).T
-    product_starts, product_contacts, product_values = _sparse(products[:, :renewed])
+    product_starts, product_contacts, product_values = rows_of(products[:, :renewed])
     arrays = [
         particular[springs:].T,
         held.T,
@@ -333,7 +333,7 @@ def _local(structure: Structure, basis: Basis) -> tuple[Array, Array]:
     return cast(tuple[Array, Array], known)
 
 
-def _every_set(structure: Structure) -> tuple[NDArray[np.bool_], Sparse, Sparse]:
+def _every_set(structure: Structure) -> tuple[Flags, Rows, Rows]:
     """What is the same in every set.
 
     Returns
@@ -348,12 +348,12 @@ def _every_set(structure: Structure) -> tuple[NDArray[np.bool_], Sparse, Sparse]
         arcs, first = len(structure.relative), structure.springs + structure.flat
         found = (structure.relative != 0.0).any(axis=1)
         found |= structure.vectors[first : first + arcs] != 0.0
-        known = found, _sparse(found.astype(float)), _sparse(structure.vectors)
+        known = found, rows_of(found.astype(float)), rows_of(structure.vectors)
         structure.remember(("every set",), known)
-    return cast(tuple[NDArray[np.bool_], Sparse, Sparse], known)
+    return cast(tuple[Flags, Rows, Rows], known)
 
 
-def _radial_at(structure: Structure, contacts: Rows) -> Rows:
+def _radial_at(structure: Structure, contacts: Numbers) -> Numbers:
     """First contact of each radial element, −1 where it does not act."""
     at = {column: k for k, column in enumerate(contacts.tolist())}
     radials = range(structure.switches - structure.rows)
@@ -362,7 +362,7 @@ def _radial_at(structure: Structure, contacts: Rows) -> Rows:
 
 def _order(
     structure: Structure, loading: Loading, basis: Basis, states: States
-) -> tuple[Rows, tuple[int, ...]]:
+) -> tuple[Numbers, tuple[int, ...]]:
     """Order of the acting columns, and how many there are of each sort but the last."""
     columns = basis.columns
     is_spring = columns < structure.springs
@@ -381,7 +381,7 @@ def _order(
 
 
 def _inverse(
-    structure: Structure, loading: Loading, columns: Rows, n: Array, states: States
+    structure: Structure, loading: Loading, columns: Numbers, n: Array, states: States
 ) -> Array:
     """Inverse of the redundants' matrix of linear elements, if it is the same in all samples."""
     compliance, steady = np.array(loading.bending[0]), np.array(loading.steady)
@@ -392,12 +392,3 @@ def _inverse(
     if not steady[columns].all() or not n.shape[1]:
         return np.zeros((0, 0))
     return np.asarray(np.linalg.pinv(n.T * compliance[columns] @ n))
-
-
-Sparse = tuple[Rows, Rows, Array]
-
-
-def _sparse(matrix: Array) -> Sparse:
-    """Starts of the rows, columns and entries of a matrix."""
-    row, column = np.nonzero(matrix)
-    return np.searchsorted(row, np.arange(len(matrix) + 1)), column, matrix[row, column]

@@ -5,18 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.settings import HOT
-from loadshare.solver.hot.contact_states import (
-    CLOSED,
-    CORNER,
-    FAILED,
-    OPEN,
-    OTHER,
-    PINNED,
-    SLIP,
-    STICK,
-    STOP,
-    WALL,
-)
+from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.kernel.arcs import arc
 from loadshare.solver.hot.kernel.options import bare
 from loadshare.solver.hot.kernel.radials import graph, torque_of
@@ -80,48 +69,48 @@ def misplaced(status, law, u, v, p, q, force_band, length_band, faint):  # type:
     first, stick, bound, reach, last, _ = law
     radius, size = np.sqrt(u * u + v * v), np.sqrt(p * p + q * q)
     jump = bound > first * stick * (1.0 + HOT.rounded)
-    beyond = STOP
+    beyond = at.STOP
     if np.isinf(last):
-        beyond = WALL if reach > 0.0 else PINNED
+        beyond = at.WALL if reach > 0.0 else at.PINNED
     rubs = bound > faint
-    level = (SLIP if rubs else OPEN) if reach > stick else beyond
-    back = PINNED
+    level = (at.SLIP if rubs else at.OPEN) if reach > stick else beyond
+    back = at.PINNED
     if bound == 0.0 and reach > 0.0:
-        back = OPEN
+        back = at.OPEN
     elif stick > 0.0:
-        back = CORNER if jump else STICK
+        back = at.CORNER if jump else at.STICK
     inward = u * p + v * q < 0.0
-    if status == OPEN:
+    if status == at.OPEN:
         if radius > reach + length_band:
             return beyond
         if rubs and radius > length_band:
-            return STICK if radius < stick else level
-        return OPEN
-    if status == STICK:
+            return at.STICK if radius < stick else level
+        return at.OPEN
+    if status == at.STICK:
         if size <= first * stick + force_band:
-            return STICK
+            return at.STICK
         gone = beyond if radius > reach + length_band else level
-        return CORNER if jump else gone
-    if status == CORNER:
+        return at.CORNER if jump else gone
+    if status == at.CORNER:
         if inward or size < first * stick - force_band:
-            return STICK
-        return level if size > bound + force_band else CORNER
-    if status == PINNED:
+            return at.STICK
+        return level if size > bound + force_band else at.CORNER
+    if status == at.PINNED:
         yields = bound > 0.0 or reach > 0.0 or np.isfinite(last)
-        return level if size > bound + force_band and yields else PINNED
-    if status == SLIP:
+        return level if size > bound + force_band and yields else at.PINNED
+    if status == at.SLIP:
         if not rubs:
             return level
         if radius < stick - length_band or inward:
             return back
-        return beyond if radius > reach + length_band else SLIP
-    if status == STOP:
+        return beyond if radius > reach + length_band else at.SLIP
+    if status == at.STOP:
         if (radius < reach - length_band or inward) and reach > 0.0:
             # A stop that carries next to nothing sticks: it does not use up its friction.
             slips = reach > stick and radius >= stick and size > HOT.gross * bound
             return level if slips else back
-        return STOP
-    return OPEN if inward or size <= force_band else WALL
+        return at.STOP
+    return at.OPEN if inward or size <= force_band else at.WALL
 
 
 @bare
@@ -171,7 +160,7 @@ def propose(states, wrong, better, m, one_only, proposal):  # type: ignore[no-un
         if row < rows:
             if not wrong[row, m]:
                 continue
-            proposal[row] = OPEN if states[row] != OPEN else CLOSED
+            proposal[row] = at.OPEN if states[row] != at.OPEN else at.CLOSED
         else:
             if better[row - rows, m] == states[row]:
                 continue
@@ -200,7 +189,7 @@ def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-d
             drift[d] += along * s.loose[d, c]
     for d in range(n):
         fast = max(fast, HOT.drift * abs(drift[d]))
-    nearest, first, status = np.inf, -1, CLOSED
+    nearest, first, status = np.inf, -1, at.CLOSED
     rows, open_rows = work.wrong.shape[0], s.open_rows.shape[0]
     for row in range(s.states.shape[0]):
         proposal[row] = s.states[row]
@@ -220,7 +209,7 @@ def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-d
             if way < nearest:
                 nearest, first = way, row
     for j in range(s.radial_at.shape[0]):
-        if s.states[rows + j] != OPEN:
+        if s.states[rows + j] != at.OPEN:
             continue
         column = s.first_radial + 2 * j
         approach(s, work.samples, column, x, width, work.one)
@@ -238,12 +227,12 @@ def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-d
             way = max((np.sqrt(along * along + square * inside) - along) / square, 0.0)
             if way < nearest:
                 nearest, first = way, rows + j
-                status = STOP
+                status = at.STOP
                 if np.isinf(law[4]):
-                    status = WALL if law[3] > 0.0 else PINNED
+                    status = at.WALL if law[3] > 0.0 else at.PINNED
     if first < 0:
-        return FAILED
-    proposal[first] = status if first >= rows else CLOSED
+        return at.FAILED
+    proposal[first] = status if first >= rows else at.CLOSED
     for d in range(n):
         place_of[d] += nearest * drift[d]
-    return OTHER
+    return at.OTHER

@@ -5,23 +5,20 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.scene.scene import Array
+from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.solver.hot.kernel.options import allocating
-from loadshare.solver.hot.kernel.redundants import Rows
-from loadshare.solver.hot.kernel.set_arrays import States
 
 
 class Given(NamedTuple):
     """Samples to settle, where they stand, and what is found of them."""
 
-    rows: Rows  # (k,): their numbers
+    rows: Numbers  # (k,): their numbers
     xs: Array  # (S, n)
     forces: Array  # (S, m), as is the following
     roots: Array
     floors: Array  # (S,), as is the following
-    one_only: NDArray[np.bool_]
+    one_only: Flags
     verdict: States  # (k,)
     proposal: States  # (k, switches)
 
@@ -29,8 +26,8 @@ class Given(NamedTuple):
 class Work(NamedTuple):
     """Samples side by side."""
 
-    samples: Rows
-    at_row: Rows
+    samples: Numbers
+    at_row: Numbers
     each: Array  # (_EACH, width)
     live: Array  # 1 for a sample that is not judged yet
     go: Array  # 0 for a sample that is given up and stands; what has settled is refined
@@ -74,7 +71,7 @@ class Work(NamedTuple):
     linear: Array  # (matrix entries, width): what is linear of the matrix
     matrix: Array  # (r and borders, r and borders, width)
     normal: Array  # (3, width)
-    wrong: NDArray[np.bool_]  # (rows, width)
+    wrong: Flags  # (rows, width)
     better: States  # (radials, width): where they should stand
 
 

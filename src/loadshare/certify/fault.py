@@ -1,0 +1,34 @@
+"""Why a claim cannot be judged."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.certify.state import ClaimedState
+from loadshare.train.memory import SlipFriction
+
+
+def fault_of(state: ClaimedState) -> str:
+    """Why the first claim cannot be judged, else empty.
+
+    A figure is not a number, a spline has no law, or a gear is beyond the neighbour on whose
+    ring its own rolls: there the arc's inequality holds, and no gear can be.
+    """
+    if not state.faulty[0]:
+        return ""
+    if not all(np.isfinite(claimed[..., 0]).all() for claimed in state.claim.arrays):
+        return "a figure that is not a number"
+    train = state.of.train
+    try:
+        for k, spline in enumerate(train.splines.values()):
+            part = spline if train.slip is None else SlipFriction(spline)
+            part.law(float(state.transmitted[k, 0]))
+    except ValueError as error:
+        return str(error)
+    beyond = [
+        ring.arc_name(neighbour)
+        for ring, sides in zip(train.drums, state.beyond[..., 0], strict=True)
+        for neighbour, is_beyond in zip(ring.neighbours, sides, strict=True)
+        if is_beyond
+    ]
+    return f"a place beyond the neighbour, {', '.join(beyond)}" if beyond else "a figure too large"
