@@ -299,6 +299,18 @@ def test_at_hand_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
     assert not compilation.at_hand(again)
 
 
+def test_code_is_known_again_in_another_process():
+    """However strings are hashed there, and wherever its objects lie in memory."""
+    script = """
+from loadshare.certify.bound.kernel.bounds import _bound_all
+from loadshare.certify.bound.kernel.claims import _find_all
+from loadshare.code_cache import fingerprint
+from loadshare.solver.hot.compiled import _settle_all
+print([fingerprint(one.py_func) for one in (_settle_all, _find_all, _bound_all)])
+"""
+    assert run(script, PYTHONHASHSEED="1") == run(script, PYTHONHASHSEED="2")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("imported", "most"),
