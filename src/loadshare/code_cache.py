@@ -42,7 +42,7 @@ def fingerprint(function: Callable[..., Any]) -> str:
         parts.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
         known = {name: one.__globals__.get(name) for name in code.co_names}
         for module in [value for value in known.values() if isinstance(value, ModuleType)]:
-            read = {f"{module.__name__}.{n}": getattr(module, n, None) for n in code.co_names}
+            read = {f"{module.__name__}.{n}": vars(module).get(n) for n in code.co_names}
             # What is not compiled, such as NumPy's functions, is the compiler's own.
             known |= {n: v for n, v in read.items() if not isinstance(v, FunctionType)}
         for name, value in known.items():

@@ -300,8 +300,9 @@ def test_at_hand_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
 
 
 def test_code_is_known_again_in_another_process():
-    """However strings are hashed there, and wherever its objects lie in memory."""
+    """However strings are hashed there, and if warnings are errors."""
     script = """
+import warnings; warnings.simplefilter("error")
 from loadshare.certify.bound.kernel.bounds import _bound_all
 from loadshare.certify.bound.kernel.claims import _find_all
 from loadshare.code_cache import fingerprint

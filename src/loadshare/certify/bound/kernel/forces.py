@@ -186,10 +186,10 @@ def put_springs(of, here, claim, first, width, work, found, sets, new):  # type:
     for k in range(len(of.spring)):
         j, number, axis = of.spring[k, 0], of.spring[k, 1], of.spring[k, 2]
         force, length, arm = work.force[j], work.length[j], of.spring_arm[k]
-        apart, claimed = work.apart[contacts + k], work.wound[number]
+        apart = work.apart[contacts + k]
         if axis == 2:
             put_column(here.torsion[:, number], first, width, soft)
-            alike = len(here.torsion) == 1
+            alike, claimed = len(here.torsion) == 1, work.wound[number]
         else:
             put_column(here.support[:, number, axis], first, width, soft)
             alike, claimed = len(here.support) == 1, work.borne[2 * number + axis]
