@@ -15,6 +15,7 @@ FLOOR = 1e-16
 """Errors below one rounding are drawn here."""
 COLOURS = {
     "ours, batch": "#b30000",
+    "ours, batch (new case)": "#d9544f",
     "ours, batch (NumPy)": "#e06666",
     "ours, solve (new case)": "#b36b00",
     "ours, solve (again)": "#7a0000",
