@@ -31,7 +31,6 @@ from loadshare.train.placed import standing
 from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations, situation_of, situations_of, stack
 
-"""Numbers of samples."""
 Way = Callable[[Loading, Numbers], tuple[Iterate, Found]]
 """How some samples are solved, given with their numbers."""
 Outcome = TypeVar("Outcome")
