@@ -51,15 +51,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def _choose_quick(items: list[pytest.Item]) -> None:
     """Of the sets of parameters of a test leave so many as it says, and mark the others as slow.
 
-    Which ones hangs on their names alone: in their own order, those of one engine might be left.
+    Which ones hangs on their names alone, wherever the files lie: in their own order, those of one
+    engine might be left.
     """
+    here = str(Path(__file__).parents[1])
     alike: dict[str, list[pytest.Item]] = {}
     for item in items:
         if item.get_closest_marker("quick") and not item.get_closest_marker("slow"):
             alike.setdefault(item.nodeid.partition("[")[0], []).append(item)
     for several in alike.values():
         (count,) = several[0].get_closest_marker("quick").args
-        several.sort(key=lambda item: zlib.crc32(item.nodeid.encode()))
+        several.sort(key=lambda item: zlib.crc32(item.nodeid.replace(here, "").encode()))
         for item in several[count:]:
             item.add_marker(pytest.mark.slow)
 
