@@ -139,9 +139,8 @@ def train_of(
         bearings=elements("bearings", bearing_of),
         offsets=with_growth(case, gears, offsets) if warm else offsets,
         stages=stages_of(case),
-        **operation_of(case.operating, gears),
+        **operation_of(case, gears),
         forces=forces_of(case),
-        march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
         period=geometry.period,
         uneven=is_uneven(case),
     )

@@ -19,8 +19,9 @@ def stages_of(case: spec.Case) -> tuple[Stage, ...]:
     return tuple(Stage(n, tuple(s.meshes), tuple(groups[n])) for n, s in case.stages.items())
 
 
-def operation_of(operating: spec.Operating, gears: Mapping[str, Gear]) -> dict[str, Any]:
+def operation_of(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Any]:
     """Ends, torques and positions of a train."""
+    operating, march = case.operating, case.march
     return {
         "input": operating.input,
         "output": operating.output,
@@ -31,6 +32,7 @@ def operation_of(operating: spec.Operating, gears: Mapping[str, Gear]) -> dict[s
         },
         "positions": operating.positions,
         "rotating": operating.rotation == "teeth",
+        "march": march and (march.gear, march.revolutions, march.steps),
     }
 
 

@@ -26,8 +26,9 @@ from loadshare.array_types import Array, Flags, Numbers
 from loadshare.case.power_flow import from_the_other_end, has_sets
 from loadshare.errors import CaseError
 from loadshare.train.gear import Gear
-from loadshare.train.operation import forces_of
+from loadshare.train.operation import forces_of, operation_of
 from loadshare.train.period import Period
+from loadshare.train.turning import turning_of
 from loadshare.train.willis import NOISE, Links
 
 
@@ -149,10 +150,14 @@ def _moments(
 
     At all positions where the torque has `count` of them; else where they are least and largest.
     """
+    forces = forces_of(case)
+    if not forces:
+        return {}
     found: dict[str, Any] = {}
     size: dict[str, Any] = {}
-    forces = forces_of(case)
-    turned = _turned(case, gears, period) if forces else np.zeros(1)
+    asked = operation_of(case, gears)
+    turns = turning_of(gears, asked["positions"], asked["rotating"], asked["march"], period)
+    turned = turns.after(np.arange(turns.steps))
     for name, force in forces.items():
         if (hub := gears[name].carrier) is None:
             continue
@@ -171,20 +176,3 @@ def _moments(
         rows = sorted(set(map(int, ends)))
     # Weights of planets that are evenly spaced leave round-off.
     return {n: np.where(np.abs(m) > NOISE * size[n], m, 0.0)[rows] for n, m in found.items()}
-
-
-def _turned(case: spec.Case, gears: Mapping[str, Gear], period: Period | None) -> Array:
-    """Angles [rad] by which the input has turned at all positions."""
-    operating, march = case.operating, case.march
-    if march is not None:
-        whole = 2.0 * math.pi * march.revolutions / abs(gears[march.gear].ratio)
-        return whole * np.arange(march.steps) / march.steps
-    if period is not None:
-        steps = period.steps(operating.positions)
-        return 2.0 * math.pi * float(period.revolutions) * np.arange(steps) / steps
-    toothed = (g for g in gears.values() if g.teeth is not None and g.relative)
-    gear = next(toothed, None) if operating.rotation == "teeth" else None
-    if gear is None or gear.teeth is None:
-        return np.zeros(operating.positions)
-    whole = 2.0 * math.pi / (gear.teeth * abs(gear.relative))
-    return whole * np.arange(operating.positions) / operating.positions

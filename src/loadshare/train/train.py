@@ -17,6 +17,7 @@ from loadshare.train.mesh import Approach, Mesh, approach_of
 from loadshare.train.offset import Angle, Offset, turned_about
 from loadshare.train.period import Period
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
+from loadshare.train.turning import March, Turning, cycle_gear, turning_of
 
 At = TypeVar("At", int, Numbers)
 """A position (1-based), or many of them."""
@@ -79,7 +80,7 @@ class Train:
     external: Mapping[str, float]
     positions: int
     rotating: bool
-    march: tuple[str, float, int] | None
+    march: March | None
     forces: Mapping[str, Vector] = field(default_factory=dict)
     period: Period | None = None
     slip: Mapping[str, Vector] | None = None
@@ -94,9 +95,12 @@ class Train:
     @property
     def count(self) -> int:
         """Number of positions to solve."""
-        if self.march is not None:
-            return self.march[2]
-        return self.positions if self.period is None else self.period.steps(self.positions)
+        return self.turning.steps
+
+    @cached_property
+    def turning(self) -> Turning:
+        """How far the input turns over the positions."""
+        return turning_of(self.gears, self.positions, self.rotating, self.march, self.period)
 
     @property
     def is_placed_anew(self) -> bool:
@@ -163,8 +167,7 @@ class Train:
         The input gear, or else the first on the way from it whose teeth are known. In a march it
         decides nothing.
         """
-        known = (n for n, g in self.gears.items() if g.teeth is not None and g.relative)
-        return next(known, None) if self.rotating else None
+        return cycle_gear(self.gears) if self.rotating else None
 
     @property
     def stands_still(self) -> bool:
@@ -193,12 +196,7 @@ class Train:
         least, most = (index, index) if isinstance(index, int) else (index.min(), index.max())
         if not 1 <= least <= most <= self.count:
             raise IndexError(f"position {index}: this case has positions 1 to {self.count}")
-        step = index - 1
-        if self.march is None:
-            turned = self._cycle * step / self.count
-        else:
-            gear, revolutions, steps = self.march
-            turned = 2.0 * math.pi * revolutions * step / steps / abs(self.gears[gear].ratio)
+        turned = self.turning.after(index - 1)
         angles: dict[str, Any] = {n: turned * gear.ratio for n, gear in self.gears.items()}
         return angles
 
@@ -305,16 +303,6 @@ class Train:
         if isinstance(index, int):
             return {flank: int(at) for flank, at in found.items()}
         return {flank: np.asarray(at, dtype=np.intp) for flank, at in found.items()}
-
-    @cached_property
-    def _cycle(self) -> float:
-        """Angle by which the input gear turns over all positions [rad]."""
-        if self.cycle is None:
-            return 0.0
-        if self.period is not None:
-            return 2.0 * math.pi * float(self.period.revolutions)
-        gear = self.gears[self.cycle]
-        return 2.0 * math.pi / ((gear.teeth or math.inf) * abs(gear.relative))
 
     def _passed(self, mesh: Mesh, step: Any, rotation: Mapping[str, Any]) -> Any:
         """Part of its cycle that a mesh has passed since the first position [-]."""

@@ -188,15 +188,16 @@ def sensitivity(
     conclude("sensitivity", found, file)
 
 
+def _study_name(text: str) -> Any:
+    """Return the argument that names a study of the case, with its help."""
+    return typer.Argument(metavar="NAME", help=text, autocompletion=study_names)
+
+
 def tolerance(
     case: CaseFile,
     name: Annotated[
         str | None,
-        typer.Argument(
-            metavar="NAME",
-            help="Which study, if the case has more than one of this kind.",
-            autocompletion=study_names,
-        ),
+        _study_name("Which study, if the case has more than one of this kind."),
     ] = None,
     samples: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Samples, instead of the case's.")
@@ -345,11 +346,7 @@ def study(
     case: CaseFile,
     name: Annotated[
         str | None,
-        typer.Argument(
-            metavar="NAME",
-            help="Which study; by default all are listed.",
-            autocompletion=study_names,
-        ),
+        _study_name("Which study; by default all are listed."),
     ] = None,
     varied: Annotated[
         list[str] | None,
