@@ -163,21 +163,17 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
 
 def differing(before: Any, after: Any, above: Path = ()) -> list[tuple[Path, Any, Any]]:
     """Return where plain data differ: the key, and both values; None for nothing."""
-    if before is after:
+    if before == after:
         return []
-    found = []
     if isinstance(before, dict) and isinstance(after, dict):
-        for key in {**before, **after}:
-            one, other = before.get(key), after.get(key)
-            # Most are texts that are the same.
-            if not (isinstance(one, str) and one == other):
-                found += differing(one, other, (*above, key))
+        pairs: Iterable[tuple[Any, Any, Any]] = (
+            (key, before.get(key), after.get(key)) for key in {**before, **after}
+        )
     elif isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
-        for k, (one, other) in enumerate(zip(before, after, strict=True)):
-            found += differing(one, other, (*above, k))
-    elif type(before) is not type(after) or before != after:
-        found.append((above, before, after))
-    return found
+        pairs = zip(range(len(before)), before, after, strict=True)
+    else:
+        return [(above, before, after)]
+    return [found for key, one, other in pairs for found in differing(one, other, (*above, key))]
 
 
 def nearest(data: Mapping[str, Any], path: Path) -> str:

@@ -27,7 +27,6 @@ from loadshare.tooth import resolve
 from loadshare.train import build_train
 from loadshare.train.placed import standing
 from loadshare.train.samples import Samples, samples_of
-from loadshare.train.situations import stack
 
 Unanswered = Refused | CaseError
 
@@ -187,7 +186,7 @@ def answer_samples(
         abreast = [(k,) for k in wanted] if group.train.is_placed_anew else [wanted]
         for at in range(0, len(rows), each):
             some = slice(at, at + each)
-            taken = group if len(rows) <= each else group.take(some)
+            taken = group.take(some)
             parts += [_part(machine, rows[some], taken, k) for k in abreast if k]
             done += len(rows[some])
             if progress is not None:
@@ -198,7 +197,7 @@ def answer_samples(
 def _part(machine: Machine, rows: Numbers, samples: Samples, positions: tuple[int, ...]) -> Part:
     """Solve samples at some positions; what the hot path leaves climbs the ladder."""
     here = machine.at(positions[0])
-    situations = stack([samples.situations(index) for index in positions])
+    situations = samples.abreast(positions)
     engine = engine_at_hand("auto", situations.count)
     found = here.answer(situations, CERTIFY.tolerance, engine, starts=positions)
     solved = Solved(here, situations, found, CERTIFY.tolerance)

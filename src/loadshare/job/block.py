@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.certify.nonconvex import arc_curvature, is_convex
@@ -21,7 +23,7 @@ from loadshare.solver.hot.exchange import Engine
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import Samples
-from loadshare.train.situations import Situations, stack
+from loadshare.train.situations import Situations
 
 RUNGS = ("none", HOT, SEARCHED, *(name for name, _ in rungs(Options())))
 """What answers samples, by number: nothing, the hot path without and with the proximal search, what
@@ -102,6 +104,30 @@ _NOTHING = {
 """What stands in the arrays of a block where there is no answer."""
 
 
+class _Chunk(NamedTuple):
+    """Positions of a block that are solved together, one after another.
+
+    Attributes
+    ----------
+    columns : slice
+        Of the positions, in arrays over (sample, position).
+    machine : Machine
+    situations : Situations
+        P·S of them.
+    equilibria : Equilibria
+        Likewise.
+    """
+
+    columns: slice
+    machine: Machine
+    situations: Situations
+    equilibria: Equilibria
+
+    def of(self, values: Array) -> Array:
+        """Return its own of values over (sample, position), one position after another."""
+        return values[:, self.columns].T.reshape(-1)
+
+
 class _Open:
     """A block that is being solved; its arrays are those of `Block`, over (sample, position)."""
 
@@ -113,10 +139,14 @@ class _Open:
         self.deflection, self.load = np.full((2, *shape), np.nan)
         self.rung = np.zeros(shape, dtype=np.int8)
         self.equilibria: list[Equilibria] = []
-        self.situations: list[Situations] = []
+        self.chunks: list[_Chunk] = []
 
-    def put(self, columns: slice, found: Answers) -> None:
-        """Write what the hot path found at some positions, one after another."""
+    def by_sample(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return values of a chunk, one position after another, as (sample, position)."""
+        return values.reshape(-1, self.count).T
+
+    def put(self, chunk: _Chunk, found: Answers) -> None:
+        """Write what the hot path found."""
         verdicts, count = found.verdicts, self.count
         for there, values in (
             (self.certified, found.passed),
@@ -128,7 +158,8 @@ class _Open:
             (self.deflection, verdicts.deflection),
             (self.load, verdicts.load),
         ):
-            there[:, columns] = values.reshape(-1, count).T
+            there[:, chunk.columns] = self.by_sample(values)
+        self.chunks.append(chunk)
         for start in range(0, len(found.passed), count):
             self.equilibria.append(found.equilibria.part(slice(start, start + count)))
 
@@ -175,16 +206,14 @@ def solve_block(
     abreast = 1 if machine.train.is_placed_anew else max(1, JOB.together // len(rows))
     for at in range(0, len(positions), abreast):
         some = positions[at : at + abreast]
-        columns = slice(at, at + len(some))
-        block.situations += [samples.situations(index) for index in some]
-        situations = stack(block.situations[at:])
-        here = machine.at(some[0])
+        situations, here = samples.abreast(some), machine.at(some[0])
         found = here.answer(situations, tolerance, engine, starts=some)
-        block.put(columns, found)
+        chunk = _Chunk(slice(at, at + len(some)), here, situations, found.equilibria)
+        block.put(chunk, found)
         if least_norm:
             loose = found.passed & ~found.determined
             least_places(here, situations, found, np.flatnonzero(loose).tolist(), tolerance)
-            block.displaced[:, columns][loose.reshape(-1, len(rows)).T] = np.nan
+            block.displaced[:, chunk.columns][block.by_sample(loose)] = np.nan
     for row, p in np.argwhere(~block.certified).tolist():
         try:
             train = build_train(samples.one(row))
@@ -192,14 +221,15 @@ def solve_block(
         except (CaseError, Refused) as refusal:
             message[int(rows[row]), positions[p]] = str(refusal)
             block.refuse(row, p)
-    for (row, p), why in _too_far(machine, block).items():
+    for (row, p), why in _too_far(block).items():
         message[int(rows[row]), positions[p]] = f"position {positions[p]}: {why}"
         block.refuse(row, p)
     curvature, convex = np.full(block.load.shape, np.nan), np.zeros_like(block.certified)
-    for p, (situations, answers) in enumerate(zip(block.situations, block.equilibria, strict=True)):
-        train = machine.at(positions[p]).train
-        curvature[:, p] = arc_curvature(train, answers)
-        convex[:, p] = is_convex(train, situations, answers, block.load[:, p])
+    for chunk in block.chunks:
+        train, answers = chunk.machine.train, chunk.equilibria
+        curvature[:, chunk.columns] = block.by_sample(arc_curvature(train, answers))
+        only = is_convex(train, chunk.situations, answers, chunk.of(block.load))
+        convex[:, chunk.columns] = block.by_sample(only)
     return Block(
         rows,
         positions,
@@ -216,18 +246,20 @@ def solve_block(
     )
 
 
-def _too_far(machine: Machine, block: _Open) -> dict[tuple[int, int], str]:
+def _too_far(block: _Open) -> dict[tuple[int, int], str]:
     """Write how far displacements go where that is not known; return why some are refused."""
     refused = dict[tuple[int, int], str]()
-    for p, (here, found) in enumerate(zip(block.situations, block.equilibria, strict=True)):
-        displaced, deflection = block.displaced[:, p], block.deflection[:, p]
-        measuring = machine.at(block.positions[p]).measuring
+    for chunk in block.chunks:
+        measuring, here, found = chunk.machine.measuring, chunk.situations, chunk.equilibria
+        displaced, deflection = chunk.of(block.displaced), chunk.of(block.deflection)
         left = np.flatnonzero(np.isnan(displaced))
         if len(left):
-            some = here.take(left), found.take(left), deflection[left]
-            displaced[left] = measuring.worst(*some)
+            displaced[left] = measuring.worst(here.take(left), found.take(left), deflection[left])
+            block.displaced[:, chunk.columns] = block.by_sample(displaced)
         large = np.flatnonzero(displaced >= 1.0)
         if len(large):
             some = here.take(large), found.take(large), deflection[large]
-            refused |= {(int(large[k]), p): why for k, why in measuring.refusals(*some).items()}
+            for k, why in measuring.refusals(*some).items():
+                p, row = divmod(int(large[k]), block.count)
+                refused[row, chunk.columns.start + p] = why
     return refused

@@ -29,7 +29,7 @@ from loadshare.train.columns import Column, columns_of
 from loadshare.train.geometry import Geometry, geometry_of
 from loadshare.train.placed import standing
 from loadshare.train.pressed import pressed_flanks
-from loadshare.train.situations import Situations, situations_of
+from loadshare.train.situations import Situations, situations_of, stack
 from loadshare.train.train import Train
 
 
@@ -65,8 +65,10 @@ class Samples:
         """Return a sample as a case."""
         return self.case.replace({dotted(c.path): c.text(sample) for c in self.columns})
 
-    def take(self, rows: slice) -> Samples:
+    def take(self, rows: Numbers | slice) -> Samples:
         """Return some of the samples."""
+        if isinstance(rows, slice) and len(range(*rows.indices(self.count))) == self.count:
+            return self
         columns = tuple(replace(c, values=c.values[rows]) for c in self.columns)
         return replace(self, columns=columns, values={p: v[rows] for p, v in self.values.items()})
 
@@ -74,6 +76,15 @@ class Samples:
         """Return the situations at position `index` (1-based) of all samples."""
         found = situations_of(standing(self._varied, index), index)
         return replace(found, train=standing(self.train, index), count=self.count)
+
+    def abreast(self, positions: Sequence[int]) -> Situations:
+        """Return the situations of all samples at several positions, one after another.
+
+        Of a train that is placed anew at every position: at one.
+        """
+        if self._varied is self.train and not self.train.is_placed_anew:
+            return situations_of(self.train, positions)
+        return stack([self.situations(index) for index in positions])
 
     def build(self) -> Train:
         """Build the train whose numbers are those of all samples.
@@ -136,7 +147,11 @@ def groups_of(case: spec.Case, columns: Sequence[Column]) -> list[tuple[Numbers,
             # The others press other flanks than the first of them.
             parts[:0] = [rows[alike], rows[~alike]]
             continue
-        groups.append((rows, Samples(base, geometry, train, mine, values)))
+        group = Samples(base, geometry, train, mine, values)
+        if len(rows) == 1:
+            # Its train is that of the only sample.
+            group.__dict__["_varied"] = train
+        groups.append((rows, group))
     return groups
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Iterator
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,8 @@ def shape_of(train: Train) -> Hashable:
     )
 
 
+# Trains that differ in a few numbers have the other elements in common.
+@lru_cache(maxsize=1024)
 def _gear(gear: Gear) -> tuple[Any, ...]:
     kept = (gear.name, gear.kind, gear.base_radius, gear.sense, gear.teeth, gear.ratio)
     seen = (gear.relative, gear.held, gear.carrier, gear.frame_of, gear.seen_at)
@@ -55,6 +58,7 @@ def _gear(gear: Gear) -> tuple[Any, ...]:
     return (*kept, *seen, *rim, *map(_bytes, places), _pattern(gear.support))
 
 
+@lru_cache(maxsize=1024)
 def _mesh(mesh: Mesh) -> tuple[Any, ...]:
     kept = (mesh.name, mesh.driver, mesh.driven, mesh.radii, mesh.turned, mesh.unsure, mesh.counted)
     places = (mesh.phase, mesh.coast_phase, mesh.means, len(mesh.gaps), len(mesh.coast_gaps))
