@@ -185,15 +185,20 @@ class Rests:
     def _of_rings(self, gear: str) -> Iterable[tuple[tuple[str, ...], Array, Array, Array, Array]]:
         """Boundaries of its round rings, likewise."""
         state, of = self.state, self.state.of
-        plane, first = of.train.gears[gear].plane, len(of.pulls) - len(of.train.rounds)
-        for r, ring in enumerate(of.train.rounds):
+        plane = of.train.gears[gear].plane
+        for q, ring in enumerate(of.train.rounds):
             if ring.gear != gear:
                 continue
-            radius, pushed = state.radius[first + r], plane @ state.reaction[first + r]
-            outward = plane @ state.offset[first + r] / np.where(radius > 0.0, radius, 1.0)
-            margin = state.here.round_radius[r] - radius
-            name = (of.pulls[first + r],)
-            yield name, margin[None], size(pushed, axis=0)[None], outward[None], pushed[None]
+            radius, pushed = state.radius[q], plane @ state.reaction[q]
+            outward = plane @ state.offset[q] / np.where(radius > 0.0, radius, 1.0)
+            margin = state.here.round_radius[q] - radius
+            yield (
+                (of.pulls[q],),
+                margin[None],
+                size(pushed, axis=0)[None],
+                outward[None],
+                pushed[None],
+            )
 
     @cached_property
     def margin(self) -> Array:
@@ -237,19 +242,18 @@ class Rests:
         memory its parts are friction and clearance. Where both hold the slip, how they share the
         force is open; it sticks if friction could do it alone.
         """
-        state, splines = self.state, list(self.state.of.train.splines)
-        if gear not in splines:
+        state, own, pressed = self.state, self._on_spline(gear), self._pressed
+        if not own:
             return np.full(state.count, -1)
-        k, pressed = splines.index(gear), self._pressed
-        near = np.where(self.settled(gear), self._near, np.inf)
-        first, stick, bound, reach, _ = (figure[k] for figure in state.graph)
-        radius = state.radius[k]
+        q, near = own[0], np.where(self.settled(gear), self._near, np.inf)
+        first, stick, bound, reach, _ = (figure[q] for figure in state.graph)
+        radius = state.radius[q]
         if state.of.train.slip is not None:
-            stop = size(state.reaction[k + len(splines)], axis=0)
-            total = size(state.reaction[k] + state.reaction[k + len(splines)], axis=0)
+            stop = size(state.reaction[own[1]], axis=0)
+            total = size(state.reaction[own].sum(axis=0), axis=0)
             sticks = (radius <= near) & (total <= bound + pressed)
             return np.where(sticks, 0, np.where(stop > pressed, 2, 1))
-        force = size(state.reaction[k], axis=0)
+        force = size(state.reaction[q], axis=0)
         pieces = (
             (stick > 0.0, 0.0, 0.0, first),
             (reach > stick, stick, bound, np.zeros(())),
@@ -264,6 +268,12 @@ class Rests:
     def stage_name(self, gear: str) -> NDArray[np.str_]:
         """Stage of its spline in words, (S,); empty of a gear without one."""
         return np.array([*STAGES, ""])[self.stage(gear)]
+
+    def _on_spline(self, gear: str) -> list[int]:
+        """Numbers of the radial elements of a gear's spline."""
+        of = self.state.of
+        splines = tuple(of.train.splines)
+        return [q for q, k in of.claims.on_splines if splines[k] == gear]
 
     def one(self, gear: str) -> FloatState:
         """Return what there is to say of a float in the first claim."""
@@ -282,8 +292,7 @@ class Rests:
         boundaries = sorted(touches, key=lambda t: -t.force)
         on = [t for t in boundaries if t.touching]
         settled, stage = bool(self.settled(gear)[0]), int(self.stage(gear)[0])
-        own = [q for q, k in enumerate(state.of.pulled) if state.of.gears[k] == gear]
-        own = own[: len(own) - sum(ring.gear == gear for ring in state.of.train.rounds)]
+        own = self._on_spline(gear)
         return FloatState(
             gear=gear,
             state="on boundary" if on else "inside" if settled else "undetermined",

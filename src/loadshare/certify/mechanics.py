@@ -21,7 +21,7 @@ class Mechanics:
     """Who touches whom in a train, and how.
 
     Contacts are all flanks, then of every drum its two arcs, its upper and its lower stop. Radial
-    elements are the splines, with memory their stops, and the round rings.
+    elements are in the order of claims.
 
     Parameters
     ----------
@@ -70,8 +70,8 @@ class Mechanics:
         Gear of every radial element.
     pulls : tuple of str
         Names of the radial elements.
-    claimed : ndarray, shape (radials,)
-        Place of each among the claimed reactions.
+    claims : Names
+        Order of what is claimed.
     gears, gear_names, bearings, bearing_names, turning_gears, squeezed_names : tuple of str
         Names of all gears, and as elements; of those that can be displaced, and of their bearings;
         of the first gear of every group that turns; of both arcs of the drums under `squeezed`.
@@ -154,11 +154,9 @@ class Mechanics:
         )
 
     def _put_radials(self) -> None:
-        named = Names(self.train).radials
-        rounds = len(self.train.rounds)
-        self.claimed = np.array([*range(rounds, len(named)), *range(rounds)], dtype=np.intp)
-        self.pulls = tuple(named[k][0] for k in self.claimed)
-        self.pulled = np.array([self.order[named[k][1]] for k in self.claimed], dtype=np.intp)
+        self.claims = Names(self.train)
+        self.pulls = tuple(name for name, _ in self.claims.radials)
+        self.pulled = np.array([self.order[gear] for _, gear in self.claims.radials], dtype=np.intp)
 
     def _put_names(self) -> None:
         self.gears = tuple(self.order)
@@ -235,10 +233,11 @@ class Mechanics:
     def centres(self) -> Array:
         """Centres of the radial elements [m], shape (radials, 3)."""
         found = np.zeros((len(self.pulls), 3))
-        for q, ring in enumerate(self.train.rounds, len(self.pulls) - len(self.train.rounds)):
+        for q, ring in enumerate(self.train.rounds):
             found[q] = ring.offset
         if self.train.slip is not None:
-            found[: len(self.train.splines)] = [self.train.slip[g] for g in self.train.splines]
+            for q, gear in enumerate(self.train.splines, self.claims.splines.start):
+                found[q] = self.train.slip[gear]
         return found
 
     @cached_property

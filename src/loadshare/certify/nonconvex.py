@@ -19,8 +19,8 @@ from loadshare.train.train import Train
 
 def _arc_forces(train: Train, answers: Equilibria) -> Array:
     """Forces of the arcs of every drum [N], shape (S, drums, 2)."""
-    drums = len(train.drums)
-    return answers.ring_force[:, 2 * drums :].reshape(len(answers.rotation), drums, 2)
+    arcs = answers.ring_force[:, answers.names.arcs]
+    return arcs.reshape(len(arcs), len(train.drums), 2)
 
 
 def _largest(numbers: Array) -> Array:
@@ -57,7 +57,6 @@ def is_convex(train: Train, situations: Situations, answers: Equilibria, load: A
     if not follows.any():
         return np.asarray(convex)
     torque = answers.flank_force @ mechanics_of(train).spline_moment.T
-    first = len(train.rounds)
-    reaction = answers.radial_reaction[:, first : first + len(train.splines)]
+    reaction = answers.radial_reaction[:, answers.names.splines]
     slips = np.sqrt((reaction**2).sum(axis=2)) >= per_torque * np.abs(torque) - band[:, None]
     return np.asarray(convex & ~(follows & slips).any(axis=1))

@@ -166,7 +166,7 @@ class ClaimedState:
 
     def _put_drums(self) -> None:
         of, here, moved = self.of, self.here, self.claim.displacement
-        nominal, stops = of.nominal[..., None], 2 * len(of.drum)
+        nominal, claimed = of.nominal[..., None], self.claim.ring_force
         relative = moved[of.drum][:, None] - moved[of.neighbours]
         apart = here.arc_shift + relative
         self.way = nominal + apart
@@ -183,8 +183,8 @@ class ClaimedState:
         approach[:, 2] = across
         approach[:, 3] = -across
         approach[:, 2:] -= here.stop
-        force[:, :2] = self.claim.ring_force[stops:].reshape(-1, 2, self.count)
-        force[:, 2:] = self.claim.ring_force[:stops].reshape(-1, 2, self.count)
+        force[:, :2] = claimed[of.claims.arcs].reshape(-1, 2, self.count)
+        force[:, 2:] = claimed[of.claims.stops].reshape(-1, 2, self.count)
         self.ring_force = force
         compression = here.wall[:, None] * np.maximum(force, 0.0)
         self.at_rest = np.broadcast_to(self.at_rest, self.force.shape)
@@ -201,7 +201,7 @@ class ClaimedState:
     @cached_property
     def reaction(self) -> Array:
         """Force of every radial element on its gear [N], shape (radials, 3, S)."""
-        return np.asarray(self.claim.radial_reaction[self.of.claimed])
+        return self.claim.radial_reaction
 
     @cached_property
     def bend(self) -> Array:
@@ -209,8 +209,8 @@ class ClaimedState:
 
         Their slip s is what it leaves of the displacement p.
         """
-        splines = len(self.of.train.splines)
-        pushed = self.reaction[:splines] + self.reaction[splines : 2 * splines]
+        claims = self.of.claims
+        pushed = self.reaction[claims.splines] + self.reaction[claims.spline_stops]
         return np.asarray(-pushed / self.here.spline[:, :1])
 
     @cached_property
@@ -218,20 +218,20 @@ class ClaimedState:
         """Way from the centre of every radial element [m], shape (radials, 3, S)."""
         place = self.claim.displacement[self.of.pulled]
         if self.of.train.slip is not None:
-            place[: 2 * len(self.bend)] -= np.concatenate([self.bend, self.bend])
+            for part in (self.of.claims.splines, self.of.claims.spline_stops):
+                place[part] -= self.bend
         return np.asarray(place - self.of.centres[..., None])
 
     @cached_property
     def graph(self) -> Graph:
         """Graphs of the radial elements."""
-        rounds = len(self.of.train.rounds)
-        zero, here = np.zeros((rounds, 1)), self.here
+        zero, here = np.zeros((len(self.of.train.rounds), 1)), self.here
         reach, stiffness = here.round_radius, here.round_stiffness
         if (here.round_power != 1.0).any():
-            radius = self.radius[len(self.radius) - rounds :]
+            radius = self.radius[self.of.claims.rounds]
             reach, stiffness = wall(reach, stiffness, here.round_power, radius)
         rings = Graph(zero, zero, zero, reach, stiffness)
-        graphs = [*self._spline_graphs[0], rings]
+        graphs = [rings, *self._spline_graphs[0]]
         return Graph(
             *(
                 np.concatenate([np.broadcast_to(v, (len(v), self.count)) for v in parts])

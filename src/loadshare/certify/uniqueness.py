@@ -126,6 +126,7 @@ class _System:
         self.taken = np.zeros((count, count))
         self.rigid: list[Array] = []
         self.splines = list(train.splines.values())
+        self.first_spline = self.columns.claims.splines.start
         self.radius = state.radius[:, 0] if state.of.pulls else np.zeros(0)
 
     @cached_property
@@ -141,8 +142,7 @@ class _System:
         self._drums()
         self._springs()
         remembering = self.state.of.train.slip is not None
-        of_splines = 2 * len(self.splines) if remembering else 0
-        for q in range(of_splines, len(self.radius)):
+        for q in range(self.first_spline if remembering else len(self.radius)):
             self._pull(q)
         for k, spline in enumerate(self.splines if remembering else ()):
             self._remembering(k, spline)
@@ -201,9 +201,10 @@ class _System:
 
     def _follows(self, k: int) -> bool:
         """Whether the force of a spline follows the torque where the spline is."""
-        if not _follows(self.splines[k]) or self.radius[k] <= self.near:
+        q = self.first_spline + k
+        if not _follows(self.splines[k]) or self.radius[q] <= self.near:
             return False
-        return self.state.of.train.slip is not None or self._piece(k)[0] != "stick"
+        return self.state.of.train.slip is not None or self._piece(q)[0] != "stick"
 
     def _piece(self, q: int) -> tuple[str, float]:
         """The piece of its graph on which a radial element is, and its slope [N/m]."""
@@ -225,7 +226,7 @@ class _System:
     def _pull(self, q: int) -> None:
         """A radial element: the slope of its piece along, force over radius across."""
         state = self.state
-        pair, radius, held = self._pair(self._radial(q)), self.radius[q], self._piece(q)[1]
+        pair, radius, held = self.rows[self.columns.both(q)], self.radius[q], self._piece(q)[1]
         if radius <= self.near:
             for row in pair:
                 self._hold(row, held)
@@ -235,21 +236,19 @@ class _System:
         along = outward @ pair
         self._hold(along, held)
         self._hold(beside @ pair, float(size(state.reaction[q], axis=0)[0]) / radius)
-        if q >= len(self.splines) or not self._follows(q):
+        k = q - self.first_spline
+        if k < 0 or not self._follows(k):
             return
-        per_torque = self.splines[q].friction_per_torque
-        follow = math.copysign(per_torque, state.transmitted[q, 0]) * self.torque_slope[q]
+        per_torque = self.splines[k].friction_per_torque
+        follow = math.copysign(per_torque, state.transmitted[k, 0]) * self.torque_slope[k]
         coupling = np.outer(along, follow)
         self.taken -= 0.5 * (coupling + coupling.T)
 
-    def _radial(self, q: int) -> int:
-        """First of the two columns of a radial element."""
-        return int(self.columns.radials.start + 2 * self.state.of.claimed[q])
-
     def _remembering(self, k: int, spline: Spline) -> None:
         """A spline with memory: held by its shaft where the slip is, and by nothing elsewhere."""
-        if self.radius[k] <= self.near:
-            self.rigid += list(self._pair(self._radial(k)))
+        q = self.first_spline + k
+        if self.radius[q] <= self.near:
+            self.rigid += list(self.rows[self.columns.both(q)])
             for row in self._pair(self.columns.bends.start + 2 * k):
                 self._hold(row, spline.bending_stiffness)
 

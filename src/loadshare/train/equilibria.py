@@ -46,6 +46,37 @@ class Names:
         )
 
     @cached_property
+    def stops(self) -> slice:
+        """Of the contacts, the stops of drums."""
+        return slice(0, 2 * len(self.train.drums))
+
+    @cached_property
+    def arcs(self) -> slice:
+        """Of the contacts, the arcs of drums."""
+        return slice(self.stops.stop, len(self.contacts))
+
+    @cached_property
+    def rounds(self) -> slice:
+        """Of the radial elements, the round rings and bearings."""
+        return slice(0, len(self.train.rounds))
+
+    @cached_property
+    def splines(self) -> slice:
+        """Of the radial elements, the splines."""
+        return slice(self.rounds.stop, self.rounds.stop + len(self.train.splines))
+
+    @cached_property
+    def spline_stops(self) -> slice:
+        """Of the radial elements, the stops of splines with memory."""
+        return slice(self.splines.stop, len(self.radials))
+
+    @cached_property
+    def on_splines(self) -> tuple[tuple[int, int], ...]:
+        """Numbers of the radial elements of splines, and of the spline of each."""
+        parts = self.splines, self.spline_stops
+        return tuple((q, k) for part in parts for k, q in enumerate(range(part.start, part.stop)))
+
+    @cached_property
     def radials(self) -> tuple[tuple[str, str], ...]:
         """Round rings, then splines: name and gear; last, with memory, the splines' stops."""
         splines = self.train.splines

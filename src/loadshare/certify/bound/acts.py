@@ -66,7 +66,7 @@ def first_acts(claim: Claim, noise: float = BOUND.noise) -> Acts:
     closed = (contacts != 0.0) & ~faint
     scalar = np.where(closed, Act.STOP, Act.OPEN).astype(np.int8)
     radials = np.zeros((claim.count, 0), np.int8)
-    if claim.radial_gears:
+    if claim.columns.claims.radials:
         radials = _radial_acts(claim, noise * largest)
     return np.concatenate([scalar, radials], axis=1)
 
@@ -78,7 +78,7 @@ def unmoved(claim: Claim, distance: Array) -> Flags:
     for k, gear in enumerate(train.splines if train.slip is not None else ()):
         before = np.linalg.norm((train.slip or {})[gear])
         place = np.abs(claim.answers.displacement[:, columns.order[gear]]).max(axis=1)
-        at = len(train.rounds) + k
+        at = columns.claims.splines.start + k
         found[:, at] = distance[:, at] <= EPS * (before + place)
     return found
 

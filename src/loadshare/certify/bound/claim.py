@@ -63,13 +63,11 @@ class Claim:
         for gear, at in columns.places.items():
             moved = self.answers.displacement[:, columns.order[gear]]
             x[:, at : at + 2] = moved @ train.gears[gear].frame.T
-        first = len(train.rounds)
+        reaction, claims = self.answers.radial_reaction, columns.claims
+        friction, stop = reaction[:, claims.splines], reaction[:, claims.spline_stops]
         for k, (gear, at) in enumerate(columns.slips.items()):
             # The spline's shaft bends under the friction and the stop that act on its slip.
-            force = sum(
-                self.answers.radial_reaction[:, q]
-                for q in (first + k, first + len(columns.slips) + k)
-            )
+            force = friction[:, k] + stop[:, k]
             bent = -force @ train.gears[gear].frame.T / self.situations.spline[:, k, :1]
             place = columns.places[gear]
             x[:, at : at + 2] = x[:, place : place + 2] - bent
@@ -86,26 +84,16 @@ class Claim:
         found[:, columns.bearings] = answers.support_force[:, columns.moving].reshape(
             self.count, -1
         )
-        stops = 2 * len(train.drums)
-        found[:, columns.stops] = answers.ring_force[:, :stops]
-        found[:, columns.arcs.start : columns.arcs.stop : 2] = answers.ring_force[:, stops:]
-        for q, gear in enumerate(self.radial_gears):
-            at = columns.radials.start + 2 * q
+        claims = columns.claims
+        found[:, columns.stops] = answers.ring_force[:, claims.stops]
+        found[:, columns.arcs.start : columns.arcs.stop : 2] = answers.ring_force[:, claims.arcs]
+        for q, (_, gear) in enumerate(claims.radials):
             frame = train.gears[gear].frame
-            found[:, at : at + 2] = -answers.radial_reaction[:, q] @ frame.T
-        first = columns.radials.start + 2 * len(train.rounds)
-        for k in range(len(columns.slips)):
-            friction, stop = (first + 2 * (k + j * len(columns.slips)) for j in (0, 1))
-            at = columns.bends.start + 2 * k
-            found[:, at : at + 2] = found[:, friction : friction + 2] + found[:, stop : stop + 2]
+            found[:, columns.both(q)] = -answers.radial_reaction[:, q] @ frame.T
+        if columns.slips:
+            friction, stop = map(columns.all_of, (claims.splines, claims.spline_stops))
+            found[:, columns.bends] = found[:, friction] + found[:, stop]
         return found
-
-    @cached_property
-    def radial_gears(self) -> tuple[str, ...]:
-        """Gear of every radial element."""
-        train = self.columns.train
-        splines = tuple(train.splines) * (1 if train.slip is None else 2)
-        return (*(r.gear for r in train.rounds), *splines)
 
     @cached_property
     def rest(self) -> tuple[Twofold, Array]:
@@ -130,13 +118,10 @@ class Claim:
         gaps[:, columns.flanks] = here.gap
         gaps[:, columns.stops] = here.stop.reshape(len(here.stop), -1)
         for q, ring in enumerate(train.rounds):
-            at = columns.radials.start + 2 * q
-            gaps[:, at : at + 2] = train.gears[ring.gear].frame @ ring.offset
+            gaps[:, columns.both(q)] = train.gears[ring.gear].frame @ ring.offset
         if train.slip is not None:
-            for k, gear in enumerate(train.splines):
-                at = columns.radials.start + 2 * (len(train.rounds) + k)
-                before = np.asarray(train.slip[gear])
-                gaps[:, at : at + 2] = train.gears[gear].frame @ before
+            for q, gear in enumerate(train.splines, columns.claims.splines.start):
+                gaps[:, columns.both(q)] = train.gears[gear].frame @ train.slip[gear]
         return gaps
 
     @cached_property
@@ -242,24 +227,21 @@ class Claim:
         stiffness (infinite for a rigid stop); not a number where a law has no meaning. A wall that
         is a power is given by its tangent at the claim.
         """
-        train, here = self.columns.train, self.situations
-        found = np.zeros((self.count, len(self.radial_gears), 5))
-        first = len(train.rounds)
-        found[:, :first, 3] = here.round_radius
-        found[:, :first, 4] = here.round_stiffness
+        train, here, claims = self.columns.train, self.situations, self.columns.claims
+        found = np.zeros((self.count, len(claims.radials), 5))
+        rounds = found[:, claims.rounds]
+        rounds[:, :, 3], rounds[:, :, 4] = here.round_radius, here.round_stiffness
         if self.rolls:
-            at = self.columns.radials.start
-            where = self.lengths[0].value[:, at : at + 2 * first].reshape(self.count, first, 2)
-            radius = np.sqrt((where**2).sum(axis=2))
+            where = self.lengths[0].value[:, self.columns.all_of(claims.rounds)]
+            radius = np.sqrt((where.reshape(self.count, -1, 2) ** 2).sum(axis=2))
             law = here.round_radius, here.round_stiffness, here.round_power
-            found[:, :first, 3], found[:, :first, 4] = wall(*law, radius)
-        if count := len(train.splines):
+            rounds[:, :, 3], rounds[:, :, 4] = wall(*law, radius)
+        if train.splines:
             numbers, memory = np.moveaxis(here.spline, 2, 0), train.slip is not None
             graphs, faulty = spline_graphs(numbers, self.torque_on_splines, memory=memory)
-            for at, graph in enumerate(graphs):
-                part = found[:, first + at * count : first + (at + 1) * count]
+            for part, graph in zip((claims.splines, claims.spline_stops), graphs, strict=False):
                 for k, figure in enumerate(graph):
-                    part[:, :, k] = np.where(faulty, np.nan, figure)
+                    found[:, part, k] = np.where(faulty, np.nan, figure)
         if self.limits is not None:
             found[:, :, 2:4] = np.where(np.isnan(found[:, :, 2:4]), np.nan, self.limits)
         return found

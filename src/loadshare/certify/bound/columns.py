@@ -29,6 +29,7 @@ from loadshare.certify.bound.twofold import Twofold, quotient, two_product
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.rigid import rigid_shafts
 from loadshare.settings import BOUND
+from loadshare.train.equilibria import Names
 from loadshare.train.train import Train
 
 UNIT = 0.5 * np.finfo(float).eps
@@ -87,12 +88,14 @@ class Columns:
         Columns by kind; arcs and radials in pairs, `bends` the shafts of splines with memory.
     matrix : Twofold
         A, shape (m, n).
+    claims : Names
+        Order of contacts and radial elements in a claim.
     first_pair, pairs : int
         Column from which on elements have two, and how many such elements there are.
     """
 
     def __init__(self, train: Train) -> None:
-        self.train = train
+        self.train, self.claims = train, Names(train)
         of = mechanics_of(train)
         self.order, self.moving, self.elastic_shafts = of.order, of.moving, of.elastic
         self.all_flanks, self.meshes = tuple(of.flanks), of.mesh_of
@@ -119,6 +122,15 @@ class Columns:
         self.first_pair = self.arcs.start
         self.pairs = (len(rows) - self.first_pair) // 2
         self._statics: dict[bytes, Statics] = {}
+
+    def both(self, radial: int) -> slice:
+        """Columns of a radial element, given its number in a claim."""
+        return self.all_of(slice(radial, radial + 1))
+
+    def all_of(self, radials: slice) -> slice:
+        """Columns of radial elements that follow one another in a claim."""
+        start = self.radials.start
+        return slice(start + 2 * radials.start, start + 2 * radials.stop)
 
     @cached_property
     def shaft_arms(self) -> Array:
@@ -157,9 +169,9 @@ class Columns:
     def splined(self) -> Array:
         """Which pairs of columns are a spline's, 1 or 0, shape (pairs, splines)."""
         found = np.zeros((self.pairs, len(self.train.splines)))
-        first = (self.arcs.stop - self.arcs.start) // 2 + len(self.train.rounds)
-        for k in range(first, self.pairs):
-            found[k, (k - first) % len(self.train.splines)] = 1.0
+        first = (self.arcs.stop - self.arcs.start) // 2
+        for q, k in self.claims.on_splines:
+            found[first + q, k] = 1.0
         return found
 
     @cached_property

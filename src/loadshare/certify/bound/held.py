@@ -60,27 +60,27 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
     turned = np.full((claim.count, len(train.splines)), np.inf)
     if train.slip is None:
         return Held(claim, np.zeros(0, dtype=np.intp), turned)
-    rounds, splines = len(train.rounds), len(train.splines)
     reactions = claim.answers.radial_reaction.copy()
     limits = claim.graphs[:, :, 2:4].copy()
     slack = np.zeros(len(columns.names))
     shared: list[int] = []
+    first, last = columns.claims.splines.start, columns.claims.spline_stops.start
     for k, gear in enumerate(train.splines):
-        friction, stop = rounds + k, rounds + splines + k
+        friction, stop = first + k, last + k
         before = np.asarray(train.slip[gear])
         reach = float(np.linalg.norm(before))
-        at = columns.radials.start + 2 * friction
-        slipped = np.abs(claim.lengths[0].value[:, at : at + 2]).max(axis=1)
+        slips = columns.both(friction)
+        slipped = np.abs(claim.lengths[0].value[:, slips]).max(axis=1)
         both = reactions[:, friction] + reactions[:, stop]
         stiffness, rate = claim.situations.spline[:, k, 0], _rate(claim, k)
         arm = float(np.abs(columns.moments[k]).max(initial=0.0))
         least = BOUND.turned * scale * arm
         gives = arm * stiffness * (claim.graphs[:, stop, 3] + reach)
-        room, torque = _widest(claim, k, stop, rate, np.maximum(least, gives))
+        room, torque = _widest(claim, k, rate, np.maximum(least, gives))
         if float((stiffness * (room + reach)).max()) <= slight * float(scale.min()):
             # It does not move, up to what room it has.
             limits[:, friction, 0], limits[:, stop, 1] = np.inf, np.inf
-            slack[at : at + 2] = float(room.max()) + reach
+            slack[slips] = float(room.max()) + reach
             turned[:, k] = torque
             reactions[:, friction], reactions[:, stop] = both, 0.0
             shared += _columns(claim, friction, stop)
@@ -102,7 +102,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
         if held.any():
             # As far as the end is from there, it may have slipped.
             room = room + rate * least / stiffness
-            slack[at : at + 2] = max(float(room[held].max()), 0.0)
+            slack[slips] = max(float(room[held].max()), 0.0)
             turned[held & (rate > 0.0), k] = least[held & (rate > 0.0)]
             shared += _columns(claim, friction, stop)
     if shared:
@@ -117,21 +117,22 @@ def _rate(claim: Claim, spline: int) -> Array:
     return np.where(np.isnan(fixed), np.abs(rate), 0.0)
 
 
-def _widest(claim: Claim, spline: int, stop: int, rate: Array, least: Array) -> tuple[Array, Array]:
+def _widest(claim: Claim, spline: int, rate: Array, least: Array) -> tuple[Array, Array]:
     """Most room that friction leaves a spline, (S,) [m], up to some error of its torque [N·m].
 
     Where friction follows the torque, less torque leaves more room.
     """
     stiffness, clearance = (claim.situations.spline[:, spline, j] for j in (0, 2))
-    bound = claim.graphs[:, stop - len(claim.columns.train.splines), 2]
+    claims = claim.columns.claims
+    bound = claim.graphs[:, claims.splines][:, spline, 2]
     follows, per_torque = rate > 0.0, np.where(rate > 0.0, rate, 1.0)
     over = (bound * (1.0 - EPS) - stiffness * clearance) / per_torque
     wider = np.maximum(least - over, 0.0) * per_torque / stiffness
-    room = np.where(follows, wider, claim.graphs[:, stop, 3])
+    room = np.where(follows, wider, claim.graphs[:, claims.spline_stops][:, spline, 3])
     return room, np.where(follows, np.maximum(over, least), np.inf)
 
 
 def _columns(claim: Claim, *radials: int) -> list[int]:
     """Numbers of the columns of some radial elements."""
-    start = claim.columns.radials.start
-    return [start + 2 * q + k for q in radials for k in (0, 1)]
+    each = map(claim.columns.both, radials)
+    return [column for both in each for column in range(both.start, both.stop)]

@@ -234,10 +234,9 @@ def _with_open_slips(claim: Claim, scale: Array) -> tuple[Array, Array]:
     flanks = found.force[0, columns.flanks]
     if not all(is_inside(claim, slip, flanks) for slip in slips):
         return np.full_like(found.force[0], np.inf), np.full_like(found.coordinate[0], np.inf)
-    first = columns.radials.start + 2 * len(columns.train.rounds)
     for slip in slips:
-        at = first + 2 * slip.number
-        found.force[0, at : at + 2] = reaction_error(claim, slip, flanks)
+        both = columns.both(columns.claims.splines.start + slip.number)
+        found.force[0, both] = reaction_error(claim, slip, flanks)
         bearing = columns.bearings.start + 2 * list(columns.places).index(slip.gear)
         found.force[0, bearing : bearing + 2] = np.abs(claim.forces[0, bearing : bearing + 2])
     return found.force[0], found.coordinate[0]
@@ -337,7 +336,7 @@ def _of_rounding(claim: Claim, scale: Array) -> Flags:
     arcs = np.hypot(*np.moveaxis(claim.forces[:, columns.arcs].reshape(claim.count, -1, 2), 2, 0))
     pushes = np.concatenate([contacts, arcs], axis=1)
     found[:, : pushes.shape[1]] = (pushes > 0.0) & (pushes <= noise)
-    if claim.radial_gears:
+    if claim.columns.claims.radials:
         size = np.hypot(
             *np.moveaxis(claim.forces[:, columns.radials].reshape(claim.count, -1, 2), 2, 0)
         )

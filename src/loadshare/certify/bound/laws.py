@@ -67,7 +67,9 @@ def elements(
     scalar = slice(0, columns.first_pair)
     width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
     force[:, scalar] = np.where(active[:, scalar], force[:, scalar], 0.0)
-    lines: list[Any] = [np.zeros((count, k)) for k in (*[pairs] * 6, len(claim.radial_gears))]
+    lines: list[Any] = [
+        np.zeros((count, k)) for k in (*[pairs] * 6, len(claim.columns.claims.radials))
+    ]
     lines.append(np.zeros((count, pairs), dtype=bool))
     found = Elements(
         act,

@@ -53,9 +53,8 @@ def _round(claim: Claim, ring: RoundRing) -> float:
     """How far a gear in a rigid round ring may be from its claimed place."""
     columns = claim.columns
     q = columns.train.rounds.index(ring)
-    at = columns.radials.start + 2 * q
     radius = float(claim.graphs[0, q, 3])
-    off = math.hypot(*claim.lengths[0].value[0, at : at + 2].tolist())
+    off = math.hypot(*claim.lengths[0].value[0, columns.both(q)].tolist())
     return off if radius == 0.0 else math.inf
 
 

@@ -84,16 +84,17 @@ def open_slips(claim: Claim) -> list[OpenSlip]:
     found = []
     for number, gear in enumerate(train.splines):
         support = claim.situations.support[0, columns.order[gear]]
-        first = columns.radials.start + 2 * (len(train.rounds) + number)
-        force = claim.forces[0, first : first + 2]
+        q = columns.claims.splines.start + number
+        both = columns.both(q)
+        force = claim.forces[0, both]
         size = math.hypot(*force.tolist())
-        _, stick, level, reach, _ = claim.graphs[0, len(train.rounds) + number].tolist()
+        _, stick, level, reach, _ = claim.graphs[0, q].tolist()
         if gear in limited or support.any() or not 0.0 <= stick <= reach < math.inf:
             continue
         if size == 0.0 or abs(size - level) > BOUND.used_up * level:
             continue
         way = force / size
-        place = claim.lengths[0].value[0, first : first + 2]
+        place = claim.lengths[0].value[0, both]
         along, across = float(place @ way), float(place @ [-way[1], way[0]])
         margin = BOUND.margin * reach
         ends = max(reach + margin - along, along - (stick - margin)), abs(across) + margin
@@ -122,7 +123,7 @@ def is_inside(claim: Claim, slip: OpenSlip, flanks: Array) -> bool:
     flanks : ndarray, shape (flanks,)
         Errors of their forces, wherever in its rectangle the gear is [N].
     """
-    q = len(claim.columns.train.rounds) + slip.number
+    q = claim.columns.claims.splines.start + slip.number
     stiffness, stick, level, reach, _ = claim.graphs[0, q].tolist()
     fixed, rate = claim.situations.spline[0, slip.number, 3:5].tolist()
     size = math.hypot(*slip.force.tolist())

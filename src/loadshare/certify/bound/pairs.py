@@ -163,8 +163,7 @@ def _light_walls(
         target[:, rounds] = np.where(light, value, target[:, rounds])
     # A force stays below that all along its line while its two components change by less than this.
     room = np.where(light, np.sqrt(0.5) * (at - size), np.inf)
-    start = columns.radials.start
-    found.room[:, start : start + 2 * power.shape[1]] = np.repeat(room, 2, axis=1)
+    found.room[:, columns.all_of(columns.claims.rounds)] = np.repeat(room, 2, axis=1)
     return np.asarray(light)
 
 
@@ -179,34 +178,33 @@ def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int, light: Flags) -
         # The compliance goes with F^(1/power − 1); at half the force it bends four times more.
         bent = np.where(acting, 4.0 * (1.0 - 1.0 / power) * compliance / size, 0.0)
     found.bent[:, rounds] = np.where(np.isnan(bent), np.inf, bent)
-    first = claim.columns.radials.start
+    columns = claim.columns
     begin = claim.graphs[:, : power.shape[1], 3]
     touched = (found.distance[:, rounds] - begin) / np.where(acting, compliance, 1.0)
     left = np.where(acting, found.bent[:, rounds] * (size - touched) ** 2, 0.0)
-    found.width[:, first : first + 2 * power.shape[1]] += np.repeat(left, 2, axis=1)
+    found.width[:, columns.all_of(columns.claims.rounds)] += np.repeat(left, 2, axis=1)
 
 
 def _put_aside(claim: Claim, acts: Acts) -> tuple[Array, Array]:
     """Friction of splines that are taken as open, (S, radials): its level [N], and per torque."""
     is_open = acts == Act.OPEN
     spare = np.zeros(acts.shape)
-    for k in range(len(claim.columns.train.splines)):
-        q = len(claim.columns.train.rounds) + k
-        fixed, rate = (claim.situations.spline[:, k, j] for j in (3, 4))
-        spare[:, q] = np.where(np.isnan(fixed) & is_open[:, q], np.abs(rate), 0.0)
+    splines, fixed, rate = (
+        claim.columns.claims.splines,
+        *claim.situations.spline.T[3:].swapaxes(1, 2),
+    )
+    spare[:, splines] = np.where(np.isnan(fixed) & is_open[:, splines], np.abs(rate), 0.0)
     return np.where(is_open, claim.graphs[:, :, 2], 0.0), spare
 
 
 def _follow(claim: Claim, acts: Acts, yields: Array, follows: Array, shrinks: Array) -> None:
     """Change of a spline's level and of its room with its torque, where they enter."""
-    train, here = claim.columns.train, claim.situations
-    rounds, splines = len(train.rounds), len(train.splines)
-    for q in range(rounds, acts.shape[1]):
-        k = (q - rounds) % splines
+    columns, here = claim.columns, claim.situations
+    for q, k in columns.claims.on_splines:
         stiffness, fixed, rate = (here.spline[:, k, j] for j in (0, 3, 4))
         rate = np.where(np.isnan(fixed), np.abs(rate), 0.0)
         stopped = acts[:, q] == Act.STOP
-        if q >= rounds + splines:
+        if q >= columns.claims.spline_stops.start:
             # With memory the room of a rigid stop shrinks by F_m/K_w.
             shrinks[:, q] = np.where(stopped, rate / stiffness, 0.0)
         else:

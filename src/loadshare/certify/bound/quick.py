@@ -82,7 +82,7 @@ def _rolls(claim: Claim, act: Acts) -> bool:
     """Whether a bearing acts whose wall is a power."""
     if not claim.rolls:
         return False
-    first = act.shape[1] - len(claim.radial_gears)
+    first = act.shape[1] - len(claim.columns.claims.radials)
     bent = (claim.situations.round_power != 1.0).any(axis=0)
     return bool((act[:, first : first + len(bent)][:, bent] != Act.OPEN).any())
 
@@ -116,7 +116,7 @@ def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
             weaker = force[:, start + k] < force[:, start + 1 - k] + k * np.finfo(float).tiny
             doubled[both & weaker, start + k] = True
     act[doubled] = Act.OPEN
-    if claim.radial_gears:
+    if claim.columns.claims.radials:
         length = length[:, columns.radials].reshape(claim.count, -1, 2)
         left = claim.graphs[:, :, 3] - np.sqrt((length**2).sum(axis=2))
         radials = act[:, gaps.shape[1] :]
@@ -131,7 +131,7 @@ def _groups(claim: Claim, act: Acts) -> list[Numbers]:
     those whose lines point elsewhere are left to twice the precision.
     """
     groups = alike(act)
-    first = act.shape[1] - len(claim.radial_gears)
+    first = act.shape[1] - len(claim.columns.claims.radials)
     if claim.count > BOUND.few or not np.isin(act[:, first:], (Act.STOP, Act.STEP)).any():
         return groups
     return [row for rows in groups for row in np.split(rows, len(rows))]

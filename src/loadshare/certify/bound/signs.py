@@ -56,11 +56,10 @@ def doubts(
 
 def _level_errors(claim: Claim, errors: Array, rows: Numbers | slice) -> Array:
     """Errors of the levels of splines that follow the torque, shape (rows, radials) [N]."""
-    columns, train = claim.columns, claim.columns.train
-    found = np.zeros((len(errors), len(claim.radial_gears)))
+    columns = claim.columns
+    found = np.zeros((len(errors), len(columns.claims.radials)))
     torque = errors[:, columns.flanks] @ np.abs(columns.moments).T
-    for q in range(len(train.rounds), found.shape[1]):
-        k = (q - len(train.rounds)) % len(train.splines)
+    for q, k in columns.claims.on_splines:
         spline = claim.situations.spline[:, k]
         spline = spline[rows] if len(spline) > 1 else spline
         rate, follows = np.abs(spline[:, 4]), np.isnan(spline[:, 3])
