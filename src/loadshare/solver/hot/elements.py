@@ -40,3 +40,8 @@ def arc_at(loading: Loading, a: int, rows: Numbers, x: Array) -> tuple[Array, Ar
         here[beyond] = distance = np.sqrt(nominal @ nominal)
         margin[beyond] = moved[beyond] @ nominal / distance
     return d / here[:, None], margin + pick(loading.clearance, rows)[:, a]
+
+
+def times(matrices: Array, vectors: Array) -> Array:
+    """Return the products of (k, n, n) with (k, n)."""
+    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])

@@ -61,7 +61,7 @@ def renew_bound(s, work, t, width):  # type: ignore[no-untyped-def]
 
 @bare
 def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
-    """Directions and tangents of the radial elements where they are; see `vectorised.block`."""
+    """Directions and tangents of the radial elements where they are; see `hot.radials.block`."""
     one, two = work.one, work.two
     for t in range(s.turning_radials.shape[0]):
         status = s.states[s.first_radial - s.first_column + s.turning_radials[t]]
