@@ -545,6 +545,7 @@ MEASURED_FROM = {
 PAGES = (
     *("README.md", INDEX, TUTORIAL, "docs/studies.md", "docs/results.md", "docs/pictures.md"),
     *("docs/api.md", "docs/theory.md", "docs/design.md", VALIDATION, "docs/ltca.md"),
+    "docs/design-parts.md",
     *("docs/case-reference.md", "docs/command-line.md", "docs/decisions.md"),
     "docs/reliability.md",
 )
