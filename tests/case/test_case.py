@@ -171,3 +171,12 @@ def test_replace_of_what_is_not_there(drive, key, message):
     with pytest.raises(CaseError) as caught:
         drive.replace({key: 3})
     assert str(caught.value) == f"changes: {key} = 3: {message}"
+
+
+def test_what_is_no_change_by_key_path_is_told(drive):
+    for changes in (None, [("title", "x")], "title"):
+        with pytest.raises(TypeError, match="changes by key path are wanted, as in"):
+            drive.replace(changes)
+    for key in (1, ("operating", "torque"), ""):
+        with pytest.raises(CaseError, match="is not a key path"):
+            drive.replace({key: "1 N*m"})

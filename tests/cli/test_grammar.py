@@ -164,6 +164,9 @@ def test_the_ending_or_a_word_tells_the_form(text, form, file):
         (("critical", RING, "--over", "a=1:2:3"), "is not of the form KEY=FROM:TO"),
         (("critical", RING, "--over", "a=1:2", "--over", "b=1:2"), "takes one range"),
         (("critical", RING, "a", "--over", "a=1:2"), "says it all"),
+        (("sweep", RING, "--over", "a=1, 2", "--over", "a=3, 4"), "a: is given twice"),
+        (("fit", RING, "--over", "a=1:2", "--over", "a=1:3"), "a: is given twice"),
+        (("tolerance", RING, "--over", "a=1:2", "--over", "a=1:3"), "a: is given twice"),
     ],
 )
 def test_what_cannot_be_written_or_varied_is_reported(command, words, message):

@@ -4,6 +4,7 @@ The judge is the case itself: a sample's situations must be those of the train b
 with the sample's values written into it.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
 
@@ -303,3 +304,17 @@ def test_all_problems_are_reported_at_once():
     with pytest.raises(CaseError) as error:
         columns_of(samples)
     assert [problem.key for problem in error.value.problems] == list(samples)[:2]
+
+
+def test_a_value_that_cannot_be_read_is_named():
+    """With what it is and what is allowed, as a file's would be."""
+    key = "rings.5.float"
+    for value, told in {
+        "3 foo": f'{key} = "3 foo": the unit foo is not known. Allowed: a value in m such as',
+        "3 kg": f'{key} = "3 kg": is a mass, a value in m is needed.',
+        "3": f'{key} = "3": 3 has no unit.',
+    }.items():
+        with pytest.raises(ls.CaseError, match=re.escape(told)):
+            samples_of(everything(), {key: ["1 um", value]})
+    with pytest.raises(ls.CaseError, match=re.escape(f"{key} = 1e+300: 1e+300 has no unit")):
+        samples_of(everything(), {key: [1e300, 2e300]})

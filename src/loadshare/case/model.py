@@ -123,7 +123,9 @@ class Case(Content):
         return copy.deepcopy(dict(self._data))
 
     def to_toml(self, path: str | FilePath | None = None) -> str:
-        """Return the case as a case file that needs no other, and write it if a path is given.
+        """Return the case as a file that extends no other, and write it if a path is given.
+
+        Files of mesh laws are named as they are, relative to the case's own folder.
 
         Parameters
         ----------
@@ -133,7 +135,7 @@ class Case(Content):
         Returns
         -------
         str
-            The text; `load_case` on it gives an equal case.
+            The text; `load_case` on it in that folder gives an equal case.
         """
         from loadshare.case.writer import toml_text
 

@@ -41,7 +41,12 @@ def revise(
     ------
     CaseError
         If a path does not exist.
+    TypeError
+        If the changes are no mapping.
     """
+    if not isinstance(changes, Mapping):
+        wanted = "changes by key path are wanted, as in {'operating.torque': '100 N*m'}"
+        raise TypeError(f"{wanted}, not {type(changes).__name__}")
     changed = dict(data)
     owned: set[int] = set()
     moved = set()
@@ -50,8 +55,8 @@ def revise(
         value = as_data(given)
         try:
             path = parse(key)
-        except ValueError:
-            problems.append(Problem(CHANGES, key, as_given(value), "is not a key path"))
+        except (TypeError, ValueError):
+            problems.append(Problem(CHANGES, str(key), as_given(value), "is not a key path"))
             continue
         _own(changed, path, owned)
         lost = change(changed, path, value)

@@ -110,6 +110,24 @@ def split_setting(text: str, form: str) -> tuple[tuple[str, ...], str]:
     return tuple(found), value
 
 
+def settings_of(given: Iterable[str], form: str) -> dict[tuple[str, ...], str]:
+    """Return the value of every ``KEY=VALUE`` or ``KEY=KEY=VALUE``, by its keys.
+
+    Raises
+    ------
+    typer.BadParameter
+        For a text of another form, or if the same keys are given twice: the first would be lost.
+    """
+    found: dict[tuple[str, ...], str] = {}
+    for text in given:
+        names, value = split_setting(text, form)
+        if names in found:
+            twice = "=".join(names)
+            raise typer.BadParameter(f"{twice}: is given twice; give it once", param_hint=OVER)
+        found[names] = value
+    return found
+
+
 def ranges_of(given: Iterable[str] | None, form: str) -> dict[tuple[str, ...], tuple[str, str]]:
     """Return the two ends of every range ``KEY=FROM:TO`` that was asked for, by its keys.
 
@@ -119,10 +137,10 @@ def ranges_of(given: Iterable[str] | None, form: str) -> dict[tuple[str, ...], t
         For a text of another form.
     """
     found = {}
-    for text in given or ():
-        names, ends = split_setting(text, form)
+    for names, ends in settings_of(given or (), form).items():
         start, colon, stop = ends.partition(":")
         if not colon or not start.strip() or not stop.strip() or ":" in stop:
+            text = "=".join((*names, ends))
             raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint=OVER)
         found[names] = start.strip(), stop.strip()
     return found

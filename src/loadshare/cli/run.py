@@ -162,10 +162,10 @@ def _write(
         return report_page([chapter(result.case, case, result=result)])
 
     def changed() -> str:
-        from loadshare.tooth import resolve
+        from loadshare.tooth import written_in
 
-        # What names no other file stays as it is: a law from teeth follows their next change.
-        return resolve(given, leave=given.meshes).to_toml()
+        folders = [output.file.parent for output in files or () if output.form == "toml"]
+        return written_in(given, folders).to_toml()
 
     made = cache(partial(_tables, result))
 

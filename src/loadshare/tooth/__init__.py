@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from loadshare.tooth.law.file import load_law
-    from loadshare.tooth.law.meshes import bears_on_laws, resolve
+    from loadshare.tooth.law.meshes import bears_on_laws, resolve, written_in
     from loadshare.tooth.pair.file import load_pair
 
 _LAZY = {
@@ -15,9 +15,10 @@ _LAZY = {
     "load_law": "loadshare.tooth.law.file",
     "load_pair": "loadshare.tooth.pair.file",
     "resolve": "loadshare.tooth.law.meshes",
+    "written_in": "loadshare.tooth.law.meshes",
 }
 
-__all__ = ["bears_on_laws", "load_law", "load_pair", "resolve"]
+__all__ = ["bears_on_laws", "load_law", "load_pair", "resolve", "written_in"]
 
 
 def __getattr__(name: str) -> Any:

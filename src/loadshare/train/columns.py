@@ -14,6 +14,7 @@ from loadshare.array_types import Array
 from loadshare.case.keys import Path, dotted, parse, with_unit
 from loadshare.case.quantity import as_text
 from loadshare.case.units import si_factor
+from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
 
 _UNIT = re.compile(r"(?P<key>.*\S)\s+\[(?P<unit>[^\]]*)\]")
@@ -64,7 +65,9 @@ class Column:
         value = self.values[sample].item()
         if self.unit:
             return f"{value!r} {self.unit}"
-        return int(value) if isinstance(value, float) and value.is_integer() else value
+        # From 2⁵³ on every number is whole, and none of them counts anything.
+        count = isinstance(value, float) and value.is_integer() and abs(value) < 2.0**53
+        return int(value) if count else value
 
     def in_si(self, unit: str) -> Array:
         """Values (S,) in an SI unit, empty for bare numbers.
@@ -82,13 +85,17 @@ class Column:
 
         from loadshare.case.quantity import Dimension
 
-        reader = Dimension(unit, "a value", f"1 {unit}")
-        try:
-            return np.array([float(reader.read(str(v))) for v in self.values])
-        except PydanticCustomError as error:
-            message = (error.context or {}).get("message", str(error))
-            problem = Problem("samples", dotted(self.path), "", f"holds a value that {message}")
-            raise CaseError([problem]) from error
+        reader = Dimension(unit, f"a value in {unit}", f"1 {unit}")
+        found = np.empty(len(self.values))
+        for sample, text in enumerate(map(str, self.values)):
+            try:
+                found[sample] = reader.read(text)
+            except PydanticCustomError as error:
+                about = error.context or {}
+                message, allowed = about.get("message", str(error)), about.get("allowed", "")
+                problem = Problem("samples", dotted(self.path), as_given(text), message, allowed)
+                raise CaseError([problem]) from error
+        return found
 
 
 def columns_of(samples: Columns) -> list[Column]:

@@ -4,8 +4,10 @@ import math
 
 import pytest
 from tests.tooth.use.pairs import CASE, FACE, PAIRS, SPUR, written
+from typer.testing import CliRunner
 
 from loadshare.case import Case, load_case
+from loadshare.cli.main import app
 from loadshare.errors import CaseError
 from loadshare.tooth import resolve
 from loadshare.tooth.law.file import law_text
@@ -294,6 +296,26 @@ def test_one_law_only(case):
 def test_a_case_keeps_its_files_through_toml(case, tmp_path):
     case.to_toml(tmp_path / "copy.toml")
     assert resolve(load_case(tmp_path / "copy.toml")) == resolve(case)
+
+
+@pytest.mark.parametrize("folder", [".", "below", "../elsewhere"])
+@pytest.mark.parametrize("how", ["run", "fit"])
+def test_a_case_that_is_written_elsewhere_does_without_the_files_of_its_laws(
+    case, spur, tmp_path, folder, how
+):
+    """Beside them, a case names them as before, so that its laws follow their next change."""
+    made = tmp_path / folder / "made.toml"
+    known = known_law(load_pair(spur))
+    words = [how, tmp_path / "case.toml", "-o", made]
+    if how == "fit":
+        measured = 'measured.m={position=1, torque={a-b="95 N*m"}, torque_uncertainty="1 N*m"}'
+        for change in ("stages.I={meshes=['a-b']}", "gears.b.support=1e8 N/m", measured):
+            words += ["--set", change]
+        words += ["--over", "gears.b.support=1e7 N/m:1e9 N/m"]
+    assert CliRunner().invoke(app, [str(word) for word in words]).exit_code == 0
+    mesh = load_case(made).meshes["a-b"]
+    assert (mesh.geometry is None) == (how == "fit" or folder != ".")
+    assert resolve(load_case(made)).meshes["a-b"].law.b == known.b
 
 
 def test_a_case_built_in_python_counts_from_the_working_folder(case, spur, tmp_path, monkeypatch):

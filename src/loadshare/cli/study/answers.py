@@ -144,8 +144,13 @@ def _of_fit(found: Fit) -> Makers:
         heads = ["unknown", "unit", "start", "fitted", "deviation", "low", "high"]
         return pd.DataFrame(rows, columns=heads)
 
+    def fitted() -> str:
+        from loadshare.tooth import written_in
+
+        return written_in(found.case).to_toml()
+
     made = _of_table("fit", found, frame, chi_square=found.comparison.chi_square)
-    return {**made, "toml": found.case.to_toml}
+    return {**made, "toml": fitted}
 
 
 def show_march(found: March) -> None:

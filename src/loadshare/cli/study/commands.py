@@ -24,7 +24,7 @@ from loadshare.cli.options import (
     keys,
     over,
     ranges_of,
-    split_setting,
+    settings_of,
 )
 from loadshare.cli.refusal import refusal_lines
 from loadshare.cli.stop import Stop
@@ -116,7 +116,7 @@ def sweep(
     from loadshare.study.sweep import sweep as swept
 
     form = "KEY=GRID, as in rings.4.float='0 um:12 um:61'"
-    parameters = dict(split_setting(text, form) for text in grids)
+    parameters = settings_of(grids, form)
     with running_study(case, change, "points") as (loaded, tick):
         found = swept(loaded, parameters, positions=position, progress=tick)
     conclude("sweep", found, file)
@@ -402,8 +402,8 @@ def _varied(case: Case, name: str, kind: str, given: list[str]) -> Case:
         return dotted(("study", name, key))
 
     if kind == "sweep":
-        pairs = (split_setting(text, "KEY=GRID") for text in given)
-        return case.replace({at("over"): {"=".join(keys): grid for keys, grid in pairs}})
+        grids = settings_of(given, "KEY=GRID")
+        return case.replace({at("over"): {"=".join(keys): grid for keys, grid in grids.items()}})
     if kind not in ("critical", "fit", "tolerance"):
         raise typer.BadParameter(f"a {kind} varies no input over values", param_hint=OVER)
     form = "KEY=FROM:TO"

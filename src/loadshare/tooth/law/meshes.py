@@ -16,6 +16,7 @@ from loadshare.case.line_of_action import centre_distance, facing
 from loadshare.case.place import minus
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
+from loadshare.input import real
 from loadshare.involute import distance_without_backlash
 
 if TYPE_CHECKING:
@@ -104,6 +105,37 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     if assumed:
         changes["assumed"] = assumed
     return case.replace(changes)
+
+
+def written_in(case: Case, folders: Iterable[Path] | None = None) -> Case:
+    """Return a case as it can be written into any of some folders, or anywhere.
+
+    A law whose file would not be found from there becomes numbers; every other stays as it is, as
+    it follows the next change of teeth.
+
+    Parameters
+    ----------
+    case : Case
+    folders : iterable of Path, optional
+        By default it may be anywhere, where no file is found.
+
+    Raises
+    ------
+    CaseError, Refused
+        As in `resolve`.
+    """
+    places = None if folders is None else list(folders)
+
+    def lost(name: str) -> bool:
+        for source in SOURCES:
+            named = getattr(case.meshes[name], source)
+            if named is not None:
+                own = Path(case.problem(dotted(("meshes", name, source)), "").file).parent
+                files = {real(place / named) for place in places or ()}
+                return places is None or files != {real(own / named)}
+        return False
+
+    return resolve(case, leave={name for name in case.meshes if not lost(name)})
 
 
 def _inline(
