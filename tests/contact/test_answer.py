@@ -298,3 +298,17 @@ def test_radial_laws_that_are_no_rising_graph_are_refused(pieces, message) -> No
     problem = ContactProblem(("x", "y"), np.eye(2), np.array([3.0, 0.0]), radials=(drum,))
     with pytest.raises(ValueError, match=message):
         solve_contact(problem)
+
+
+def test_round_off_in_a_stiffness_is_no_lack_of_symmetry() -> None:
+    """Springs along directions B make BᵀKB; its halves differ in their last digits."""
+    along = np.random.default_rng(3).normal(size=(4, 3))
+    stiffness = along.T @ np.diag([1e6, 3e7, 2e5, 1e8]) @ along
+    stiffness[0, 1] = np.nextafter(stiffness[1, 0], np.inf)
+    load = np.array([100.0, -20.0, 5.0])
+    found = solve_contact(ContactProblem(("x", "y", "z"), stiffness, load))
+    wanted = np.linalg.solve(stiffness, load)
+    np.testing.assert_allclose([found.place[name] for name in "xyz"], wanted, rtol=1e-9)
+    stiffness[0, 1] *= 1.0 + 1e-6
+    with pytest.raises(ValueError, match="is not symmetric"):
+        solve_contact(ContactProblem(("x", "y", "z"), stiffness, load))

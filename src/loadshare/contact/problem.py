@@ -171,6 +171,17 @@ class Radial:
         return self.source.bound(after) - self.source.bound(before)
 
 
+def _symmetric(stiffness: Any) -> Any:
+    """Return a matrix whose halves differ by round-off, as those of a product BᵀKB do, as one."""
+    if not isinstance(stiffness, np.ndarray) or stiffness.shape != stiffness.T.shape:
+        return stiffness
+    with np.errstate(invalid="ignore"):
+        off = np.abs(stiffness - stiffness.T).max(initial=0.0)
+    if 0.0 < off <= CONTACT.singular * np.abs(stiffness).max(initial=0.0):
+        return 0.5 * (stiffness + stiffness.T)
+    return stiffness
+
+
 @dataclass(frozen=True, eq=False)
 class ContactProblem:
     """A contact problem in the module's form.
@@ -180,7 +191,7 @@ class ContactProblem:
     coordinates : tuple of str
         Names.
     stiffness : ndarray, shape (n, n)
-        H, of springs.
+        H, of springs; symmetric but for round-off, which is taken off.
     load : ndarray, shape (n,)
         f.
     rows : tuple of Row
@@ -199,6 +210,7 @@ class ContactProblem:
         _as_floats(self, "stiffness", "load")
         for name in ("coordinates", "rows", "arcs", "radials"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "stiffness", _symmetric(self.stiffness))
 
     @property
     def size(self) -> int:
