@@ -111,11 +111,21 @@ def test_units_that_engineers_write(kind, text, si):
         ),
         (q.Length, "nan mm", 'is not finite. Allowed: a length such as "45.9 mm". '),
         (q.Length, "1e999 mm", 'is not finite. Allowed: a length such as "45.9 mm". '),
-        (
-            q.Length,
-            "1,5 mm",
-            'is not a number followed by a unit. Allowed: a length such as "45.9 mm". '
-            "Decimals have a point, and thousands no sign between them.",
+        *(
+            (
+                q.Length,
+                text,
+                'is not a number followed by a unit. Allowed: a length such as "45.9 mm". '
+                "Decimals have a point, and thousands no sign between them.",
+            )
+            for text in (
+                "1,5 mm",
+                "1.000,5 mm",
+                "1 000 mm",
+                "1'000 mm",
+                "1’000,5 mm",
+                "1.000.000 mm",
+            )
         ),
         (
             q.Length,

@@ -382,6 +382,23 @@ def test_a_sheet_that_is_lost_is_no_case_without_it(book) -> None:
         read((b"sheet4.xml", b"sheet9.xml"))
 
 
+def test_empty_sheets_of_no_table_are_left_out(book, tmp_path) -> None:
+    """Programs add them to new workbooks; an empty one of a table may have lost its rows."""
+    sheets, read = book
+    whole = read()
+    sheets.create_sheet("Tabelle1")
+    sheets.create_sheet("Notes")["B2"] = "  "
+    assert read() == whole
+    assert import_tables(tmp_path / "box.xlsx").left_out == ("empty sheets",)
+    sheets["Notes"]["B2"] = "as agreed"
+    with pytest.raises(CaseError, match="sheet Notes: notes is no table of a case"):
+        read()
+    sheets["Notes"]["B2"] = None
+    sheets.create_sheet("errors")
+    with pytest.raises(CaseError, match="sheet errors: row 1, column A: has no head"):
+        read()
+
+
 def test_a_formula_without_a_saved_value_is_no_empty_cell(book) -> None:
     """Programs that write formulas calculate none; a spreadsheet program saves values."""
     sheets, read = book

@@ -129,6 +129,9 @@ class Dimension:
         try:
             factor = si_factor(unit, self.unit)
         except ValueError as error:
+            if _GROUPED.match(str(text)):
+                hint = _slip_in(text)
+                raise self._problem("is not a number followed by a unit", hint=hint) from None
             raise self._unknown(number, unit, str(error)) from None
         if factor is None:
             kind = kind_of(unit) or f"in {unit}"
@@ -217,6 +220,12 @@ class Dimension:
         }
 
 
+_GROUPED = re.compile(
+    r"\s*[+\-−]?(?:\d+(?:[.'’\s]\d{3})*,\d|\d{1,3}(?:['’]\d{3}|(?:\.\d{3}){2}|\s\d{3}(?!\d*/)))"
+)
+"""Numbers as other languages write them: 1,5 and 1.000,5 and 1'000 and 1 000."""
+
+
 def _slip_in(text: object) -> str:
     """Return a sentence on what keeps a text from being a number with a unit, if it is plain."""
     if not isinstance(text, str):
@@ -224,7 +233,7 @@ def _slip_in(text: object) -> str:
     number, _, unit = text.strip().partition(" ")
     if unit.strip() in OTHERS:
         return _rewritten(number, unit.strip())
-    if re.match(r"\s*[+\-−]?\d+,\d", text):
+    if _GROUPED.match(text):
         return "Decimals have a point, and thousands no sign between them."
     return ""
 

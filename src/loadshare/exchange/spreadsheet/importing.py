@@ -89,7 +89,9 @@ class _Reader:
             self.left_out.append("tables of a result, which follows from the case")
             return
         known = sheet_names()
-        if sheet.name not in known:
+        if sheet.name not in known and not sheet.problems and not sheet.holds_anything:
+            self.left_out.append("empty sheets")
+        elif sheet.name not in known:
             hint = did_you_mean(sheet.name, known)
             self._tell(sheet.place, f"{sheet.name} is no table of a case", choices(known), hint)
         elif len(sheet.rows) > ALLOWED.entries:

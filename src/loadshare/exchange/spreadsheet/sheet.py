@@ -30,6 +30,11 @@ class Sheet:
     rows: list[list[str]]
     problems: tuple[Problem, ...] = ()
 
+    @property
+    def holds_anything(self) -> bool:
+        """Whether any cell is filled; programs add empty sheets to new workbooks."""
+        return any(cell.strip() for row in self.rows for cell in row)
+
     def at(self, row: int, column: int) -> str:
         """Where a cell is, in the words of a spreadsheet; row and column counted from 0."""
         return cell_of(self.place, row, column)
