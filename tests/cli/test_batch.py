@@ -211,6 +211,18 @@ def test_a_changed_case_and_a_refused_one_are_tried_again(command, star, half_he
     assert not any("not kept" in case["message"] for case in summary(out)["cases"])
 
 
+def test_a_batch_that_is_interrupted_before_its_first_case_has_no_table(
+    command, star, tmp_path, monkeypatch
+):
+    def interrupted(task):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pool, "work", interrupted)
+    result = command("batch", star, "-o", tmp_path, "--jobs", "1")
+    assert (result.exit_code, result.stdout) == (130, "")
+    assert "Interrupted: 0 of 4 cases done." in result.stderr
+
+
 def test_an_interrupted_batch_leaves_whole_files_and_goes_on(command, star, tmp_path, monkeypatch):
     work, seen = pool.work, []
 

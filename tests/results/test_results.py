@@ -42,6 +42,14 @@ def test_a_result_survives_its_file_bit_for_bit(result, ending, tmp_path):
     assert list(path.parent.iterdir()) == [path]
 
 
+def test_a_file_that_an_editor_saved_again_is_still_read(tmp_path):
+    """With a mark of UTF-8 at its beginning and other ends of lines, as on Windows."""
+    result = ls.solve(shipped("star/floating_sun_3"))
+    text = result.to_json().replace("\n", "\r\n")
+    (tmp_path / "saved.json").write_bytes(text.encode("utf-8-sig"))
+    assert ls.load_result(tmp_path / "saved.json") == result
+
+
 def test_a_result_is_stamped(result):
     stamp = result.stamp
     assert stamp.version == ls.__version__

@@ -45,7 +45,7 @@ def load_result(path: str | Path) -> Result:
     try:
         content = read_file(path, ALLOWED.result_bytes)
         if path.suffix == ".json":
-            return read_document(content.decode("utf-8"), str(path))[0]
+            return read_document(content.decode("utf-8-sig"), str(path))[0]
         return _read_netcdf(path, content)
     except Unreadable as error:
         raise _unread(path, str(error)) from error

@@ -128,12 +128,14 @@ STYLES = {"certified": "green", "kept": "green"}
 
 
 def print_summary(outcomes: Sequence[Outcome]) -> None:
-    """Print one row per case, and below what went wrong."""
+    """Print one row per case, and below what went wrong; nothing of none, after an interruption."""
     from rich.text import Text
 
     from loadshare.cli.tables.table import show, table
     from loadshare.report.numbers import NONE, omega, small
 
+    if not outcomes:
+        return
     made = table(
         ("case", "outcome", "positions", "Ω system", "worst residual", "seconds"),
         words=("case", "outcome"),
