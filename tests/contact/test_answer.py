@@ -312,3 +312,50 @@ def test_round_off_in_a_stiffness_is_no_lack_of_symmetry() -> None:
     stiffness[0, 1] *= 1.0 + 1e-6
     with pytest.raises(ValueError, match="is not symmetric"):
         solve_contact(ContactProblem(("x", "y", "z"), stiffness, load))
+
+
+SLIPS = RadialLaw((Piece(3.0, 0.0, math.inf, "slip"),))
+XY, YX = np.eye(2), np.eye(2)[::-1]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_of_two_pads_that_hold_one_body_at_two_places_one_slips(method: str) -> None:
+    """Without load, and under a load that leaves one of them exactly its friction."""
+    pads = (
+        Radial("a", XY, np.array([0.0, 1.0]), SLIPS),
+        Radial("b", YX, np.zeros(2), SLIPS),
+    )
+    limit = Row("limit", "stop", np.array([1.0, -1.0]), 2.0, RIGID)
+    for load in ([0.0, 0.0], [3.0, 3.0]):
+        problem = ContactProblem(("x", "y"), np.zeros((2, 2)), load, (limit,), (), pads)
+        found = solve_contact(problem, method=method)
+        x = np.array([found.place["x"], found.place["y"]])
+        energy = 3.0 * (math.hypot(x[0], x[1] - 1.0) + math.hypot(*x)) - x @ load
+        assert energy == pytest.approx(3.0 - load[1], abs=1e-9)
+
+
+def test_a_stop_that_just_touches_where_friction_is_used_up_is_no_hindrance() -> None:
+    """At rest the pad holds exactly its friction; the limit beside it carries nothing."""
+    law = RadialLaw((Piece(3.0, 0.0, 1.0, "slip"), Piece(3.0, 10.0, math.inf, "stop")))
+    pad = Radial("pad", XY, np.array([1.0, -1.0]), law)
+    rows = [
+        Row(f"{k}", "stop", vector, gap, PowerLaw(b, 0.0))
+        for k, (vector, gap, b) in enumerate(
+            [([1, -1], 2, 1), ([1, 1], 1, 1), ([0, 1], 0, 1), ([1, 1], 0, 0.01), ([2, 0], 2, 0.1)]
+        )
+    ]
+    springs = np.array([[10.0, 10.0], [10.0, 11.0]])
+    found = solve_contact(ContactProblem(("x", "y"), springs, [0.0, -4.0], rows, (), (pad,)))
+    assert found.place == pytest.approx({"x": 1.0, "y": -1.0})
+    assert found.pull["pad"] == pytest.approx([0.0, -3.0])
+
+
+def test_what_comes_to_rest_only_at_infinity_is_refused() -> None:
+    """The pad's friction is the load along y; springs hold it off its middle across."""
+    along = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    pad = Radial("pad", along, np.array([1.0, 0.0]), SLIPS)
+    limit = Row("limit", "stop", np.array([1.0, -1.0, -1.0]), -1.0, RIGID)
+    springs = np.array([[110.0, 0.0, -90.0], [0.0, 0.0, 0.0], [-90.0, 0.0, 110.0]])
+    problem = ContactProblem(("x", "y", "z"), springs, [-1.0, 3.0, 0.0], (limit,), (), (pad,))
+    with pytest.raises(Refused, match="under the load y would come to rest only at infinity"):
+        solve_contact(problem)

@@ -115,9 +115,12 @@ def solve_contact(
             last = str(failure)
             continue
         answer = _answer(problem, settled)
-        if answer.passed:
+        nowhere = _nowhere(problem, answer.place)
+        if answer.passed and not nowhere:
             return answer
         last = f"residual {answer.residuals.worst:.2g} of 1e-9 allowed"
+        if nowhere:
+            last = f"under the load {', '.join(nowhere)} would come to rest only at infinity"
     against = conflict(problem)
     if against:
         raise Refused(f"rigid limits contradict one another: {', '.join(against)}")
@@ -203,6 +206,16 @@ def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: 
         across = float(np.linalg.norm(pull - size * offset / radius))
     apart = (part.off(radius, size) for part in law.parts())
     return max(min(max(abs(r) / length, abs(f) / unit) for r, f in apart), across / unit)
+
+
+def _nowhere(problem: ContactProblem, place: Mapping[str, float]) -> list[str]:
+    """Return coordinates so far away that their last digit is longer than the problem.
+
+    Where the load is exactly the friction along a way that nothing else resists, forces balance
+    ever better the farther a body goes, and nowhere on the way.
+    """
+    far = problem.length_unit() / np.finfo(float).eps
+    return [name for name, value in place.items() if abs(value) > far]
 
 
 def _answer(problem: ContactProblem, settled: Settled) -> ContactAnswer:

@@ -9,6 +9,7 @@ small interior-point number.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -113,12 +114,14 @@ def solve_exact(
     start = start or at_rest(programme)
     limit = rounds or 20 + 6 * (len(programme.gaps) + len(programme.cones))
     active, seen, one_only = guess, {guess}, False
+    held: list[ActiveSet] = []
     for _ in range(limit):
         solved = _solve_fixed(programme, active, start, work, stay, shared)
         if solved is None:
-            active = _held_again(programme, active)
-            if active in seen:
+            held = [one for one in (*held, *_held_again(programme, active)) if one not in seen]
+            if not held:
                 return None
+            active = held.pop(0)
             seen.add(active)
             continue
         point, settled = solved
@@ -128,6 +131,9 @@ def solve_exact(
         if better in seen and not one_only:
             one_only = True
             better = _exchange(programme, active, point, one_only)
+        elif better in seen and not settled:
+            # Newton's steps end nowhere where what counts as slipping does not move at all.
+            better = next((s for s in _held_again(programme, better) if s not in seen), better)
         seen.add(better)
         active, start = better, point
     return None
@@ -145,18 +151,24 @@ def _balances(programme: Programme, point: Point) -> bool:
     return bool(np.abs(sum(pushed)).max(initial=0.0) <= CONTACT.tolerance * sizes)
 
 
-def _held_again(programme: Programme, active: ActiveSet) -> ActiveSet:
-    """Put elements that slip from the first back where friction holds them.
+def _held_again(programme: Programme, active: ActiveSet) -> Iterator[ActiveSet]:
+    """Put elements that slip from the first back where friction holds them: all, then each alone.
 
     Under exactly its friction a disc is in equilibrium at rest too, and nothing says how far it
-    slips.
+    slips. Of two that hold the same body at different places only one can be at rest.
     """
-    slipping = GraphState(0)
-    states = (
-        GraphState(0, corner=True) if state == slipping and cone.law.step(0)[1] > 0.0 else state
-        for cone, state in zip(programme.cones, active.graph_states, strict=True)
-    )
-    return replace(active, graph_states=tuple(states))
+    states = active.graph_states
+    slipping = [
+        k
+        for k, (cone, state) in enumerate(zip(programme.cones, states, strict=True))
+        if state == GraphState(0) and cone.law.step(0)[1] > 0.0
+    ]
+    for chosen in (slipping, *([k] for k in slipping if len(slipping) > 1)):
+        if chosen:
+            places = (
+                GraphState(0, corner=True) if k in chosen else s for k, s in enumerate(states)
+            )
+            yield replace(active, graph_states=tuple(places))
 
 
 def at_rest(programme: Programme) -> Point:
