@@ -319,6 +319,20 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
 @pytest.mark.parametrize(
     ("key", "message"),
     [
+        ("gears.planet.support", "is not in the case.*Copies have names of their own: .*planet1"),
+        ("errors.planet1.pin.radial", "There is no errors.planet1"),
+        ("gears.*.teeth", "is no number with a unit"),
+        ("gears.sun.teeth", "= 18: is no number with a unit"),
+    ],
+)
+def test_what_was_meant_by_an_input_that_is_none_is_told(key, message):
+    with pytest.raises(ls.CaseError, match=message):
+        ls.sensitivity(shipped("planetary/four_planets"), key)
+
+
+@pytest.mark.parametrize(
+    ("key", "message"),
+    [
         ("rings.4.flot", "is not in the case"),
         ("gears.1.support", "is no number"),
         ("rings.*.flot", "is not in the case"),

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from loadshare.case import Case
 from loadshare.case.keys import Path, dotted, look_up, parse
+from loadshare.case.revise import nearest
 from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
 from loadshare.study.parameter import STUDY, Value, leaves, matches, read_value, split_outside
@@ -38,12 +39,15 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
             hint = "Derivatives by keys that take the same value add up."
             problems.append(Problem(STUDY, str(pattern), "", "is not one key", KEY, hint))
             continue
-        found = [item for key in matches(case, pattern) for item in _numbers_at(data, key)]
+        keys = matches(case, pattern)
+        found = [item for key in keys for item in _numbers_at(data, key)]
         if not found:
-            given = look_up(data, parse(pattern))
-            what = "is not in the case" if given is None else "is no number with a unit"
-            shown = "" if given is None else str(given)
+            there = [value for key in keys if (value := look_up(data, parse(key))) is not None]
+            what = "is no number with a unit" if there else "is not in the case"
+            shown = str(there[0]) if len(keys) == 1 and there else ""
             hint = did_you_mean(pattern, (item.key for item in _below(data, ())))
+            if not there and "*" not in pattern:
+                hint = hint or nearest(data, parse(pattern))
             problems.append(Problem(STUDY, pattern, shown, what, KEY, hint))
         inputs += found
     if problems:
