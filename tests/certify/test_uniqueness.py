@@ -13,7 +13,7 @@ import pytest
 from tests.support import loaded, potential, shipped
 
 import loadshare as ls
-from loadshare.certify.uniqueness import uniqueness
+from loadshare.certify import Claims
 from loadshare.job.search import search
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
@@ -87,7 +87,7 @@ def test_a_disc_between_two_arcs_flips_at_the_critical_squeeze(share):
     force = share * CRITICAL
     train, answer = squeezed(force)
     given = force / WALL
-    found = uniqueness(train, answer)
+    (found,) = Claims.of(train, [answer]).uniquenesses
     exact = force * (1.0 / (A1 - given) + 1.0 / (A2 - given)) / SPRING
     assert found.curvature == pytest.approx(exact, rel=1e-9)
     assert found.curvature == pytest.approx(share, rel=3.0 * given / A1 + 1e-9)

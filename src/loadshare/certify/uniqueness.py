@@ -30,14 +30,9 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.certify.bound.one import columns_of
-from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.state import ClaimedState, size
 from loadshare.settings import CERTIFY
 from loadshare.train.elements import Spline
-from loadshare.train.equilibria import Equilibria
-from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.situations import situation_of
-from loadshare.train.train import Train
 
 MEANINGS = {
     "convex": "only answer: the problem is convex",
@@ -80,20 +75,20 @@ class Uniqueness:
         return f"{MEANINGS[self.kind]}: {size} ({self.where})"
 
 
-def uniqueness(train: Train, answer: Equilibrium) -> Uniqueness:
+def uniqueness(state: ClaimedState, row: int) -> Uniqueness:
     """Judge whether an equilibrium is the only one.
 
     Parameters
     ----------
-    train : Train
-    answer : Equilibrium
-        A certified one.
+    state : ClaimedState
+        Of certified ones.
+    row : int
+        Its number among them.
     """
-    following = [s for s in train.splines.values() if _follows(s)]
-    if not train.drums and not following:
+    train = state.of.train
+    if not train.drums and not any(map(_follows, train.splines.values())):
         return Uniqueness("convex", 0.0, "")
-    here = situation_of(train, answer.index)
-    system = _System(ClaimedState(mechanics_of(train), here, Equilibria.of(train, answer)))
+    system = _System(state, row)
     if not system.bent:
         return Uniqueness("least energy", 0.0, "")
     curvature = system.curvature()
@@ -114,25 +109,25 @@ class _System:
     Coordinates and rows are those of the bound's `Columns`.
     """
 
-    def __init__(self, state: ClaimedState) -> None:
-        self.state = state
+    def __init__(self, state: ClaimedState, row: int) -> None:
+        self.state, self.row = state, row
         train = state.of.train
         self.columns = columns_of(train)
         self.rows = self.columns.matrix.high
         count = len(self.columns.coordinates)
-        self.load = CERTIFY.carries * float(state.load[0])
-        self.near = CERTIFY.carries * float(state.deflection[0])
+        self.load = CERTIFY.carries * float(state.load[row])
+        self.near = CERTIFY.carries * float(state.deflection[row])
         self.stiffness = np.zeros((count, count))
         self.taken = np.zeros((count, count))
         self.rigid: list[Array] = []
         self.splines = list(train.splines.values())
-        self.radius = state.radius[:, 0] if state.of.pulls else np.zeros(0)
+        self.radius = state.radius[:, row] if state.of.pulls else np.zeros(0)
 
     @cached_property
     def bent(self) -> tuple[str, ...]:
         """Elements that are not convex and carry."""
         of = self.state.of
-        carrying = np.argwhere(self.state.ring_force[:, :2, 0] > self.load).tolist()
+        carrying = np.argwhere(self.state.ring_force[:, :2, self.row] > self.load).tolist()
         arcs = [of.contacts[len(of.flanks) + 4 * d + k] for d, k in carrying]
         return (*arcs, *(s.name for k, s in enumerate(self.splines) if self._follows(k)))
 
@@ -153,22 +148,32 @@ class _System:
         else:
             self.stiffness += stiffness * np.outer(row, row)
 
+    def _own(self, figures: Array) -> Array:
+        """Figures (…, S or 1) of this answer."""
+        return np.asarray(figures[..., self.row % figures.shape[-1]])
+
+    def _pulled(self, q: int) -> float:
+        """Size of the force of a radial element [N]."""
+        return float(size(self.state.reaction[q], axis=0)[self.row])
+
     def _pair(self, first: int) -> Array:
         """Rows of both components of an element's vector."""
         return self.rows[first : first + 2]
 
     def _slope(self, contact: int) -> float:
         """Least slope [N/m] to any other compression of a loaded contact; infinite if rigid."""
-        force, compression = (v[contact, 0] for v in (self.state.force, self.state.compression))
+        force, compression = (
+            v[contact, self.row] for v in (self.state.force, self.state.compression)
+        )
         return float(force / compression) if compression > 0.0 else math.inf
 
     def _flanks(self) -> None:
         state, of = self.state, self.state.of
         self.torque_slope = np.zeros((len(of.train.splines), self.rows.shape[1]))
-        for e in np.flatnonzero(state.claim.flank_force[:, 0] > self.load).tolist():
+        for e in np.flatnonzero(state.claim.flank_force[:, self.row] > self.load).tolist():
             slope = self._slope(e)
             if e in of.tabled:
-                forces, compressions = np.diff(state.here.table[e, :, :, 0])
+                forces, compressions = np.diff(self._own(state.here.table[e]))
                 slope = float(np.nanmin(forces / compressions))
             self._hold(self.rows[e], slope)
             if math.isfinite(slope):
@@ -178,23 +183,23 @@ class _System:
         state, train = self.state, self.state.of.train
         for d, ring in enumerate(train.drums):
             frame, first = train.gears[ring.gear].frame, len(state.of.flanks) + 4 * d
-            for k in np.flatnonzero(state.ring_force[d, :, 0] > self.load).tolist():
+            for k in np.flatnonzero(state.ring_force[d, :, self.row] > self.load).tolist():
                 slope = self._slope(first + k)
                 if k >= 2:
                     self._hold(self.rows[self.columns.stops.start + 2 * d + k - 2], slope)
                     continue
                 pair = self._pair(self.columns.arcs.start + 2 * (2 * d + k))
-                way = state.way[d, k, :, 0]
+                way = state.way[d, k, :, self.row]
                 distance = float(np.linalg.norm(way))
                 along, across = _along_and_across(frame @ way / distance)
                 self._hold(along @ pair, slope)
                 row = across @ pair
-                self.taken += state.ring_force[d, k, 0] / distance * np.outer(row, row)
+                self.taken += state.ring_force[d, k, self.row] / distance * np.outer(row, row)
 
     def _springs(self) -> None:
         state, columns = self.state, self.columns
-        torsion = state.here.torsion[columns.elastic_shafts, 0] / columns.shaft_arms**2
-        held = state.here.support[columns.moving, :, 0].ravel()
+        torsion = self._own(state.here.torsion)[columns.elastic_shafts] / columns.shaft_arms**2
+        held = self._own(state.here.support)[columns.moving].ravel()
         for some, stiffness in ((columns.shafts, torsion), (columns.bearings, held)):
             rows = self.rows[some]
             self.stiffness += rows.T @ (stiffness[:, None] * rows)
@@ -207,8 +212,10 @@ class _System:
 
     def _piece(self, q: int) -> tuple[str, float]:
         """The piece of its graph on which a radial element is, and its slope [N/m]."""
-        first, stick, bound, reach, last = (float(figure[q, 0]) for figure in self.state.graph)
-        radius, force = self.radius[q], float(size(self.state.reaction[q], axis=0)[0])
+        first, stick, bound, reach, last = (
+            float(figure[q, self.row]) for figure in self.state.graph
+        )
+        radius, force = self.radius[q], self._pulled(q)
         rigid = math.isinf(last) and math.isfinite(reach)
         if rigid and radius >= reach - self.near and force > bound + self.load:
             return "stop", math.inf
@@ -231,14 +238,14 @@ class _System:
                 self._hold(row, held)
             return
         gear = state.of.train.gears[state.of.gears[state.of.pulled[q]]]
-        outward, beside = _along_and_across(gear.frame @ state.offset[q, :, 0] / radius)
+        outward, beside = _along_and_across(gear.frame @ state.offset[q, :, self.row] / radius)
         along = outward @ pair
         self._hold(along, held)
-        self._hold(beside @ pair, float(size(state.reaction[q], axis=0)[0]) / radius)
+        self._hold(beside @ pair, self._pulled(q) / radius)
         if q >= len(self.splines) or not self._follows(q):
             return
         per_torque = self.splines[q].friction_per_torque
-        follow = math.copysign(per_torque, state.transmitted[q, 0]) * self.torque_slope[q]
+        follow = math.copysign(per_torque, state.transmitted[q, self.row]) * self.torque_slope[q]
         coupling = np.outer(along, follow)
         self.taken -= 0.5 * (coupling + coupling.T)
 

@@ -320,9 +320,9 @@ class Figures:
             "figure": list(RESIDUALS),
         }
 
-    def by_name(self, name: str, dim: str) -> dict[str, float]:
-        """Return a figure of the first answer, by the names along an axis."""
-        return dict(zip(self.names[dim], getattr(self, name)[0].tolist(), strict=True))
+    def by_name(self, row: int, name: str, dim: str) -> dict[str, float]:
+        """Return a figure of an answer, by the names along an axis."""
+        return dict(zip(self.names[dim], getattr(self, name)[row].tolist(), strict=True))
 
     def as_numbers(self, name: str, names: Mapping[str, Sequence[str]]) -> Array:
         """Return a figure by its name as numbers; sizes of displacements in the order of names."""
