@@ -16,14 +16,14 @@ import numpy as np
 
 from loadshare.case.table import Table
 from loadshare.certify.bound.judge import bounds
-from loadshare.certify.bound.one import Bound, columns_of
+from loadshare.certify.bound.one import Bound
 from loadshare.certify.fault import fault_of
 from loadshare.certify.floats import FloatState, Rests
-from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.judge import Judge
 from loadshare.certify.residuals import FIGURES, Residual, scales, worst_of_each
 from loadshare.certify.state import ClaimedState
 from loadshare.certify.uniqueness import Uniqueness, uniqueness
-from loadshare.certify.validity import Validity, measuring
+from loadshare.certify.validity import Validity
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium, Range
@@ -39,6 +39,8 @@ class Claims:
     Parameters
     ----------
     train : Train
+    judge : Judge
+        Of a train of its shape.
     positions : sequence of int
         1-based.
     answers : Equilibria
@@ -51,12 +53,13 @@ class Claims:
     def __init__(
         self,
         train: Train,
+        judge: Judge,
         positions: Sequence[int],
         answers: Equilibria,
         undetermined: Sequence[Mapping[str, Range]],
         rigorous: bool = False,
     ) -> None:
-        self.train, self.positions, self.answers = train, positions, answers
+        self.train, self.judge, self.positions, self.answers = train, judge, positions, answers
         self.undetermined, self.rigorous = undetermined, rigorous
         self._told: dict[Callable[..., Any], Any] = {}
 
@@ -68,7 +71,9 @@ class Claims:
             for row, answer in enumerate(answers):
                 claimed.put(row, answer)
         open_ = [answer.undetermined for answer in answers]
-        return cls(train, [answer.index for answer in answers], claimed, open_, rigorous)
+        return cls(
+            train, Judge(train), [answer.index for answer in answers], claimed, open_, rigorous
+        )
 
     def told(self, tell: Callable[[Claims], Told]) -> Told:
         """Return what others tell of the claims, worked out once."""
@@ -86,13 +91,15 @@ class Claims:
     @cached_property
     def state(self) -> ClaimedState:
         """The claims seen as mechanics."""
-        return ClaimedState(mechanics_of(self.train), self.situations, self.answers)
+        return ClaimedState(self.judge.mechanics, self.situations, self.answers)
 
     @cached_property
     def faults(self) -> tuple[str, ...]:
         """Why a claim cannot be judged; empty where it can."""
         with np.errstate(all="ignore"):
-            return tuple(fault_of(self.state, row) for row in range(len(self.positions)))
+            return tuple(
+                fault_of(self.train, self.state, row) for row in range(len(self.positions))
+            )
 
     @cached_property
     def scales(self) -> list[dict[str, float]]:
@@ -150,7 +157,7 @@ class Claims:
             if len(sound) < len(every):
                 rows = np.array(sound)
                 here, claims = here.take(rows), claims.take(rows)
-            together = bounds(columns_of(self.train), here, claims, self.rigorous)
+            together = bounds(self.judge.columns, here, claims, self.rigorous)
             for k, row in enumerate(sound):
                 found[row] = Bound.of(together, k)
         return found
@@ -159,10 +166,13 @@ class Claims:
     def validities(self) -> list[Validity]:
         """Whether displacements are small enough for the geometry in which they were found."""
         deflection = np.array([each["m"] for each in self.scales])
-        measures = measuring(self.train).each(self.situations, self.answers, deflection)
+        measures = self.judge.measuring.each(self.situations, self.answers, deflection)
         return [Validity(each) for each in measures]
 
     @cached_property
     def uniquenesses(self) -> list[Uniqueness]:
         """Whether each is proved to be the only answer."""
-        return [uniqueness(self.state, row) for row in range(len(self.positions))]
+        return [
+            uniqueness(self.train, self.judge.columns, self.state, row)
+            for row in range(len(self.positions))
+        ]

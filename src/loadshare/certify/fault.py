@@ -6,9 +6,10 @@ import numpy as np
 
 from loadshare.certify.state import ClaimedState
 from loadshare.train.memory import SlipFriction
+from loadshare.train.train import Train
 
 
-def fault_of(state: ClaimedState, row: int) -> str:
+def fault_of(train: Train, state: ClaimedState, row: int) -> str:
     """Why a claim cannot be judged, else empty.
 
     A figure is not a number, a spline has no law, or a gear is beyond the neighbour on whose
@@ -18,7 +19,6 @@ def fault_of(state: ClaimedState, row: int) -> str:
         return ""
     if not all(np.isfinite(claimed[..., row]).all() for claimed in state.claim.arrays):
         return "a figure that is not a number"
-    train = state.of.train
     try:
         for k, spline in enumerate(train.splines.values()):
             part = spline if train.slip is None else SlipFriction(spline)

@@ -29,10 +29,11 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.array_types import Array
-from loadshare.certify.bound.one import columns_of
+from loadshare.certify.bound.columns import Columns
 from loadshare.certify.state import ClaimedState, size
 from loadshare.settings import CERTIFY
 from loadshare.train.elements import Spline
+from loadshare.train.train import Train
 
 MEANINGS = {
     "convex": "only answer: the problem is convex",
@@ -75,20 +76,22 @@ class Uniqueness:
         return f"{MEANINGS[self.kind]}: {size} ({self.where})"
 
 
-def uniqueness(state: ClaimedState, row: int) -> Uniqueness:
+def uniqueness(train: Train, columns: Columns, state: ClaimedState, row: int) -> Uniqueness:
     """Judge whether an equilibrium is the only one.
 
     Parameters
     ----------
+    train : Train
+    columns : Columns
+        Of a train of its shape.
     state : ClaimedState
         Of certified ones.
     row : int
         Its number among them.
     """
-    train = state.of.train
     if not train.drums and not any(map(_follows, train.splines.values())):
         return Uniqueness("convex", 0.0, "")
-    system = _System(state, row)
+    system = _System(train, columns, state, row)
     if not system.bent:
         return Uniqueness("least energy", 0.0, "")
     curvature = system.curvature()
@@ -109,17 +112,15 @@ class _System:
     Coordinates and rows are those of the bound's `Columns`.
     """
 
-    def __init__(self, state: ClaimedState, row: int) -> None:
-        self.state, self.row = state, row
-        train = state.of.train
-        self.columns = columns_of(train)
-        self.rows = self.columns.matrix.high
-        count = len(self.columns.coordinates)
+    def __init__(self, train: Train, columns: Columns, state: ClaimedState, row: int) -> None:
+        self.train, self.columns, self.state, self.row = train, columns, state, row
+        self.rows = columns.matrix.high
+        count = len(columns.coordinates)
         self.load = CERTIFY.carries * float(state.load[row])
         self.near = CERTIFY.carries * float(state.deflection[row])
         self.stiffness = np.zeros((count, count))
         self.taken = np.zeros((count, count))
-        self.rigid: list[Array] = []
+        self.held: list[tuple[float, Array]] = []
         self.splines = list(train.splines.values())
         self.radius = state.radius[:, row] if state.of.pulls else np.zeros(0)
 
@@ -132,21 +133,24 @@ class _System:
         return (*arcs, *(s.name for k, s in enumerate(self.splines) if self._follows(k)))
 
     def _assemble(self) -> None:
+        """Put K and M together, and the rows of what is rigid."""
         self._flanks()
         self._drums()
         self._springs()
-        remembering = self.state.of.train.slip is not None
+        remembering = self.train.slip is not None
         of_splines = 2 * len(self.splines) if remembering else 0
         for q in range(of_splines, len(self.radius)):
             self._pull(q)
         for k, spline in enumerate(self.splines if remembering else ()):
             self._remembering(k, spline)
+        held = np.array([stiffness for stiffness, _ in self.held])
+        rows = np.array([row for _, row in self.held]).reshape(len(held), self.rows.shape[1])
+        elastic = np.isfinite(held)
+        self.rigid = rows[~elastic]
+        self.stiffness += rows[elastic].T @ (held[elastic, None] * rows[elastic])
 
     def _hold(self, row: Array, stiffness: float) -> None:
-        if math.isinf(stiffness):
-            self.rigid.append(row)
-        else:
-            self.stiffness += stiffness * np.outer(row, row)
+        self.held.append((stiffness, row))
 
     def _own(self, figures: Array) -> Array:
         """Figures (…, S or 1) of this answer."""
@@ -169,18 +173,19 @@ class _System:
 
     def _flanks(self) -> None:
         state, of = self.state, self.state.of
-        self.torque_slope = np.zeros((len(of.train.splines), self.rows.shape[1]))
-        for e in np.flatnonzero(state.claim.flank_force[:, self.row] > self.load).tolist():
-            slope = self._slope(e)
+        flanks = np.flatnonzero(state.claim.flank_force[:, self.row] > self.load)
+        slopes = np.array([self._slope(e) for e in flanks.tolist()])
+        for k, e in enumerate(flanks.tolist() if of.tabled else ()):
             if e in of.tabled:
                 forces, compressions = np.diff(self._own(state.here.table[e]))
-                slope = float(np.nanmin(forces / compressions))
-            self._hold(self.rows[e], slope)
-            if math.isfinite(slope):
-                self.torque_slope += slope * np.outer(self.columns.moments[:, e], self.rows[e])
+                slopes[k] = float(np.nanmin(forces / compressions))
+        self.held += zip(slopes.tolist(), self.rows[flanks], strict=True)
+        elastic = np.isfinite(slopes)
+        slopes, some = slopes[elastic], flanks[elastic]
+        self.torque_slope = self.columns.moments[:, some] @ (slopes[:, None] * self.rows[some])
 
     def _drums(self) -> None:
-        state, train = self.state, self.state.of.train
+        state, train = self.state, self.train
         for d, ring in enumerate(train.drums):
             frame, first = train.gears[ring.gear].frame, len(state.of.flanks) + 4 * d
             for k in np.flatnonzero(state.ring_force[d, :, self.row] > self.load).tolist():
@@ -208,7 +213,7 @@ class _System:
         """Whether the force of a spline follows the torque where the spline is."""
         if not _follows(self.splines[k]) or self.radius[k] <= self.near:
             return False
-        return self.state.of.train.slip is not None or self._piece(k)[0] != "stick"
+        return self.train.slip is not None or self._piece(k)[0] != "stick"
 
     def _piece(self, q: int) -> tuple[str, float]:
         """The piece of its graph on which a radial element is, and its slope [N/m]."""
@@ -237,7 +242,7 @@ class _System:
             for row in pair:
                 self._hold(row, held)
             return
-        gear = state.of.train.gears[state.of.gears[state.of.pulled[q]]]
+        gear = self.train.gears[state.of.gears[state.of.pulled[q]]]
         outward, beside = _along_and_across(gear.frame @ state.offset[q, :, self.row] / radius)
         along = outward @ pair
         self._hold(along, held)
@@ -262,15 +267,13 @@ class _System:
 
     def curvature(self) -> float:
         """Largest κ of M z = κ K z on the moves that rigid contacts leave, at least 0."""
-        if self.state.of.train.slip is not None and any(
-            map(self._follows, range(len(self.splines)))
-        ):
+        if self.train.slip is not None and any(map(self._follows, range(len(self.splines)))):
             return math.inf
         self._assemble()
         free = np.eye(len(self.stiffness))
-        if self.rigid:
-            rows = np.array([r / (np.linalg.norm(r) or 1.0) for r in self.rigid])
-            _, sizes, basis = np.linalg.svd(rows)
+        if len(self.rigid):
+            lengths = np.sqrt((self.rigid**2).sum(axis=1, keepdims=True))
+            _, sizes, basis = np.linalg.svd(self.rigid / np.where(lengths > 0.0, lengths, 1.0))
             free = basis[int((sizes > CERTIFY.rank).sum()) :].T
         stiffness, taken = (free.T @ m @ free for m in (self.stiffness, self.taken))
         values, vectors = np.linalg.eigh(stiffness)

@@ -18,7 +18,7 @@ from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine
 from loadshare.settings import JOB
 from loadshare.solver import Record
-from loadshare.solver.position import coordinates_of, with_ranges
+from loadshare.solver.position import coordinates_of
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
@@ -116,12 +116,14 @@ class _Placed:
         solved, train = self.solved, self.train
         least, found = solved.least(self.rows), solved.found
         placed = [
-            with_ranges(least[row], train) if row in least else found.equilibria.one(row, index)
+            least[row] if row in least else found.equilibria.one(row, index)
             for row, index in zip(self.rows, self.indices, strict=True)
         ]
         rows = np.array(self.rows)
         open_ = [answer.undetermined for answer in placed]
-        claims = Claims(train, self.indices, found.equilibria.take(rows), open_)
+        claims = Claims(
+            train, solved.machine.judge, self.indices, found.equilibria.take(rows), open_
+        )
         proved = found.verdicts.bounds.relative[rows].tolist()
         return list(zip(placed, certified(claims, solved.tolerance, proved), strict=True))
 

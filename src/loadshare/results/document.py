@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import is_dataclass
 from typing import TYPE_CHECKING, Any
 
 from loadshare.results.digest import DIGEST, digest_of
@@ -81,11 +81,13 @@ def as_data(given: Any) -> Any:
         return None if math.isinf(given) else given
     if given is None or isinstance(given, str | int):
         return given
+    if isinstance(given, list | tuple):
+        return [as_data(value) for value in given]
     if isinstance(given, Mapping):
         return {key: as_data(value) for key, value in given.items()}
     if is_dataclass(given):
-        return {f.name: as_data(getattr(given, f.name)) for f in fields(given)}
-    return [as_data(value) for value in given] if isinstance(given, list | tuple) else given
+        return {name: as_data(getattr(given, name)) for name in given.__dataclass_fields__}
+    return given
 
 
 def _position_document(p: Position) -> dict[str, Any]:

@@ -8,8 +8,10 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.certify import Claims
+from loadshare.certify.bound import Columns
 from loadshare.certify.floats import Rests
 from loadshare.certify.state import ClaimedState
+from loadshare.certify.validity import Measuring
 from loadshare.results.figures import Figures
 
 
@@ -31,6 +33,16 @@ class Judged(Figures):
     def state(self) -> ClaimedState:
         """The claims seen as mechanics."""
         return self._claims.state
+
+    @property
+    def columns(self) -> Columns:
+        """The mechanics as columns."""
+        return self._claims.judge.columns
+
+    @property
+    def measuring(self) -> Measuring:
+        """What is measured on displacements."""
+        return self._claims.judge.measuring
 
     @property
     def _rests(self) -> Rests:

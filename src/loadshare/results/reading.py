@@ -314,7 +314,7 @@ def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
     """Yield ranges of what the forces leave open that do not follow from the claim."""
     for at, p in enumerate(positions):
         scene = assemble(p.claim.train(train), p.position)
-        ranges = ranges_of(p.equilibrium, scene.train)
+        ranges = ranges_of(p.equilibrium, scene)
         given, found, sizes = as_data(p.undetermined), as_data(ranges), _sizes(scene, p.equilibrium)
         for path, was, wrong, expected in differences(found, given, least=sizes):
             yield ("positions", at, "undetermined", *path), was, wrong, expected
