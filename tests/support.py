@@ -12,7 +12,8 @@ from tests.certify.oracle import ClaimedState
 
 import loadshare as ls
 from benchmarks import families
-from loadshare.certify import Certificate, certify
+from loadshare.certify import Certificate, Claims, certify
+from loadshare.certify.bound import Bound
 from loadshare.scene import assemble
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.train import Train, build_train
@@ -93,6 +94,12 @@ def certified(case: ls.Case, index: int = 1, **options: object) -> tuple[Equilib
     certificate = certify(train, found)
     assert certificate.passed, certificate.failing
     return found, certificate
+
+
+def bound_of(train: Train, answer: Equilibrium, rigorous: bool = False) -> Bound:
+    """How far a claim is from the exact equilibrium, at most."""
+    (found,) = Claims.of(train, [answer], rigorous).bounds
+    return found
 
 
 def driver_torques(case: ls.Case, index: int = 1, **options: object) -> dict[str, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 _HOLDING = dict, list, tuple
@@ -19,19 +20,28 @@ def json_text(document: Mapping[str, Any]) -> str:
     import json
 
     on_one_line = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
-    return _laid_out(document, "\n", on_one_line) + "\n"
+    return _laid_out(document, "\n", on_one_line, cache(on_one_line)) + "\n"
 
 
-def _laid_out(value: Any, line: str, on_one_line: Callable[[Any], str]) -> str:
-    """Return the text of a value; `line` begins a line of it."""
+def _laid_out(
+    value: Any, line: str, on_one_line: Callable[[Any], str], quoted: Callable[[str], str]
+) -> str:
+    """Return the text of what holds other things; `line` begins a line of it."""
     inner = value.values() if isinstance(value, dict) else value
-    if not isinstance(value, _HOLDING) or not any(isinstance(v, _HOLDING) for v in inner):
+    for part in inner:
+        if isinstance(part, _HOLDING):
+            break
+    else:
         return on_one_line(value)
     inside = line + " "
-    texts = [_laid_out(v, inside, on_one_line) for v in inner]
+    texts = [
+        _laid_out(part, inside, on_one_line, quoted)
+        if isinstance(part, _HOLDING)
+        else on_one_line(part)
+        for part in inner
+    ]
     begin, end = "[]"
     if isinstance(value, dict):
-        keys = [on_one_line(str(key)) for key in value]
-        texts = [f"{key}: {text}" for key, text in zip(keys, texts, strict=True)]
+        texts = [f"{quoted(str(key))}: {text}" for key, text in zip(value, texts, strict=True)]
         begin, end = "{}"
-    return begin + ",".join(inside + text for text in texts) + line + end
+    return begin + inside + f",{inside}".join(texts) + line + end

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.support import bound_of
 
 import loadshare as ls
 from benchmarks.random_trains.judge import NO_TORQUE, judged
 from benchmarks.reference import NoReference, reference
 from benchmarks.stress.families import FAMILIES
 from loadshare.certify import certify
-from loadshare.certify.bound import Columns, bound_of, bounds
+from loadshare.certify.bound import Columns, bounds
 from loadshare.certify.bound.statics import Statics, force_at_end
 from loadshare.certify.bound.twofold import power_two_thirds, product, two_product, two_sum
 from loadshare.job.engines import engine_named

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.support import bound_of
 
 import loadshare as ls
 from benchmarks.reference import reference
-from loadshare.certify.bound import bound_of
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
 from loadshare.study.memory import stepped

@@ -13,7 +13,7 @@ import pytest
 from tests.support import loaded, potential, shipped
 
 import loadshare as ls
-from loadshare.certify.uniqueness import uniqueness
+from loadshare.certify import Claims
 from loadshare.job.search import search
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
@@ -87,7 +87,7 @@ def test_a_disc_between_two_arcs_flips_at_the_critical_squeeze(share):
     force = share * CRITICAL
     train, answer = squeezed(force)
     given = force / WALL
-    found = uniqueness(train, answer)
+    (found,) = Claims.of(train, [answer]).uniquenesses
     exact = force * (1.0 / (A1 - given) + 1.0 / (A2 - given)) / SPRING
     assert found.curvature == pytest.approx(exact, rel=1e-9)
     assert found.curvature == pytest.approx(share, rel=3.0 * given / A1 + 1e-9)
@@ -190,3 +190,22 @@ def test_a_search_finds_the_places_beside_a_saddle():
     below = search(squeezed_case(0.5 * CRITICAL))
     assert below.others == ()
     assert below.starts > 0
+
+
+def test_an_answer_of_splines_with_memory_is_judged_where_an_arc_carries():
+    """Where nothing has slipped, splines hold by their shafts as by their laws."""
+    changes = {
+        "splines.5.normal_force": "500 N",
+        "splines.5.radius": None,
+        "splines.5.friction": 0.1,
+        "march.revolutions": 0.3,
+        "march.steps": 6,
+    }
+    marched = ls.march(shipped("fgfbstts/all_elements").replace(changes)).result.positions
+    free = ls.solve(shipped("fgfbstts/all_elements").replace(changes)).positions
+    local = [k for k, p in enumerate(marched) if p.uniqueness.kind == "local"]
+    assert local
+    for k in local:
+        assert marched[k].uniqueness.curvature == pytest.approx(
+            free[k].uniqueness.curvature, rel=0.01
+        )

@@ -161,7 +161,9 @@ def test_a_bound_that_is_too_small_is_found(monkeypatch, part):
         first = result.positions[0]
         none = dict.fromkeys(getattr(first.certificate.bound, part), 0.0)
         bound = dataclasses.replace(first.certificate.bound, **{part: none})
-        certificate = dataclasses.replace(first.certificate, prove=lambda: bound)
+        certificate = dataclasses.replace(
+            first.certificate, claims=SimpleNamespace(bounds=[bound]), row=0
+        )
         answer = SimpleNamespace(
             equilibrium=first.equilibrium, certificate=certificate, effort=first.effort
         )

@@ -4,6 +4,7 @@ Source: formulation, section 10.
 """
 
 import json
+import math
 import pickle
 
 import numpy as np
@@ -11,7 +12,9 @@ import pytest
 from tests.support import CASES, shipped
 
 import loadshare as ls
+from loadshare.certify import Claims, certified
 from loadshare.results.share import coefficients
+from loadshare.settings import CERTIFY
 
 NAMES = ("fgfbstts/all_elements", "fgfbstts/limit_ring", "star/floating_sun_4")
 
@@ -48,6 +51,19 @@ def test_a_file_that_an_editor_saved_again_is_still_read(tmp_path):
     text = result.to_json().replace("\n", "\r\n")
     (tmp_path / "saved.json").write_bytes(text.encode("utf-8-sig"))
     assert ls.load_result(tmp_path / "saved.json") == result
+
+
+def test_positions_are_looked_at_in_groups_and_alone_with_the_same_digits(result):
+    positions = result.positions
+    for p in positions:
+        beside = p.certificate.claims
+        assert beside.positions[p.row] == p.position
+        assert len(beside.positions) <= CERTIFY.abreast
+        (alone,) = certified(Claims.of(p.train, [p.equilibrium]), result.stamp.tolerance)
+        assert alone == p.certificate
+        assert alone.bound.relative <= 1e-9
+    groups = {id(p.certificate.claims) for p in positions}
+    assert len(groups) == math.ceil(len(positions) / CERTIFY.abreast)
 
 
 def test_a_result_is_stamped(result):

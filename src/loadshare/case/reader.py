@@ -8,6 +8,7 @@ import tomllib
 from ast import literal_eval
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from os import PathLike
 from pathlib import Path as FilePath
 from typing import Any
@@ -233,7 +234,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         known = what_is(held, path.name)
         if known is not None:
             raise CaseError([Problem(str(path), "", "", known)])
-        data = _parsed(held.decode("utf-8-sig").replace("\r\n", "\n"))
+        parsed = _parsed(held.decode("utf-8-sig").replace("\r\n", "\n"))
     except tomllib.TOMLDecodeError as error:
         match = _PLACE.fullmatch(str(error))
         what, where = match.groups() if match else (str(error), "an unknown place")
@@ -257,14 +258,16 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         # Of TOML that is none, and of numbers with thousands of digits.
         why = "holds a number that cannot be read"
     else:
-        if _depth(data) <= ALLOWED.depth:
+        if _depth(parsed) <= ALLOWED.depth:
+            data: dict[str, Any] = _copied(parsed)
             return data
         why = _DEEP
     raise CaseError([Problem(str(path), "", "", why)])
 
 
+@lru_cache(maxsize=8)
 def _parsed(text: str) -> dict[str, Any]:
-    """Return what a text of TOML says.
+    """Return what a text of TOML says, which is not to be changed: many cases extend one file.
 
     Memory and time grow with the square of a key's steps: 100 000 of them take 20 GB.
 
@@ -276,6 +279,13 @@ def _parsed(text: str) -> dict[str, Any]:
     if _LONG_KEY.match(text):
         raise RecursionError
     return tomllib.loads(text)
+
+
+def _copied(holder: Any) -> Any:
+    """Return a table or a list, and those within, as new ones."""
+    if isinstance(holder, dict):
+        return {k: _copied(v) if isinstance(v, dict | list) else v for k, v in holder.items()}
+    return [_copied(v) if isinstance(v, dict | list) else v for v in holder]
 
 
 def _depth(data: object) -> int:

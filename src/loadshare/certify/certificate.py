@@ -6,48 +6,21 @@ programme and no row enters it: a slip in any of them shows here.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-
-import numpy as np
+from itertools import groupby
+from typing import Any, cast
 
 from loadshare.certify.bound import Bound
-from loadshare.certify.bound.one import bound_of_one
-from loadshare.certify.fault import fault_of
-from loadshare.certify.floats import FloatState, float_states
-from loadshare.certify.mechanics import mechanics_of
-from loadshare.certify.residuals import FIGURES, RESIDUALS, scales, worst_of_one
-from loadshare.certify.state import ClaimedState
+from loadshare.certify.claims import Claims
+from loadshare.certify.floats import FloatState
+from loadshare.certify.residuals import Residual
 from loadshare.certify.tolerance import checked_tolerance
-from loadshare.later import Later, known
+from loadshare.later import Later
 from loadshare.settings import CERTIFY
-from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
-
-
-@dataclass(frozen=True, slots=True)
-class Residual:
-    """One figure of a certificate.
-
-    Attributes
-    ----------
-    value : float
-        In `unit`.
-    unit : str
-    scaled : float
-        Over the case's load, deflection, or both; dimensionless.
-    where : str
-        Element that shows the value.
-    """
-
-    value: float
-    unit: str
-    scaled: float
-    where: str
 
 
 @dataclass(frozen=True)
@@ -66,8 +39,10 @@ class Certificate:
         Of the case: its load by "N", its deflection by "m", and their product by "J".
     proved_together : float or None
         What was `proved` of an answer that was judged with many others.
-    prove : callable
-        Returns the bounds on everything.
+    claims : Claims
+        Among which the answer is judged.
+    row : int
+        Its number among them.
     """
 
     residuals: Mapping[str, Residual]
@@ -76,7 +51,8 @@ class Certificate:
     scales: Mapping[str, float]
     # Many claims are bounded another way than one: both bounds hold, and results are the same.
     proved_together: float | None = field(compare=False)
-    prove: Callable[[], Bound] = field(compare=False, repr=False)
+    claims: Claims = field(compare=False, repr=False)
+    row: int = field(compare=False, repr=False)
 
     @property
     def load(self) -> float:
@@ -91,7 +67,7 @@ class Certificate:
     @cached_property
     def bound(self) -> Bound:
         """How far every torque, force and displacement is from the exact equilibrium, at most."""
-        found, other = self.prove(), self.proved_together
+        found, other = self.claims.bounds[self.row], self.proved_together
         return found if other is None else replace(found, relative=min(found.relative, other))
 
     @property
@@ -128,37 +104,35 @@ class Certificate:
         )
 
 
-def certify_later(
-    train: Train,
-    answer: Equilibrium,
-    claimed: Equilibria,
-    tolerance: float,
-    proved: float,
-    prove: Callable[[], Bound],
-) -> Certificate:
-    """Return the certificate of an answer that passed when it was judged with many others.
-
-    Its figures are computed, as `certify` computes them, when they are first asked for.
+def certified(
+    claims: Claims, tolerance: float, proved: Sequence[float] | None = None
+) -> list[Certificate]:
+    """Return the certificates of claims, whose figures are computed when they are asked for.
 
     Parameters
     ----------
-    train, answer, tolerance
+    claims : Claims
+    tolerance : float
         As for `certify`.
-    claimed : Equilibria
-        The answer as the only sample.
-    proved, prove
-        As in `Certificate`.
+    proved : sequence of float, optional
+        What was `proved` of each when it was judged with many others.
     """
-    # The batch's scales may differ in the last digit, and a result that is loaded again would.
-    single = _Single(train, answer, claimed)
-    return Certificate(
-        residuals=Later(single.residuals),
-        floats=Later(single.floats),
-        tolerance=tolerance,
-        scales=Later(single.scales),
-        proved_together=proved,
-        prove=prove,
-    )
+    return [
+        Certificate(
+            residuals=Later(partial(_of_row, claims, "residuals", row)),
+            floats=Later(partial(_of_row, claims, "floats", row)),
+            tolerance=tolerance,
+            scales=Later(partial(_of_row, claims, "scales", row)),
+            proved_together=None if proved is None else proved[row],
+            claims=claims,
+            row=row,
+        )
+        for row in range(len(claims.positions))
+    ]
+
+
+def _of_row(claims: Claims, figures: str, row: int) -> Mapping[str, Any]:
+    return cast("Mapping[str, Any]", getattr(claims, figures)[row])
 
 
 def certify(
@@ -191,70 +165,34 @@ def certify(
         If the tolerance is no tolerance.
     """
     tolerance = checked_tolerance(tolerance)
-    single = _Single(train, answer)
-    residuals = single.residuals()
-    prove: Callable[[], Bound] = partial(single.bound, rigorous)
+    (certificate,) = certified(Claims.of(train, [answer], rigorous), tolerance)
     # What is wrong anyway is bounded for those only who ask.
-    if all(r.scaled <= tolerance for r in residuals.values()):
-        prove = known(prove())
-    return Certificate(
-        residuals=residuals,
-        floats=single.floats(),
-        tolerance=tolerance,
-        scales=single.scales(),
-        proved_together=None,
-        prove=prove,
-    )
+    if all(r.scaled <= tolerance for r in certificate.residuals.values()):
+        _ = certificate.bound
+    return certificate
 
 
-class _Single:
-    """An answer as a batch of one."""
+def certify_all(
+    trains: Sequence[Train], answers: Sequence[Equilibrium], tolerance: float
+) -> list[Certificate]:
+    """Judge equilibria, those of one train that follow one another together.
 
-    def __init__(
-        self, train: Train, answer: Equilibrium, claimed: Equilibria | None = None
-    ) -> None:
-        self.train, self.undetermined = train, answer.undetermined
-        self.situation = situation_of(train, answer.index)
-        with np.errstate(all="ignore"):
-            self.claimed = claimed or Equilibria.of(train, answer)
+    Parameters
+    ----------
+    trains : sequence of Train
+        Of each; the same object where they are of one train.
+    answers : sequence of Equilibrium
+    tolerance : float
+        As for `certify`.
+    """
+    found: list[Certificate] = []
+    for _, group in groupby(range(len(trains)), key=lambda k: id(trains[k])):
+        for some in in_groups(list(group)):
+            claims = Claims.of(trains[some[0]], [answers[k] for k in some])
+            found += certified(claims, tolerance)
+    return found
 
-    @cached_property
-    def state(self) -> ClaimedState:
-        with np.errstate(all="ignore"):
-            return ClaimedState(mechanics_of(self.train), self.situation, self.claimed)
 
-    @cached_property
-    def fault(self) -> str:
-        with np.errstate(all="ignore"):
-            return fault_of(self.state)
-
-    @cached_property
-    def _scales(self) -> dict[str, float]:
-        if self.fault:
-            return dict.fromkeys("NmJ", 1.0)
-        return {unit: float(size[0]) for unit, size in scales(self.state).items()}
-
-    def scales(self) -> Mapping[str, float]:
-        return self._scales
-
-    def residuals(self) -> Mapping[str, Residual]:
-        with np.errstate(all="ignore"):
-            return {name: self._residual(name) for name in RESIDUALS}
-
-    def _residual(self, name: str) -> Residual:
-        figures, unit = FIGURES[name]
-        value, where = (math.inf, self.fault) if self.fault else worst_of_one(figures(self.state))
-        ratio = value / self._scales[unit]
-        return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
-
-    def floats(self) -> Mapping[str, FloatState]:
-        if self.fault:
-            return {}
-        # What is claimed may be of any size.
-        with np.errstate(all="ignore"):
-            return float_states(self.state, self.undetermined, CERTIFY.band)
-
-    def bound(self, rigorous: bool) -> Bound:
-        if self.fault:
-            return Bound.none(self.train)
-        return bound_of_one(self.train, self.situation, self.claimed, rigorous)
+def in_groups(every: Sequence[int]) -> list[Sequence[int]]:
+    """Return numbers of answers in groups that are looked at together."""
+    return [every[at : at + CERTIFY.abreast] for at in range(0, len(every), CERTIFY.abreast)]

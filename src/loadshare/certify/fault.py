@@ -6,28 +6,28 @@ import numpy as np
 
 from loadshare.certify.state import ClaimedState
 from loadshare.train.memory import SlipFriction
+from loadshare.train.train import Train
 
 
-def fault_of(state: ClaimedState) -> str:
-    """Why the first claim cannot be judged, else empty.
+def fault_of(train: Train, state: ClaimedState, row: int) -> str:
+    """Why a claim cannot be judged, else empty.
 
     A figure is not a number, a spline has no law, or a gear is beyond the neighbour on whose
     ring its own rolls: there the arc's inequality holds, and no gear can be.
     """
-    if not state.faulty[0]:
+    if not state.faulty[row]:
         return ""
-    if not all(np.isfinite(claimed[..., 0]).all() for claimed in state.claim.arrays):
+    if not all(np.isfinite(claimed[..., row]).all() for claimed in state.claim.arrays):
         return "a figure that is not a number"
-    train = state.of.train
     try:
         for k, spline in enumerate(train.splines.values()):
             part = spline if train.slip is None else SlipFriction(spline)
-            part.law(float(state.transmitted[k, 0]))
+            part.law(float(state.transmitted[k, row]))
     except ValueError as error:
         return str(error)
     beyond = [
         ring.arc_name(neighbour)
-        for ring, sides in zip(train.drums, state.beyond[..., 0], strict=True)
+        for ring, sides in zip(train.drums, state.beyond[..., row], strict=True)
         for neighbour, is_beyond in zip(ring.neighbours, sides, strict=True)
         if is_beyond
     ]

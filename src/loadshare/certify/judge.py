@@ -13,7 +13,7 @@ from loadshare.certify.bound.one import columns_of
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import scaled_residuals
 from loadshare.certify.state import ClaimedState
-from loadshare.certify.validity import measuring
+from loadshare.certify.validity import Measuring, measuring
 from loadshare.certify.verdicts import Verdicts
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
@@ -41,6 +41,11 @@ class Judge:
     def columns(self) -> Columns:
         """The mechanics as columns, for bounds."""
         return columns_of(self.train)
+
+    @cached_property
+    def measuring(self) -> Measuring:
+        """What is measured on displacements."""
+        return measuring(self.train)
 
     def judge(
         self,
@@ -85,7 +90,7 @@ class Judge:
         found = judged(self.columns, situations, answers)
         # Of what is next to nothing the energy gap does not follow from forces that are in balance.
         found.worst[_is_soft(situations, found.load, found.deflection, tolerance)] = np.nan
-        if measuring(self.train).unsure:
+        if self.measuring.unsure:
             # Compiled code does not measure how far these are open.
             found.displaced[:] = np.nan
         for figure, name in ((found.worst, "worst"), (found.displaced, "displaced")):
@@ -115,7 +120,7 @@ class Judge:
         ]
         worst, load, deflection = (np.concatenate(each) for each in zip(*figures, strict=True))
         with np.errstate(all="ignore"):
-            displaced = measuring(self.train).worst(situations, answers, deflection)
+            displaced = self.measuring.worst(situations, answers, deflection)
         return Verdicts(worst, tolerance, load, deflection, displaced, limits)
 
     def _together(self, situations: Situations, answers: Equilibria) -> tuple[Array, Array, Array]:

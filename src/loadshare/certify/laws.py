@@ -48,11 +48,14 @@ def _root(b: Array, c: Array, compression: Array) -> Array:
     """F^(1/3) of the law b F + c F^(2/3), c > 0, by Newton's method from above."""
     y = np.sqrt(compression / c)
     y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
+    left = np.ones(y.shape, dtype=bool)
     for _ in range(CERTIFY.roots):
         step = ((b * y + c) * y * y - compression) / ((3.0 * b * y + 2.0 * c) * y)
-        y = y - step
-        if (np.abs(step) <= CERTIFY.root * y).all():
+        # One that has arrived stays, so that no digit depends on how far the others have to go.
+        left &= ~(np.abs(step) <= CERTIFY.root * y)
+        if not left.any():
             break
+        y = np.where(left, y - step, y)
     return np.asarray(y)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import reduce
 from typing import TypeVar
 
@@ -15,8 +16,30 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.certify.graphs import complementary, energy, interval, strength
-from loadshare.certify.state import ClaimedState, size
+from loadshare.certify.state import ClaimedState, size, times, total
 from loadshare.settings import CERTIFY, EPS
+
+
+@dataclass(frozen=True, slots=True)
+class Residual:
+    """One figure of a certificate.
+
+    Attributes
+    ----------
+    value : float
+        In `unit`.
+    unit : str
+    scaled : float
+        Over the case's load, deflection, or both; dimensionless.
+    where : str
+        Element that shows the value.
+    """
+
+    value: float
+    unit: str
+    scaled: float
+    where: str
+
 
 Blocks = list[tuple[Array, tuple[str, ...]]]
 Scalars = TypeVar("Scalars", float, Array)
@@ -27,12 +50,12 @@ def force_balance(state: ClaimedState) -> Blocks:
     of = state.of
     if not len(of.moving):
         return []
-    balance = -(of.bearing_pushing @ state.claim.flank_force).reshape(-1, 2, state.count)
+    balance = -times(of.bearing_pushing, state.claim.flank_force).reshape(-1, 2, state.count)
     balance -= state.support[1]
     if state.pushed is not None:
-        balance += of.frames @ state.pushed[1][of.moving]
+        balance += times(of.frames, state.pushed[1][of.moving])
     if len(of.drum) or of.pulls:
-        balance += of.frames @ pushed_by_rings(state)[of.moving]
+        balance += times(of.frames, pushed_by_rings(state)[of.moving])
     return [(size(balance), of.bearings)]
 
 
@@ -53,7 +76,7 @@ def pushed_by_rings(state: ClaimedState) -> Array:
 def moment_balance(state: ClaimedState) -> Blocks:
     """Unbalanced moment over the largest base radius [N] of gears that turn as one."""
     of = state.of
-    return [(np.abs(of.group_moment @ state.moment), of.turning_gears)]
+    return [(np.abs(times(of.group_moment, state.moment)), of.turning_gears)]
 
 
 def penetration(state: ClaimedState) -> Blocks:
@@ -92,7 +115,7 @@ def deformation_law(state: ClaimedState) -> Blocks:
         held = stiffness > 0.0
         lag = np.where(held, state.moved - force / np.where(held, stiffness, 1.0), 0.0)
         blocks.append((size(lag), of.bearing_names))
-    blocks.append((size(of.lift @ state.claim.displacement), of.gear_names))
+    blocks.append((size(times(of.lift, state.claim.displacement)), of.gear_names))
     turned_to = np.abs(state.claim.rotation[of.held]) * of.radius[of.held][:, None]
     blocks.append((turned_to, tuple(f"gear {gear} rotation" for gear in of.train.held)))
     return _less_rounding(state, blocks)
@@ -129,7 +152,7 @@ def _beside_graphs(state: ClaimedState, band: Array) -> Array:
     along = np.where(out, leaning, force)
     sideways = size(reaction + leaning[:, None] * outward) - force * band / radius
     excess = np.maximum(low - along, along - high)
-    lifting = size(state.of.lift[state.of.pulled] @ reaction)
+    lifting = size(times(state.of.lift[state.of.pulled], reaction))
     return np.asarray(np.maximum(np.maximum(excess, lifting), np.where(out, sideways, 0.0)))
 
 
@@ -200,12 +223,12 @@ def energy_gap(state: ClaimedState) -> Blocks:
         work.append((state.reaction * of.centres[..., None]).sum(axis=1))
     if of.train.slip:
         stored.append(here.spline[:, 0] * (state.bend**2).sum(axis=1))
-    held_in = sum(part.sum(axis=0) for part in stored)
-    gap = np.abs(held_in - sum(part.sum(axis=0) for part in work))
-    sizes = held_in + sum(np.abs(part).sum(axis=0) for part in work)
-    forces = np.abs(state.force).sum(axis=0)
+    held_in = sum(map(total, stored))
+    gap = np.abs(held_in - sum(map(total, work)))
+    sizes = held_in + sum(total(np.abs(part)) for part in work)
+    forces = total(np.abs(state.force))
     if of.pulls:
-        forces = forces + size(state.reaction).sum(axis=0)
+        forces = forces + total(size(state.reaction))
     rounding = CERTIFY.rounded * sizes + state.resolution * forces + _unresolved(state)
     return [(np.maximum(gap - rounding, 0.0)[None], ("the whole train",))]
 
@@ -220,20 +243,20 @@ def _unresolved(state: ClaimedState) -> Array:
     near = state.approach > -step
     yields = state.tangent
     stiffness = np.where(near & (yields > 0.0), 1.0 / np.where(yields > 0.0, yields, 1.0), 0.0)
-    found = (stiffness * (np.abs(state.overlap) + step)).sum(axis=0) * step
+    found = total(stiffness * (np.abs(state.overlap) + step)) * step
     if len(of.shaft):
         torsion, turn = here.torsion[of.elastic], step / of.radius[of.shaft[of.elastic, :1]]
         lag = np.abs(state.wind[of.elastic] - state.claim.shaft_torque[of.elastic] / torsion)
-        found = found + (torsion * turn * (lag + turn)).sum(axis=0)
+        found = found + total(torsion * turn * (lag + turn))
     if len(of.moving):
         stiffness, force = state.support
         held = np.where(stiffness > 0.0, stiffness, 1.0)
         lag = np.where(stiffness > 0.0, np.abs(state.moved - force / held) + step, 0.0)
-        found = found + (stiffness * lag).sum(axis=(0, 1)) * step
+        found = found + total((stiffness * lag).reshape(-1, state.count)) * step
     if of.pulls:
         within = np.maximum(state.radius - step, 0.0)
         change = energy(state.graph, state.radius + step) - energy(state.graph, within)
-        found = found + change.sum(axis=0)
+        found = found + total(change)
     return np.asarray(found)
 
 
@@ -270,21 +293,21 @@ def _worst(blocks: Blocks) -> Array:
     return reduce(np.maximum, largest, np.zeros(1))
 
 
-def worst_of_one(blocks: Blocks) -> tuple[float, str]:
-    """Return the largest figure of a single claim, not below zero, and the element that shows it.
+def worst_of_each(blocks: Blocks, claims: int) -> list[tuple[float, str]]:
+    """Return the largest figure of every claim, not below zero, and the element that shows it.
 
     Not-a-number is the worst of all.
     """
-    worst, where = 0.0, ""
+    worst = [(0.0, "")] * claims
     for figures, names in blocks:
         if len(names):
-            one = figures[:, 0]
-            largest = float(one.max())
-            if math.isnan(largest):
-                return math.inf, names[int(one.argmax())]
-            if largest > worst:
-                worst, where = largest, names[first_of_largest(one)]
-    return worst, where
+            largest = np.broadcast_to(figures.max(axis=0), claims).tolist()
+            for row, figure in enumerate(largest):
+                if not figure <= worst[row][0] and worst[row][0] < math.inf:
+                    one = figures[:, row % figures.shape[1]]
+                    at = int(one.argmax()) if math.isnan(figure) else first_of_largest(one)
+                    worst[row] = math.inf if math.isnan(figure) else figure, names[at]
+    return worst
 
 
 def first_of_largest(figures: Array) -> int:

@@ -72,10 +72,10 @@ class ClaimedState:
         of, here, claim = self.of, self.here, self.claim
         gap = here.gap
         offset, moved = (v.reshape(-1, v.shape[-1]) for v in (here.offset, claim.displacement))
-        self.at_rest = of.pushing @ offset - gap
+        self.at_rest = times(of.pushing, offset) - gap
         self._limits = np.abs(gap).max(axis=0, initial=0.0)
-        self.approach = of.turning @ claim.rotation
-        self.approach += of.pushing @ moved
+        self.approach = times(of.turning, claim.rotation)
+        self.approach += times(of.pushing, moved)
         self.approach += self.at_rest
         b, c = here.bending, here.hertz
         positive = np.maximum(self.force, 0.0)
@@ -156,12 +156,12 @@ class ClaimedState:
     def moment(self) -> Array:
         """Moment of the load, flanks and elastic shafts on each gear [N·m], shape (gears, S)."""
         of, claim = self.of, self.claim
-        moment = of.moment @ claim.flank_force
+        moment = times(of.moment, claim.flank_force)
         moment += self.here.torque
         if self.pushed is not None:
             moment += self.pushed[0]
         if len(of.elastic):
-            moment += of.shaft_moment @ claim.shaft_torque
+            moment += times(of.shaft_moment, claim.shaft_torque)
         return np.asarray(moment)
 
     def _put_drums(self) -> None:
@@ -255,7 +255,7 @@ class ClaimedState:
     @cached_property
     def transmitted(self) -> Array:
         """Torque that each spline's gear takes over it [N·m], shape (splines, S)."""
-        return np.asarray(self.of.spline_moment @ self.claim.flank_force)
+        return times(self.of.spline_moment, self.claim.flank_force)
 
     @cached_property
     def tangent(self) -> Array:
@@ -305,14 +305,14 @@ class ClaimedState:
 
         That of a rigid one is nobody's claim: it is what balances the gears beyond it.
         """
-        found = self.of.beyond @ self.moment
+        found = times(self.of.beyond, self.moment)
         found[self.of.elastic] = self.claim.shaft_torque[self.of.elastic]
         return np.asarray(found)
 
     @cached_property
     def moved(self) -> Array:
         """Displacements in the frames of the gears that can be displaced [m], (moving, 2, S)."""
-        return np.asarray(self.of.frames @ self.claim.displacement[self.of.moving])
+        return times(self.of.frames, self.claim.displacement[self.of.moving])
 
     @cached_property
     def support(self) -> tuple[Array, Array]:
@@ -330,6 +330,24 @@ class ClaimedState:
         for claimed in self.claim.arrays:
             bad = bad | ~np.isfinite(claimed.reshape(-1, self.count).sum(axis=0))
         return np.asarray(bad)
+
+
+def times(matrix: Array, columns: Array) -> Array:
+    """Product of a matrix, or of many, with S columns.
+
+    Of few each is found as if it were alone, so that no digit depends on which others there are.
+    """
+    if not 1 < columns.shape[-1] <= CERTIFY.abreast:
+        return np.asarray(matrix @ columns)
+    alone = np.ascontiguousarray(np.moveaxis(columns, -1, 0))[..., None]
+    return np.ascontiguousarray(np.moveaxis((matrix @ alone)[..., 0], 0, -1))
+
+
+def total(figures: Array) -> Array:
+    """Sum over the elements of S claims, (elements, S): one after another, of one claim as well."""
+    if figures.shape[1] == 1 and len(figures):
+        return np.asarray(np.add.accumulate(figures)[-1])
+    return np.asarray(figures.sum(axis=0))
 
 
 def size(vectors: Array, axis: int = 1) -> Array:

@@ -29,14 +29,10 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.array_types import Array
-from loadshare.certify.bound.one import columns_of
-from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.bound.columns import Columns
 from loadshare.certify.state import ClaimedState, size
 from loadshare.settings import CERTIFY
 from loadshare.train.elements import Spline
-from loadshare.train.equilibria import Equilibria
-from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
 MEANINGS = {
@@ -80,20 +76,22 @@ class Uniqueness:
         return f"{MEANINGS[self.kind]}: {size} ({self.where})"
 
 
-def uniqueness(train: Train, answer: Equilibrium) -> Uniqueness:
+def uniqueness(train: Train, columns: Columns, state: ClaimedState, row: int) -> Uniqueness:
     """Judge whether an equilibrium is the only one.
 
     Parameters
     ----------
     train : Train
-    answer : Equilibrium
-        A certified one.
+    columns : Columns
+        Of a train of its shape.
+    state : ClaimedState
+        Of certified ones.
+    row : int
+        Its number among them.
     """
-    following = [s for s in train.splines.values() if _follows(s)]
-    if not train.drums and not following:
+    if not train.drums and not any(map(_follows, train.splines.values())):
         return Uniqueness("convex", 0.0, "")
-    here = situation_of(train, answer.index)
-    system = _System(ClaimedState(mechanics_of(train), here, Equilibria.of(train, answer)))
+    system = _System(train, columns, state, row)
     if not system.bent:
         return Uniqueness("least energy", 0.0, "")
     curvature = system.curvature()
@@ -114,44 +112,53 @@ class _System:
     Coordinates and rows are those of the bound's `Columns`.
     """
 
-    def __init__(self, state: ClaimedState) -> None:
-        self.state = state
-        train = state.of.train
-        self.columns = columns_of(train)
-        self.rows = self.columns.matrix.high
-        count = len(self.columns.coordinates)
-        self.load = CERTIFY.carries * float(state.load[0])
-        self.near = CERTIFY.carries * float(state.deflection[0])
+    def __init__(self, train: Train, columns: Columns, state: ClaimedState, row: int) -> None:
+        self.train, self.columns, self.state, self.row = train, columns, state, row
+        self.rows = columns.matrix.high
+        count = len(columns.coordinates)
+        self.load = CERTIFY.carries * float(state.load[row])
+        self.near = CERTIFY.carries * float(state.deflection[row])
         self.stiffness = np.zeros((count, count))
         self.taken = np.zeros((count, count))
-        self.rigid: list[Array] = []
+        self.held: list[tuple[float, Array]] = []
         self.splines = list(train.splines.values())
-        self.first_spline = self.columns.claims.splines.start
-        self.radius = state.radius[:, 0] if state.of.pulls else np.zeros(0)
+        self.first_spline = columns.claims.splines.start
+        self.radius = state.radius[:, row] if state.of.pulls else np.zeros(0)
 
     @cached_property
     def bent(self) -> tuple[str, ...]:
         """Elements that are not convex and carry."""
         of = self.state.of
-        carrying = np.argwhere(self.state.ring_force[:, :2, 0] > self.load).tolist()
+        carrying = np.argwhere(self.state.ring_force[:, :2, self.row] > self.load).tolist()
         arcs = [of.contacts[len(of.flanks) + 4 * d + k] for d, k in carrying]
         return (*arcs, *(s.name for k, s in enumerate(self.splines) if self._follows(k)))
 
     def _assemble(self) -> None:
+        """Put K and M together, and the rows of what is rigid."""
         self._flanks()
         self._drums()
         self._springs()
-        remembering = self.state.of.train.slip is not None
+        remembering = self.train.slip is not None
         for q in range(self.first_spline if remembering else len(self.radius)):
             self._pull(q)
         for k, spline in enumerate(self.splines if remembering else ()):
             self._remembering(k, spline)
+        held = np.array([stiffness for stiffness, _ in self.held])
+        rows = np.array([row for _, row in self.held]).reshape(len(held), self.rows.shape[1])
+        elastic = np.isfinite(held)
+        self.rigid = rows[~elastic]
+        self.stiffness += rows[elastic].T @ (held[elastic, None] * rows[elastic])
 
     def _hold(self, row: Array, stiffness: float) -> None:
-        if math.isinf(stiffness):
-            self.rigid.append(row)
-        else:
-            self.stiffness += stiffness * np.outer(row, row)
+        self.held.append((stiffness, row))
+
+    def _own(self, figures: Array) -> Array:
+        """Figures (…, S or 1) of this answer."""
+        return np.asarray(figures[..., self.row % figures.shape[-1]])
+
+    def _pulled(self, q: int) -> float:
+        """Size of the force of a radial element [N]."""
+        return float(size(self.state.reaction[q], axis=0)[self.row])
 
     def _pair(self, first: int) -> Array:
         """Rows of both components of an element's vector."""
@@ -159,42 +166,45 @@ class _System:
 
     def _slope(self, contact: int) -> float:
         """Least slope [N/m] to any other compression of a loaded contact; infinite if rigid."""
-        force, compression = (v[contact, 0] for v in (self.state.force, self.state.compression))
+        force, compression = (
+            v[contact, self.row] for v in (self.state.force, self.state.compression)
+        )
         return float(force / compression) if compression > 0.0 else math.inf
 
     def _flanks(self) -> None:
         state, of = self.state, self.state.of
-        self.torque_slope = np.zeros((len(of.train.splines), self.rows.shape[1]))
-        for e in np.flatnonzero(state.claim.flank_force[:, 0] > self.load).tolist():
-            slope = self._slope(e)
+        flanks = np.flatnonzero(state.claim.flank_force[:, self.row] > self.load)
+        slopes = np.array([self._slope(e) for e in flanks.tolist()])
+        for k, e in enumerate(flanks.tolist() if of.tabled else ()):
             if e in of.tabled:
-                forces, compressions = np.diff(state.here.table[e, :, :, 0])
-                slope = float(np.nanmin(forces / compressions))
-            self._hold(self.rows[e], slope)
-            if math.isfinite(slope):
-                self.torque_slope += slope * np.outer(self.columns.moments[:, e], self.rows[e])
+                forces, compressions = np.diff(self._own(state.here.table[e]))
+                slopes[k] = float(np.nanmin(forces / compressions))
+        self.held += zip(slopes.tolist(), self.rows[flanks], strict=True)
+        elastic = np.isfinite(slopes)
+        slopes, some = slopes[elastic], flanks[elastic]
+        self.torque_slope = self.columns.moments[:, some] @ (slopes[:, None] * self.rows[some])
 
     def _drums(self) -> None:
-        state, train = self.state, self.state.of.train
+        state, train = self.state, self.train
         for d, ring in enumerate(train.drums):
             frame, first = train.gears[ring.gear].frame, len(state.of.flanks) + 4 * d
-            for k in np.flatnonzero(state.ring_force[d, :, 0] > self.load).tolist():
+            for k in np.flatnonzero(state.ring_force[d, :, self.row] > self.load).tolist():
                 slope = self._slope(first + k)
                 if k >= 2:
                     self._hold(self.rows[self.columns.stops.start + 2 * d + k - 2], slope)
                     continue
                 pair = self._pair(self.columns.arcs.start + 2 * (2 * d + k))
-                way = state.way[d, k, :, 0]
+                way = state.way[d, k, :, self.row]
                 distance = float(np.linalg.norm(way))
                 along, across = _along_and_across(frame @ way / distance)
                 self._hold(along @ pair, slope)
                 row = across @ pair
-                self.taken += state.ring_force[d, k, 0] / distance * np.outer(row, row)
+                self.taken += state.ring_force[d, k, self.row] / distance * np.outer(row, row)
 
     def _springs(self) -> None:
         state, columns = self.state, self.columns
-        torsion = state.here.torsion[columns.elastic_shafts, 0] / columns.shaft_arms**2
-        held = state.here.support[columns.moving, :, 0].ravel()
+        torsion = self._own(state.here.torsion)[columns.elastic_shafts] / columns.shaft_arms**2
+        held = self._own(state.here.support)[columns.moving].ravel()
         for some, stiffness in ((columns.shafts, torsion), (columns.bearings, held)):
             rows = self.rows[some]
             self.stiffness += rows.T @ (stiffness[:, None] * rows)
@@ -204,12 +214,14 @@ class _System:
         q = self.first_spline + k
         if not _follows(self.splines[k]) or self.radius[q] <= self.near:
             return False
-        return self.state.of.train.slip is not None or self._piece(q)[0] != "stick"
+        return self.train.slip is not None or self._piece(q)[0] != "stick"
 
     def _piece(self, q: int) -> tuple[str, float]:
         """The piece of its graph on which a radial element is, and its slope [N/m]."""
-        first, stick, bound, reach, last = (float(figure[q, 0]) for figure in self.state.graph)
-        radius, force = self.radius[q], float(size(self.state.reaction[q], axis=0)[0])
+        first, stick, bound, reach, last = (
+            float(figure[q, self.row]) for figure in self.state.graph
+        )
+        radius, force = self.radius[q], self._pulled(q)
         rigid = math.isinf(last) and math.isfinite(reach)
         if rigid and radius >= reach - self.near and force > bound + self.load:
             return "stop", math.inf
@@ -231,16 +243,16 @@ class _System:
             for row in pair:
                 self._hold(row, held)
             return
-        gear = state.of.train.gears[state.of.gears[state.of.pulled[q]]]
-        outward, beside = _along_and_across(gear.frame @ state.offset[q, :, 0] / radius)
+        gear = self.train.gears[state.of.gears[state.of.pulled[q]]]
+        outward, beside = _along_and_across(gear.frame @ state.offset[q, :, self.row] / radius)
         along = outward @ pair
         self._hold(along, held)
-        self._hold(beside @ pair, float(size(state.reaction[q], axis=0)[0]) / radius)
+        self._hold(beside @ pair, self._pulled(q) / radius)
         k = q - self.first_spline
         if k < 0 or not self._follows(k):
             return
         per_torque = self.splines[k].friction_per_torque
-        follow = math.copysign(per_torque, state.transmitted[k, 0]) * self.torque_slope[k]
+        follow = math.copysign(per_torque, state.transmitted[k, self.row]) * self.torque_slope[k]
         coupling = np.outer(along, follow)
         self.taken -= 0.5 * (coupling + coupling.T)
 
@@ -248,21 +260,20 @@ class _System:
         """A spline with memory: held by its shaft where the slip is, and by nothing elsewhere."""
         q = self.first_spline + k
         if self.radius[q] <= self.near:
-            self.rigid += list(self.rows[self.columns.both(q)])
+            for row in self.rows[self.columns.both(q)]:
+                self._hold(row, math.inf)
             for row in self._pair(self.columns.bends.start + 2 * k):
                 self._hold(row, spline.bending_stiffness)
 
     def curvature(self) -> float:
         """Largest κ of M z = κ K z on the moves that rigid contacts leave, at least 0."""
-        if self.state.of.train.slip is not None and any(
-            map(self._follows, range(len(self.splines)))
-        ):
+        if self.train.slip is not None and any(map(self._follows, range(len(self.splines)))):
             return math.inf
         self._assemble()
         free = np.eye(len(self.stiffness))
-        if self.rigid:
-            rows = np.array([r / (np.linalg.norm(r) or 1.0) for r in self.rigid])
-            _, sizes, basis = np.linalg.svd(rows)
+        if len(self.rigid):
+            lengths = np.sqrt((self.rigid**2).sum(axis=1, keepdims=True))
+            _, sizes, basis = np.linalg.svd(self.rigid / np.where(lengths > 0.0, lengths, 1.0))
             free = basis[int((sizes > CERTIFY.rank).sum()) :].T
         stiffness, taken = (free.T @ m @ free for m in (self.stiffness, self.taken))
         values, vectors = np.linalg.eigh(stiffness)

@@ -302,12 +302,15 @@ class Measuring:
         found |= self.bounded(situations, answers, deflection)
         return {name: found[name] for name in LABELS if name in found}
 
-    def one(
-        self, situation: Situations, answers: Equilibria, deflection: float
-    ) -> dict[str, Measure]:
-        """Return all figures of a single answer."""
-        every = self.every(situation, answers, np.array([deflection]))
-        return {name: self._largest(name, values[:, 0]) for name, values in every.items()}
+    def each(
+        self, situations: Situations, answers: Equilibria, deflection: Array
+    ) -> list[dict[str, Measure]]:
+        """Return all figures, answer by answer; parameters are those of `bounded`."""
+        found: list[dict[str, Measure]] = [{} for _ in answers.rotation]
+        for name, values in self.every(situations, answers, deflection).items():
+            for row, figures in enumerate(values.T):
+                found[row][name] = self._largest(name, figures)
+        return found
 
 
 def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
@@ -321,7 +324,7 @@ def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
         Of the case [m], as its certificate has it.
     """
     here, claimed = situation_of(train, answer.index), Equilibria.of(train, answer)
-    return Validity(measuring(train).one(here, claimed, deflection))
+    return Validity(measuring(train).each(here, claimed, np.array([deflection]))[0])
 
 
 @lru_cache(maxsize=16)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from loadshare.certify import Certificate
-from loadshare.certify.validity import Validity, refusal_text, validity
+from loadshare.certify.validity import Validity, refusal_text
 from loadshare.errors import Refused
 from loadshare.later import known
 from loadshare.results.result import Effort
@@ -100,10 +100,10 @@ class Answer(Viewed):
         """The contact problem, assembled again."""
         return assemble(self.train, self.index)
 
-    @cached_property
+    @property
     def validity(self) -> Validity:
         """Whether its displacements are small enough for the geometry in which it was found."""
-        return validity(self.train, self.equilibrium, self.certificate.deflection)
+        return self.certificate.claims.validities[self.certificate.row]
 
     def refused(self) -> Refused | None:
         """Return why it is refused for its displacements; None if it is not."""

@@ -24,7 +24,7 @@ from loadshare.results.result import Result
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.tooth import resolve
-from loadshare.train import build_train
+from loadshare.train import Train, build_train
 from loadshare.train.placed import standing
 from loadshare.train.samples import Samples, samples_of
 
@@ -60,6 +60,14 @@ class Part:
         """Yield number and position of every answer to a sample, given by its place in `rows`."""
         for p, index in enumerate(self.positions):
             yield p * len(self.rows) + row, index
+
+    def answers(self, row: int, train: Train) -> list[Answer]:
+        """Return the answers to a sample, given by its place in `rows` and its train."""
+        every = dict(self.numbers(row))
+        hot = [k for k in every if k not in self.refused and k not in self.others]
+        here, wanted = standing(train, self.positions[0]), [every[k] for k in hot]
+        found = dict(zip(hot, self.solved.answers(hot, wanted, here), strict=True)) | self.others
+        return [found[k] for k in every if k in found]
 
     @cached_property
     def there(self) -> Numbers:
@@ -135,11 +143,7 @@ class Answered:
                 case = part.samples.one(row)
                 solved = resolve(case)
                 train = build_train(solved)
-            for k, index in part.numbers(row):
-                if k in part.others:
-                    answers.append(part.others[k])
-                elif k not in part.refused:
-                    answers.append(part.solved.answer(k, index, standing(train, index)))
+            answers += part.answers(row, train)
         if case is None or solved is None or train is None or not answers:
             return None
         options = Options(solver=AUTO)
@@ -207,7 +211,7 @@ def _part(machine: Machine, rows: Numbers, samples: Samples, positions: tuple[in
         try:
             train = standing(build_train(resolve(samples.one(row))), positions[p])
             if found.passed[k]:
-                answer = solved.answer(k, positions[p], train)
+                (answer,) = solved.answers([k], [positions[p]], train)
             else:
                 answer = climb(train, positions[p], Options(), CERTIFY.tolerance, JOB.steps)
                 part.others[k] = answer

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
 
 from loadshare.array_types import Flags
-from loadshare.certify import Certificate
-from loadshare.certify.bound import bound_of
-from loadshare.certify.certificate import certify_later
+from loadshare.certify import Certificate, Claims, certified
+from loadshare.certify.certificate import in_groups
 from loadshare.contact.plan import Plan, Role
 from loadshare.job.answer import Answer
 from loadshare.job.engines import engine_at_hand
@@ -18,7 +18,7 @@ from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine
 from loadshare.settings import JOB
 from loadshare.solver import Record
-from loadshare.solver.position import coordinates_of, with_ranges
+from loadshare.solver.position import coordinates_of
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
@@ -60,18 +60,25 @@ class Solved:
         )
         return np.asarray(moved < JOB.small)
 
-    def answer(self, row: int, index: int, train: Train) -> Answer:
-        """Return an answer that passed, of position `index` of a train."""
-        flanks, forces = self.found.equilibria.names.flanks, self.found.equilibria.flank_force
-        return Answer(
-            train,
-            index,
-            SEARCHED if self.found.searched[row] else HOT,
-            dict(zip(flanks, forces[row].tolist(), strict=True)),
-            partial(self._placed, row, index, train),
-            partial(_record, self.machine, self.found, row),
-            bool(self.small[row]),
-        )
+    def answers(self, rows: Sequence[int], indices: Sequence[int], train: Train) -> list[Answer]:
+        """Return answers that passed, each of a position of a train."""
+        found: list[Answer] = []
+        names, every = self.found.equilibria.names.flanks, self.found.equilibria.flank_force
+        for some in in_groups(range(len(rows))):
+            placed = _Placed(self, [rows[k] for k in some], [indices[k] for k in some], train)
+            for n, row in enumerate(placed.rows):
+                found.append(
+                    Answer(
+                        train,
+                        placed.indices[n],
+                        SEARCHED if self.found.searched[row] else HOT,
+                        dict(zip(names, every[row].tolist(), strict=True)),
+                        partial(placed.answer, n),
+                        partial(_record, self.machine, self.found, row),
+                        bool(self.small[row]),
+                    )
+                )
+        return found
 
     def least(self, rows: Sequence[int]) -> dict[int, Equilibrium]:
         """Move answers whose place is open to their least ones, and return these by number."""
@@ -82,18 +89,43 @@ class Solved:
             )
         return {r: self._least[r] for r in rows if r in self._least}
 
-    def _placed(self, row: int, index: int, train: Train) -> tuple[Equilibrium, Certificate]:
+
+@dataclass(eq=False)
+class _Placed:
+    """Answers of one train, put at their places of least norm and certified together.
+
+    Attributes
+    ----------
+    solved : Solved
+    rows, indices : list of int
+        Numbers among what was solved, and positions.
+    train : Train
+    """
+
+    solved: Solved
+    rows: list[int]
+    indices: list[int]
+    train: Train
+
+    def answer(self, n: int) -> tuple[Equilibrium, Certificate]:
         """Return an answer at its place of least norm, and its certificate."""
-        least = self.least([row]).get(row)
-        equilibrium = self.found.equilibria.one(row, index)
-        if least is not None:
-            equilibrium = with_ranges(least, train)
-        claimed = self.found.equilibria.part(slice(row, row + 1))
-        torques = float(self.found.verdicts.bounds.relative[row])
-        prove = partial(bound_of, train, equilibrium)
-        return equilibrium, certify_later(
-            train, equilibrium, claimed, self.tolerance, torques, prove
+        return self._every[n]
+
+    @cached_property
+    def _every(self) -> list[tuple[Equilibrium, Certificate]]:
+        solved, train = self.solved, self.train
+        least, found = solved.least(self.rows), solved.found
+        placed = [
+            least[row] if row in least else found.equilibria.one(row, index)
+            for row, index in zip(self.rows, self.indices, strict=True)
+        ]
+        rows = np.array(self.rows)
+        open_ = [answer.undetermined for answer in placed]
+        claims = Claims(
+            train, solved.machine.judge, self.indices, found.equilibria.take(rows), open_
         )
+        proved = found.verdicts.bounds.relative[rows].tolist()
+        return list(zip(placed, certified(claims, solved.tolerance, proved), strict=True))
 
 
 def hot_answers(
@@ -107,7 +139,8 @@ def hot_answers(
     found = machine.answer(situations, tolerance, engine_at_hand(engine, len(indices)))
     solved = Solved(machine, situations, found, tolerance)
     passed = np.flatnonzero(found.passed).tolist()
-    return {indices[r]: solved.answer(r, indices[r], machine.train) for r in passed}
+    wanted = [indices[r] for r in passed]
+    return dict(zip(wanted, solved.answers(passed, wanted, machine.train), strict=True))
 
 
 def _record(machine: Machine, found: Answers, row: int) -> Record:

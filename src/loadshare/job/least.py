@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene.assemble import scene_of
-from loadshare.solver.position import of_least_norm
+from loadshare.solver.position import of_least_norm, with_ranges
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import Situations
 
@@ -64,5 +63,6 @@ def least_places(
         if passed:
             found.equilibria.put(row, least[row])
         else:
-            least[row] = replace(claimed[row], undetermined=least[row].undetermined)
+            least[row] = claimed[row]
+        least[row] = with_ranges(least[row], scenes[row])
     return least

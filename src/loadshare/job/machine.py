@@ -12,7 +12,7 @@ import numpy as np
 from loadshare import compilation
 from loadshare.array_types import Array, Flags, Numbers, States
 from loadshare.certify import Judge, Verdicts
-from loadshare.certify.validity import Measuring, measuring
+from loadshare.certify.validity import Measuring
 from loadshare.job.judging import Judging
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.structure import Structure, structure_of
@@ -134,10 +134,10 @@ class Machine:
         """Its certificate."""
         return Judge(self.train)
 
-    @cached_property
+    @property
     def measuring(self) -> Measuring:
         """What is measured on the displacements of its answers."""
-        return measuring(self.train)
+        return self.judge.measuring
 
     def share(self, other: Machine) -> None:
         """Take over what is reduced of a machine that differs in its situations only."""
@@ -145,7 +145,6 @@ class Machine:
         if self.train.is_placed_anew:
             return
         self.__dict__["structure"], self.__dict__["judge"] = other.structure, other.judge
-        self.__dict__["measuring"] = other.measuring
 
     def at(self, index: int) -> Machine:
         """Return the machine of a position (1-based): itself, unless its train is placed again."""

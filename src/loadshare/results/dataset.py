@@ -112,18 +112,20 @@ def dataset(result: Result) -> xr.Dataset:
     """
     import xarray as xr
 
-    parts, stamp = result.figures, result.stamp
+    stamp, positions = result.stamp, result.positions
+    parts = {id(p.figures): p.figures for p in positions}
     # A train that is placed may have a shift to report at some positions only.
-    measures = list(dict.fromkeys(m for part in parts for m in part.measured))
-    names = {**parts[0].names, "measure": measures}
+    measures = list(dict.fromkeys(m for part in parts.values() for m in part.measured))
+    names = {**positions[0].figures.names, "measure": measures}
     data = {}
     for name, variable in VARIABLES.items():
-        values = np.concatenate([part.as_numbers(name, names) for part in parts])
+        arrays = {key: part.as_numbers(name, names) for key, part in parts.items()}
+        values = np.array([arrays[id(p.figures)][p.row] for p in positions])
         values.flags.writeable = False
         data[name] = variable.labelled(values, "position")
     return xr.Dataset(
         data,
-        coords={"position": [p.position for p in result.positions], **names},
+        coords={"position": [p.position for p in positions], **names},
         attrs={
             "title": stamp.title or stamp.case,
             "case": stamp.case,

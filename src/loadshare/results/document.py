@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import is_dataclass
+from math import isfinite, isinf
 from typing import TYPE_CHECKING, Any
 
 from loadshare.results.digest import DIGEST, digest_of
@@ -76,16 +76,20 @@ def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
 
 def as_data(given: Any) -> Any:
     """Return dataclasses, mappings and tuples as JSON knows them; what is infinite is null."""
-    # Most are numbers: to ask whether they are mappings would take ten times as long.
     if isinstance(given, float):
-        return None if math.isinf(given) else given
+        return None if isinf(given) else given
     if given is None or isinstance(given, str | int):
         return given
+    # Most are numbers, and a call takes longer than to look at one.
+    if isinstance(given, list | tuple):
+        return [v if type(v) is float and isfinite(v) else as_data(v) for v in given]
     if isinstance(given, Mapping):
-        return {key: as_data(value) for key, value in given.items()}
+        return {
+            key: v if type(v) is float and isfinite(v) else as_data(v) for key, v in given.items()
+        }
     if is_dataclass(given):
-        return {f.name: as_data(getattr(given, f.name)) for f in fields(given)}
-    return [as_data(value) for value in given] if isinstance(given, list | tuple) else given
+        return {name: as_data(getattr(given, name)) for name in given.__dataclass_fields__}
+    return given
 
 
 def _position_document(p: Position) -> dict[str, Any]:

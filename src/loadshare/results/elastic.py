@@ -17,32 +17,35 @@ class Elastic:
     Attributes
     ----------
     figures : Figures
-        Of the answer alone.
+        Of the answer among others.
+    row : int
+        Its number among them.
     """
 
     figures: Figures
+    row: int
 
     @property
     def transmission_error(self) -> dict[str, float]:
         """Loaded transmission error of the train [rad], by "input" and "output"."""
-        return self.figures.by_name("transmission_error", "side")
+        return self.figures.by_name(self.row, "transmission_error", "side")
 
     @property
     def torsional_stiffness(self) -> dict[str, float]:
         """Tangent stiffness dT/dφ of the train [N·m/rad], by "input" and "output"."""
-        return self.figures.by_name("torsional_stiffness", "side")
+        return self.figures.by_name(self.row, "torsional_stiffness", "side")
 
     @property
     def mesh_transmission_error(self) -> dict[str, float]:
         """Loaded transmission error of every mesh along its line of action [m]."""
-        return self.figures.by_name("mesh_transmission_error", "mesh")
+        return self.figures.by_name(self.row, "mesh_transmission_error", "mesh")
 
     @property
     def mesh_stiffness(self) -> dict[str, float]:
         """Tangent stiffness of every mesh along its line of action, at its force [N/m]."""
-        return self.figures.by_name("mesh_stiffness", "mesh")
+        return self.figures.by_name(self.row, "mesh_stiffness", "mesh")
 
     @property
     def mesh_torsional_stiffness(self) -> dict[str, float]:
         """The same as torque by angle at the gear that the mesh names first [N·m/rad]."""
-        return self.figures.by_name("mesh_torsional_stiffness", "mesh")
+        return self.figures.by_name(self.row, "mesh_torsional_stiffness", "mesh")

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array, Flags
-from loadshare.certify.bound import torque_bounds
+from loadshare.certify.bound import Columns, torque_bounds
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.bound.tangent import Tangents, tangents_of
 from loadshare.certify.floats import Rests
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import RESIDUALS, pushed_by_rings, scaled_residuals
 from loadshare.certify.state import ClaimedState
-from loadshare.certify.validity import measuring
+from loadshare.certify.validity import Measuring, measuring
 from loadshare.results.share import (
     MeshTorques,
     carries,
@@ -72,9 +72,19 @@ class Figures:
         with np.errstate(all="ignore"):
             return ClaimedState(mechanics_of(self.train), self.situations, self.answers)
 
+    @cached_property
+    def columns(self) -> Columns:
+        """The mechanics as columns."""
+        return columns_of(self.train)
+
+    @property
+    def measuring(self) -> Measuring:
+        """What is measured on displacements."""
+        return measuring(self.train)
+
     def _over_meshes(self, figures: Array) -> Array:
         """Sums of figures of flanks, (S, flanks), over those of every mesh."""
-        return np.asarray(columns_of(self.train).over_meshes(figures))
+        return np.asarray(self.columns.over_meshes(figures))
 
     @cached_property
     def _torques(self) -> MeshTorques:
@@ -114,7 +124,7 @@ class Figures:
 
         Positive where the gear that the mesh names first drives.
         """
-        flanks = columns_of(self.train).all_flanks
+        flanks = self.columns.all_flanks
         signs = [1.0 if mesh.is_drive(drive) else -1.0 for mesh, drive in flanks]
         return self._over_meshes(self.answers.flank_force * np.array(signs))
 
@@ -166,7 +176,7 @@ class Figures:
 
     @cached_property
     def _tangents(self) -> Tangents:
-        return tangents_of(self.train, self.situations, self.answers)
+        return tangents_of(self.columns, self.situations, self.answers)
 
     @property
     def _ratio(self) -> float:
@@ -289,8 +299,7 @@ class Figures:
     @cached_property
     def torque_bound(self) -> Array:
         """Largest distance of every torque from the exact equilibrium's [N·m], (S, meshes)."""
-        columns = columns_of(self.train)
-        return torque_bounds(columns, self.situations, self.answers, self.proved)
+        return torque_bounds(self.columns, self.situations, self.answers, self.proved)
 
     @cached_property
     def residual(self) -> Array:
@@ -301,7 +310,7 @@ class Figures:
     @cached_property
     def measured(self) -> dict[str, Array]:
         """Size of the displacements for the geometry, by what is measured, (S,) each."""
-        every = measuring(self.train).every(self.situations, self.answers, self.state.deflection)
+        every = self.measuring.every(self.situations, self.answers, self.state.deflection)
         largest = {name: values.max(axis=0) for name, values in every.items()}
         return {name: np.where(v < 0.0, np.nan, v) for name, v in largest.items()}
 
@@ -320,9 +329,9 @@ class Figures:
             "figure": list(RESIDUALS),
         }
 
-    def by_name(self, name: str, dim: str) -> dict[str, float]:
-        """Return a figure of the first answer, by the names along an axis."""
-        return dict(zip(self.names[dim], getattr(self, name)[0].tolist(), strict=True))
+    def by_name(self, row: int, name: str, dim: str) -> dict[str, float]:
+        """Return a figure of an answer, by the names along an axis."""
+        return dict(zip(self.names[dim], getattr(self, name)[row].tolist(), strict=True))
 
     def as_numbers(self, name: str, names: Mapping[str, Sequence[str]]) -> Array:
         """Return a figure by its name as numbers; sizes of displacements in the order of names."""

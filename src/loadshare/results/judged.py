@@ -1,56 +1,55 @@
-"""Figures of positions that were certified one by one."""
+"""Figures of claims that are certified one by one."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from loadshare.array_types import Array
+from loadshare.certify import Claims
+from loadshare.certify.bound import Columns
+from loadshare.certify.floats import Rests
+from loadshare.certify.state import ClaimedState
+from loadshare.certify.validity import Measuring
 from loadshare.results.figures import Figures
-from loadshare.train.equilibria import Equilibria
-from loadshare.train.situations import Situations, situations_of
-from loadshare.train.train import Train
-
-if TYPE_CHECKING:
-    from loadshare.results.result import Position
 
 
-def figures_of(positions: Sequence[Position]) -> list[Figures]:
-    """Return the figures of positions, those of one train together."""
-    groups: list[list[Position]] = []
-    for position in positions:
-        if not (groups and groups[-1][0].train is position.train):
-            groups.append([])
-        groups[-1].append(position)
-    found: list[Figures] = []
-    for group in groups:
-        train, answers = group[0].train, Equilibria.empty(group[0].train, len(group))
-        for row, position in enumerate(group):
-            answers.put(row, position.equilibrium)
-        situations = situations_of(train, [position.position for position in group])
-        found.append(_Judged(train, situations, answers, group))
-    return found
+class Judged(Figures):
+    """Figures of claims, what their certificates know taken from there.
 
+    Parameters
+    ----------
+    claims : Claims
+    """
 
-class _Judged(Figures):
-    """Figures of positions, each with its own certificate."""
+    def __init__(self, claims: Claims) -> None:
+        none = np.full(len(claims.positions), np.inf)
+        situations, answers = claims.situations, claims.answers
+        super().__init__(claims.train, situations, answers, claims.undetermined, none)
+        self._claims = claims
 
-    def __init__(
-        self,
-        train: Train,
-        situations: Situations,
-        answers: Equilibria,
-        positions: Sequence[Position],
-    ) -> None:
-        proved = np.array([p.certificate.proved for p in positions])
-        super().__init__(train, situations, answers, [p.undetermined for p in positions], proved)
-        self._positions = positions
+    @property
+    def state(self) -> ClaimedState:
+        """The claims seen as mechanics."""
+        return self._claims.state
+
+    @property
+    def columns(self) -> Columns:
+        """The mechanics as columns."""
+        return self._claims.judge.columns
+
+    @property
+    def measuring(self) -> Measuring:
+        """What is measured on displacements."""
+        return self._claims.judge.measuring
+
+    @property
+    def _rests(self) -> Rests:
+        return self._claims.rests
 
     @cached_property
     def torque_bound(self) -> Array:
         """Bounds of torques as the certificates have them; not a number where there is none."""
-        bounds = [p.certificate.bound.torque for p in self._positions]
-        return np.array([[b.get(mesh, np.nan) for mesh in self.train.meshes] for b in bounds])
+        every = [bound.torque for bound in self._claims.bounds]
+        return np.array([[b.get(mesh, np.nan) for mesh in self.train.meshes] for b in every])

@@ -18,20 +18,23 @@ class Loads:
     Attributes
     ----------
     figures : Figures
-        Of the answer alone.
+        Of the answer among others.
+    row : int
+        Its number among them.
     """
 
     figures: Figures
+    row: int
 
     @property
     def meshes(self) -> dict[str, float]:
         """Force of every mesh along its line of action, drive flank less coast flank [N]."""
-        return self.figures.by_name("mesh_force", "mesh")
+        return self.figures.by_name(self.row, "mesh_force", "mesh")
 
     @property
     def shafts(self) -> dict[str, float]:
         """Torque of every shaft from its first gear to its second [N·m], of rigid ones as well."""
-        return self.figures.by_name("shaft_torque", "shaft")
+        return self.figures.by_name(self.row, "shaft_torque", "shaft")
 
     @property
     def gears(self) -> dict[str, float]:
@@ -39,7 +42,7 @@ class Loads:
 
         Loads; and on the output and on held gears what balances all others.
         """
-        return self._of_bodies(self.figures.by_name("gear_torque", "gear"))
+        return self._of_bodies(self.figures.by_name(self.row, "gear_torque", "gear"))
 
     @property
     def bearings(self) -> dict[str, Pair]:
@@ -47,7 +50,8 @@ class Loads:
 
         Supports and bearings with clearance together; those of splines and rings stand apart.
         """
-        found = zip(self.figures.train.gears, self.figures.bearing_force[0].tolist(), strict=True)
+        force = self.figures.bearing_force[self.row]
+        found = zip(self.figures.train.gears, force.tolist(), strict=True)
         return self._of_bodies({name: (x, y) for name, (x, y) in found})
 
     def _of_bodies(self, found: dict[str, Value]) -> dict[str, Value]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from itertools import islice
@@ -19,7 +19,8 @@ from loadshare.case import Case
 from loadshare.case.keys import Path, dotted
 from loadshare.case.origin import Origin
 from loadshare.case.words import as_given
-from loadshare.certify import Certificate, certify
+from loadshare.certify import Certificate
+from loadshare.certify.certificate import certify_all
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.certify.validity import refusal_text
 from loadshare.errors import CaseError, Problem, ResultError
@@ -103,7 +104,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     problems = [*_wrong_positions(given, train), *_wrong_names(given, train)]
     _raise(problems, file)
     tolerance = _tolerance(given, file)
-    positions = [_position(train, p, tolerance) for p in given.positions]
+    positions = _positions(train, given.positions, tolerance)
     _raise(_uncertified(positions), file)
     _raise(_forgotten(train, positions), file)
     _raise(_loosened(positions, train), file)
@@ -258,11 +259,17 @@ def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
             yield path if name else path[:-1], "", message, ""
 
 
-def _position(train: Train, given: _Position, tolerance: float) -> Position:
-    found = given.claim.equilibrium(given.position, given.ranges)
-    remembering = standing(given.claim.train(train), given.position)
-    answer = _Claimed(found, certify(remembering, found, tolerance), given.effort)
-    return position_of(remembering, given.position, given.claim.flank_force, answer)
+def _positions(train: Train, given: Sequence[_Position], tolerance: float) -> list[Position]:
+    """Certify what is claimed of positions, and return what it says of them."""
+    trains = [standing(p.claim.train(train), p.position) for p in given]
+    found = [p.claim.equilibrium(p.position, p.ranges) for p in given]
+    positions = []
+    for p, here, answer, certificate in zip(
+        given, trains, found, certify_all(trains, found, tolerance), strict=True
+    ):
+        claimed = _Claimed(answer, certificate, p.effort)
+        positions.append(position_of(here, p.position, p.claim.flank_force, claimed))
+    return positions
 
 
 def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
@@ -307,7 +314,7 @@ def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
     """Yield ranges of what the forces leave open that do not follow from the claim."""
     for at, p in enumerate(positions):
         scene = assemble(p.claim.train(train), p.position)
-        ranges = ranges_of(p.equilibrium, scene.train)
+        ranges = ranges_of(p.equilibrium, scene)
         given, found, sizes = as_data(p.undetermined), as_data(ranges), _sizes(scene, p.equilibrium)
         for path, was, wrong, expected in differences(found, given, least=sizes):
             yield ("positions", at, "undetermined", *path), was, wrong, expected

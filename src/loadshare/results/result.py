@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from loadshare.case.table import Table
 from loadshare.certify import Certificate, FloatState
-from loadshare.certify.uniqueness import MEANINGS, Uniqueness, uniqueness
-from loadshare.certify.validity import Measure, Validity, validity
+from loadshare.certify.uniqueness import MEANINGS, Uniqueness
+from loadshare.certify.validity import Measure, Validity
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
 from loadshare.results.elastic import Elastic
 from loadshare.results.figures import Figures
-from loadshare.results.judged import figures_of
+from loadshare.results.judged import Judged
 from loadshare.results.laws import LawUse, laws_of
 from loadshare.results.loads import Loads
 from loadshare.settings import CERTIFY
@@ -110,8 +110,8 @@ class Answered(Protocol):
 class Position(Viewed):
     """What was found at one position.
 
-    Rarely used figures are computed when they are first read. Two positions are equal if their
-    claims, certificates and efforts are.
+    Rarely used figures are computed when they are first read, for some positions at once. Two
+    positions are equal if their claims, certificates and efforts are.
 
     Attributes
     ----------
@@ -186,21 +186,25 @@ class Position(Viewed):
         index = self.equilibrium.index
         return Table({mesh: k + 1 for mesh, k in self.train.mesh_positions(index).items()})
 
-    @cached_property
+    @property
     def figures(self) -> Figures:
-        """All its figures, as arrays of one answer."""
-        (found,) = figures_of([self])
-        return found
+        """All figures, as arrays, of the answers that are looked at together with this one."""
+        return self.certificate.claims.told(Judged)
+
+    @property
+    def row(self) -> int:
+        """Its number among them."""
+        return self.certificate.row
 
     @property
     def loads(self) -> Loads:
         """Forces of meshes and on bearings, torques of shafts and from outside."""
-        return Loads(self.figures)
+        return Loads(self.figures, self.row)
 
     @property
     def elastic(self) -> Elastic:
         """Transmission errors and stiffnesses of the train and of its meshes."""
-        return Elastic(self.figures)
+        return Elastic(self.figures, self.row)
 
     @property
     def undetermined(self) -> Mapping[str, Pair]:
@@ -216,15 +220,15 @@ class Position(Viewed):
         """Where every float rests, by gear."""
         return self.certificate.floats
 
-    @cached_property
+    @property
     def validity(self) -> Validity:
         """Whether displacements are small enough for the geometry in which they were found."""
-        return validity(self.train, self.equilibrium, self.certificate.deflection)
+        return self.certificate.claims.validities[self.row]
 
-    @cached_property
+    @property
     def uniqueness(self) -> Uniqueness:
         """Whether it is proved to be the only answer."""
-        return uniqueness(self.train, self.equilibrium)
+        return self.certificate.claims.uniquenesses[self.row]
 
     def _view(self) -> View:
         from loadshare.results.view import position_view
@@ -342,11 +346,6 @@ class Result:
     def floats(self) -> tuple[Mapping[str, FloatState], ...]:
         """Rest of every float, one mapping per position."""
         return tuple(p.floats for p in self.positions)
-
-    @cached_property
-    def figures(self) -> list[Figures]:
-        """All its figures, as arrays over the positions; those of one train together."""
-        return figures_of(self.positions)
 
     @property
     def dataset(self) -> xr.Dataset:

@@ -23,6 +23,9 @@ class Certify(NamedTuple):
     """Rounding of a length, relative to the largest displacement, error and gap together: some
     terms, each known to a few EPS, as displacements are products over coordinates. A train on soft
     shafts, whose input turns by a thousand turns, misses its laws by up to 6 EPS."""
+    abreast: int = 8
+    """Positions of a result that are looked at together: NumPy takes as long for one of them, and
+    whoever reads a single one pays for no more than these."""
     together: int = 2048
     """Answers judged together: as many as a processor's own memory holds."""
     least_deflection: float = 1e-6

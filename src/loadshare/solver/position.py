@@ -16,14 +16,12 @@ from loadshare.contact.plan import Plan, Role
 from loadshare.contact.record import Options, Record
 from loadshare.errors import Refused
 from loadshare.later import Later
-from loadshare.scene.assemble import assemble
 from loadshare.scene.scene import Scene
 from loadshare.settings import CONTACT, PLACES
 from loadshare.solver.undetermined import free_set, places
 from loadshare.solver.undetermined.places import Places
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import SlipFriction
-from loadshare.train.train import Train
 
 
 @dataclass(slots=True)
@@ -195,7 +193,7 @@ def equilibrium_of(scene: Scene, settled: Settled) -> Equilibrium:
         undetermined=found.ranges,
     )
     # With memory the forces of slips are not told from those of their stops yet.
-    return placed if train.slip is not None else with_ranges(placed, train)
+    return placed if train.slip is not None else with_ranges(placed, scene)
 
 
 def coordinates_of(scene: Scene, found: Equilibrium) -> Array:
@@ -254,17 +252,16 @@ def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
     )
 
 
-def with_ranges(found: Equilibrium, train: Train) -> Equilibrium:
+def with_ranges(found: Equilibrium, scene: Scene) -> Equilibrium:
     """Return an equilibrium that says how far what its forces leave open may move.
 
-    To the last digit what a result says that is read: both go by its place and its train alone.
+    As a result that is read is checked: by its own place, whichever led there.
     """
-    return replace(found, undetermined=Later(lambda: ranges_of(found, train)))
+    return replace(found, undetermined=Later(lambda: ranges_of(found, scene)))
 
 
-def ranges_of(found: Equilibrium, train: Train) -> Mapping[str, Range]:
+def ranges_of(found: Equilibrium, scene: Scene) -> Mapping[str, Range]:
     """Return the least and the largest value of what the forces of an equilibrium leave open."""
-    scene = assemble(train, found.index)
     return _places_of(scene, found, coordinates_of(scene, found)).ranges
 
 

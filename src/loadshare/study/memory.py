@@ -291,9 +291,9 @@ def _held(
     steps: float = math.inf,
 ) -> Answer | None:
     """Return a certified answer with the slip of some splines held, if there is one."""
-    scene = assemble(train, index)
+    scene = whole = assemble(train, index)
     if gears:
-        scene = _without_slip(scene, gears, _before(train))
+        scene = _without_slip(whole, gears, _before(train))
     # What a plan does not find soon, a wider one mostly does.
     each = (math.inf,) if math.isfinite(steps) else (MARCH.quick_plan, math.inf)
     for (rung, options), few in product(tries, each):
@@ -305,7 +305,7 @@ def _held(
         split = _split(train, found, gears, _before(train))
         answer = _judged(train, split, record, rung + ", slip held" * bool(gears))
         if answer is not None:
-            split = with_ranges(split, train)
+            split = with_ranges(split, whole)
             certificate = certify(train, split, CERTIFY.tolerance)
             return Answer.of(train, split, certificate, answer.record, answer.rung)
     return None

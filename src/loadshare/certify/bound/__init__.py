@@ -2,6 +2,6 @@
 
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.judge import Bounds, bounds, completed, torque_bounds
-from loadshare.certify.bound.one import Bound, bound_of
+from loadshare.certify.bound.one import Bound
 
-__all__ = ["Bound", "Bounds", "Columns", "bound_of", "bounds", "completed", "torque_bounds"]
+__all__ = ["Bound", "Bounds", "Columns", "bounds", "completed", "torque_bounds"]

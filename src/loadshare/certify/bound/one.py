@@ -10,11 +10,8 @@ from functools import lru_cache
 import numpy as np
 
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.judge import Bounds, bounds
+from loadshare.certify.bound.judge import Bounds
 from loadshare.settings import BOUND
-from loadshare.train.equilibria import Equilibria
-from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
 
@@ -93,28 +90,3 @@ class Bound:
 def columns_of(train: Train) -> Columns:
     """Return the columns of a train, built once."""
     return Columns(train)
-
-
-def bound_of(train: Train, answer: Equilibrium, rigorous: bool = False) -> Bound:
-    """Bound the error of one claim.
-
-    Parameters
-    ----------
-    train : Train
-    answer : Equilibrium
-        With figures that are numbers.
-    rigorous : bool
-        See `bounds`.
-    """
-    return bound_of_one(
-        train, situation_of(train, answer.index), Equilibria.of(train, answer), rigorous
-    )
-
-
-def bound_of_one(
-    train: Train, situation: Situations, claimed: Equilibria, rigorous: bool = False
-) -> Bound:
-    """Bound the error of one claim that is alone in its arrays."""
-    if not all(np.isfinite(array).all() for array in claimed.arrays):
-        return Bound.none(train)
-    return Bound.of(bounds(columns_of(train), situation, claimed, rigorous), 0)

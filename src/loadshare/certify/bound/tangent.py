@@ -24,14 +24,13 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.certify.bound.acts import Act, first_acts
 from loadshare.certify.bound.claim import Claim
+from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.elements import Elements
 from loadshare.certify.bound.laws import elements
-from loadshare.certify.bound.one import columns_of
 from loadshare.certify.bound.statics import Statics
 from loadshare.settings import BOUND
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
-from loadshare.train.train import Train
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +39,7 @@ class Tangents:
 
     Attributes
     ----------
-    train : Train
+    columns : Columns
     flanks : ndarray, shape (S, flanks)
         Stiffness of every flank along its line of action at the force that it carries [N/m]; 0
         where it is open.
@@ -48,7 +47,7 @@ class Tangents:
         What acts, claim by claim.
     """
 
-    train: Train
+    columns: Columns
     flanks: Array
     rows: list[Rows]
 
@@ -57,10 +56,10 @@ class Tangents:
 
         0 where nothing resists, infinite where nothing yields.
         """
-        turn = columns_of(self.train).turns[gear]
+        turn = self.columns.turns[gear]
         if turn.coordinate is None:
             return np.full(len(self.rows), np.inf)
-        load = np.zeros(len(columns_of(self.train).coordinates))
+        load = np.zeros(len(self.columns.coordinates))
         load[turn.coordinate] = 1.0
         statics: dict[bytes, Statics] = {}
         for rows in self.rows:
@@ -115,16 +114,15 @@ class Rows(NamedTuple):
         return float(first @ (d * force - self.shrinking @ torque))
 
 
-def tangents_of(train: Train, situations: Situations, answers: Equilibria) -> Tangents:
+def tangents_of(columns: Columns, situations: Situations, answers: Equilibria) -> Tangents:
     """Return how a train yields at S answers, what carries there taken to go on carrying.
 
     Parameters
     ----------
-    train : Train
+    columns : Columns
     situations : Situations
     answers : Equilibria
     """
-    columns = columns_of(train)
     claim = Claim(columns, situations, answers)
     with np.errstate(all="ignore"):
         act = first_acts(claim)
@@ -133,7 +131,7 @@ def tangents_of(train: Train, situations: Situations, answers: Equilibria) -> Ta
     last = columns.flanks.stop
     soft = np.where(found.active[:, :last], found.soft[:, :last], np.inf)
     with np.errstate(divide="ignore"):
-        return Tangents(train, 1.0 / soft, [_rows(claim, found, k) for k in range(claim.count)])
+        return Tangents(columns, 1.0 / soft, [_rows(claim, found, k) for k in range(claim.count)])
 
 
 def _rows(claim: Claim, found: Elements, row: int) -> Rows:

@@ -122,12 +122,10 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     from loadshare.cli.refusal import refusal_lines, refused_document
     from loadshare.job import solve
     from loadshare.tooth import resolve
-    from loadshare.train import build_train
 
     try:
         case = resolve(load_case(task.case, changes=task.changes))
-        count = build_train(case).count
-        kept, notes = (None, ()) if task.force else _kept(task, case, count)
+        kept, notes = (None, ()) if task.force else _kept(task, case)
         if kept is not None:
             return "kept", kept, _warnings(kept)
         result = solve(case, solver=task.solver, method=task.method, tolerance=task.tolerance)
@@ -147,7 +145,7 @@ def _warnings(result: Result) -> tuple[str, ...]:
     return (f"warning: {warning}",) if warning else ()
 
 
-def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str, ...]]:
+def _kept(task: Task, case: Case) -> tuple[Result | None, tuple[str, ...]]:
     """Return the result on disk if it answers the same question in full, and passes again.
 
     Returns
@@ -157,6 +155,7 @@ def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str,
         What is wrong with a file that claims to be this result and is not.
     """
     from loadshare.results import load_result
+    from loadshare.train import build_train
 
     try:
         task.target.stat()
@@ -174,8 +173,10 @@ def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str,
     # Of the cases, not of their hashes: a result shows titles, sources and assumptions as well.
     found = (result.case, stamp.version, stamp.solver, stamp.method, stamp.tolerance)
     wanted = (case, __version__, task.solver, task.method, task.tolerance)
-    whole = stamp.positions == tuple(range(1, count + 1)) and stamp.reduce
-    return (result if whole and found == wanted else None), ()
+    if found != wanted or not stamp.reduce:
+        return None, ()
+    whole = stamp.positions == tuple(range(1, build_train(case).count + 1))
+    return (result if whole else None), ()
 
 
 SUMMARY = "summary"
