@@ -61,7 +61,7 @@ def test_a_drawing_solves_nothing(environment, cases, tmp_path):
 
 
 def test_a_pipe_gets_plain_text(process, cases):
-    done = process("run", cases / "fgfbstts/all_elements.toml", "--explain")
+    done = process("run", cases / "fgfbstts/base.toml", "--explain")
     assert (done.returncode, done.stderr) == (0, "")
     assert "\x1b" not in done.stdout
     assert "Ω stage" in done.stdout

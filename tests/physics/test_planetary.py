@@ -125,6 +125,7 @@ def closed_form(planets: int, error: np.ndarray, floats: bool) -> np.ndarray:
 @pytest.mark.parametrize("planets", [3, 4, 5, 6, 7])
 @pytest.mark.parametrize("floating", ["", "sun", "ring", "carrier"])
 @pytest.mark.parametrize("error", [0.0, 10e-6, 60e-6, -15e-6])
+@pytest.mark.quick(30)
 def test_shares_are_the_closed_form(planets: int, floating: str, error: float) -> None:
     case = planetary(planets, errors={"p0": {"pin": {"tangential": f"{error:.17g} m"}}})
     if floating:
