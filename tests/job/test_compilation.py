@@ -84,7 +84,9 @@ def as_a_user() -> tuple[str, ...]:
 def read_only(tmp_path: Path):
     """The package and a home in folders that cannot be written."""
     package, home = tmp_path / "package", tmp_path / "home"
-    shutil.copytree(PACKAGE, package / "loadshare", ignore=shutil.ignore_patterns("*.nb?"))
+    # Bytecode goes along, but nothing that another process is writing.
+    ignored = shutil.ignore_patterns("*.nb?*", "*.lock", "*.pyc.*")
+    shutil.copytree(PACKAGE, package / "loadshare", ignore=ignored)
     home.mkdir()
     folders = [home, package, *(p for p in package.rglob("*") if p.is_dir())]
     for folder in folders:
