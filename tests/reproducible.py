@@ -5,6 +5,7 @@ a run of a single file draws other examples than a run of all, and a failure is 
 """
 
 from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture import providers
 from hypothesis.internal.conjecture.providers import AVAILABLE_PROVIDERS, HypothesisProvider
 
 
@@ -15,6 +16,8 @@ class Drawn(HypothesisProvider):
         return None
 
 
+# So nobody need read all that is imported for its numbers, which takes as long as many a test.
+providers._get_local_constants = lambda: providers._local_constants
 AVAILABLE_PROVIDERS["reproducible"] = f"{Drawn.__module__}.{Drawn.__name__}"
 SAME = settings(backend="reproducible", deadline=None, derandomize=True, database=None)
 """Every test of a property has this profile."""

@@ -38,6 +38,7 @@ CASES = {
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("entry", FAST, ids=lambda e: e.name)
+@pytest.mark.quick(12)
 def test_a_peer_finds_the_certified_answer(entry, name):
     if entry.missing:
         pytest.skip(f"{entry.package} is not installed")

@@ -13,7 +13,7 @@ def drive_text() -> str:
     return Path(__file__).with_name("drive.toml").read_text(encoding="utf-8")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def drive() -> Case:
     """The small valid case of drive.toml."""
     return load_case(Path(__file__).with_name("drive.toml"))

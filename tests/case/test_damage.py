@@ -3,8 +3,9 @@ import contextlib
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.reproducible import examples
+from tests.support import shipped
 
-from loadshare.case import Case, load_case
+from loadshare.case import Case
 from loadshare.case.keys import look_up
 from loadshare.errors import CaseError
 
@@ -46,8 +47,8 @@ def places(data, above=()):
 
 @settings(max_examples=examples(50, 100), suppress_health_check=list(HealthCheck))
 @given(st.data())
-def test_no_damage_ends_in_anything_but_problems(cases, data):
-    everything = load_case(cases / "fgfbstts" / "all_elements.toml").to_dict()
+def test_no_damage_ends_in_anything_but_problems(data):
+    everything = shipped("fgfbstts/all_elements").to_dict()
     for _ in range(data.draw(st.integers(1, 3))):
         path = data.draw(st.sampled_from(list(places(everything))))
         holder = look_up(everything, path[:-1])

@@ -1,6 +1,7 @@
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.reproducible import examples
 
 from loadshare.case.keys import dotted, parse
 
@@ -29,6 +30,7 @@ paths = st.tuples(names, names, st.lists(st.integers(0, 99), max_size=2)).map(
 )
 
 
+@settings(max_examples=examples(40, 100))
 @given(paths)
 def test_every_path_survives_its_text(path):
     assert parse(dotted(path)) == path

@@ -106,6 +106,7 @@ def test_force_of_rounding_at_the_end_of_a_clearance_is_on_the_verge(force: floa
 @pytest.mark.parametrize("build", [two_idlers, two_shafts])
 @pytest.mark.parametrize("friction", [0.02, 0.1, 0.5])
 @pytest.mark.parametrize("off", [1e-10, 1e-7, 1e-5])
+@pytest.mark.quick(8)
 def test_bound_of_an_answer_for_another_load_holds(build, friction: float, off: float) -> None:
     train = build(friction)
     claim = solved(build(friction, f"{1000.0 * (1.0 + off)!r} N*m"))
@@ -138,7 +139,7 @@ def test_room_of_a_slip_that_is_remembered_shrinks_with_the_torque(
 
 @pytest.mark.parametrize("more", [-1e-5, -1e-8, -1e-10, -1e-12, 0.0, 1e-12, 1e-10, 1e-8])
 @pytest.mark.parametrize("off", [-1e-7, -1e-9, 1e-9, 1e-7])
-@pytest.mark.quick(8)
+@pytest.mark.quick(5)
 def test_room_that_the_torque_all_but_closes(more: float, off: float) -> None:
     """Friction needs all of the clearance, next to all, or a little more than all."""
     held = solved(two_shafts(0.3))

@@ -280,7 +280,7 @@ def proposed(line: str) -> list[str]:
         ("loadshare run none.toml --set ri", []),
     ],
 )
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 def test_the_shell_completes_names(line, found):
     assert proposed(line) == found
 

@@ -61,7 +61,7 @@ def test_a_drawing_solves_nothing(environment, cases, tmp_path):
 
 
 def test_a_pipe_gets_plain_text(process, cases):
-    done = process("run", cases / "fgfbstts/all_elements.toml", "--explain")
+    done = process("run", cases / "fgfbstts/base.toml", "--explain")
     assert (done.returncode, done.stderr) == (0, "")
     assert "\x1b" not in done.stdout
     assert "Ω stage" in done.stdout
@@ -102,7 +102,7 @@ CLOSED = {
 @pytest.mark.skipif(sys.platform == "win32", reason="streams that are closed by a shell")
 @pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)], ids=str)
 @pytest.mark.parametrize(("words", "code"), CLOSED.items(), ids=str)
-@pytest.mark.quick(4)
+@pytest.mark.quick(3)
 def test_streams_may_be_closed(environment, tmp_path, words, code, closed):
     """As by `2>&-`, by cron and by some services."""
     given = [str(word).replace("{}", str(tmp_path)) for word in words]

@@ -21,6 +21,7 @@ def pad(name: str, matrix, friction: float) -> Radial:
 @pytest.mark.parametrize("stiffness", [0.0, 1e6])
 @pytest.mark.parametrize("angle", [0.0, 0.3, 2.0])
 @pytest.mark.parametrize("load", [3.0, 9.0, 11.5])
+@pytest.mark.quick(8)
 def test_two_pads_share_what_neither_bears_in_halves(stiffness, angle, load):
     """Bounds of 10 N and 2 N: half of 9 N is more than the one, all of 11.5 N more than the other.
 
@@ -95,7 +96,7 @@ def redundant(seed: int) -> ContactProblem:
 
 
 @pytest.mark.parametrize("seed", range(60))
-@pytest.mark.quick(20)
+@pytest.mark.quick(10)
 def test_random_elements_share_as_each_admits(seed):
     """At rest every pad bears what it can, whatever others bear; judged by this test's own sums.
 

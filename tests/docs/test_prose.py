@@ -47,7 +47,7 @@ def misfits(rule, text: str) -> list[str]:
     return wrong
 
 
-SLOW = ("| CVXPY |", "| Picard |")
+SLOW = ("| CVXPY |", "| Picard |", "| power cone |", "| the same without reduction |")
 """Rows of solvers that take seconds; all solvers are compared in `tests/solver`."""
 
 

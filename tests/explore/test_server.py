@@ -21,7 +21,7 @@ from loadshare.case import Case, load_case
 from loadshare.explore.answer import answer_of, plain, whole_of
 from loadshare.explore.guard import hosts_of
 from loadshare.explore.inputs import Inputs
-from loadshare.report.page.verdict import largest_forces, resting, sharing
+from loadshare.report.verdict import largest_forces, resting, sharing
 
 FLOAT = "rings.5.float"
 

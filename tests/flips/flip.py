@@ -83,7 +83,7 @@ def _results(folder: Path) -> Iterator[Subject]:
 
 
 def _study(out: Path) -> Iterator[Subject]:
-    ls.tolerance(shipped(PATHS), INPUTS, out=out, samples=4000, seed=3, engine="vectorised")
+    ls.tolerance(shipped(PATHS), INPUTS, out=out, samples=400, seed=3, engine="vectorised")
     about = json.loads((out / STUDY).read_text(encoding="utf-8"))
     job = Job(about["case"], about["text"], about["settings"])
     folder = Folder(out, job)

@@ -54,6 +54,7 @@ def test_a_locked_pinion_is_a_rigid_one():
     ("play", "friction"),
     [(p, f) for p in ("0 um", "1 um") for f in ("0 N", "1e-6 N", "1 N", "132 N", "10 kN")],
 )
+@pytest.mark.quick(5)
 def test_splines_without_clearance_in_rings_of_little_play(friction, play):
     case = ls.load_case(HERE / "zero_play_spline.toml")
     case = case.replace({"splines.4.friction_force": friction, "rings.4.float": play})
@@ -64,6 +65,7 @@ def test_splines_without_clearance_in_rings_of_little_play(friction, play):
     ("play", "nearer"),
     [(p, n) for p in ("0 um", "2 um", "8 um") for n in (3.0, 1.0, 0.3, 0.1, 0.03, 0.01)],
 )
+@pytest.mark.quick(8)
 def test_a_pinion_in_a_wedge_of_its_idlers_is_held_by_both_arcs(nearer, play):
     """It stands nearer to gear 10 by so many millimetres, and is pushed away from it."""
     case = inside(f"{497.5 - nearer!r} mm", **{"rings.4.float": play})
@@ -81,6 +83,7 @@ def test_a_pinion_in_a_wedge_of_its_idlers_is_held_by_both_arcs(nearer, play):
     ("name", "load"),
     [(n, k) for n in ("wedge", "zero_play_spline") for k in (1e-6, 1e-3, 1.0, 10.0)],
 )
+@pytest.mark.quick(4)
 def test_every_load(name, load):
     case = ls.load_case(HERE / f"{name}.toml")
     torque = case.operating.input_torque[0] * load

@@ -20,6 +20,7 @@ def test_a_clocked_rigid_shaft_is_certified_like_a_very_stiff_one():
 
 
 @pytest.mark.parametrize("seed", range(25))
+@pytest.mark.quick(10)
 def test_random_split_paths_with_clocked_rigid_shafts(seed):
     """All rigid shafts of a split are clocked, either way, so that a path may lose its contact."""
     rng = np.random.default_rng(seed)

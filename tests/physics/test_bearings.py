@@ -121,6 +121,7 @@ def test_shares_of_planets_in_bearings_agree_with_50_digits(clearance, key, stif
 
 @pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
 @pytest.mark.parametrize("clearance", [0, 10, 20, 40, 80])
+@pytest.mark.quick(8)
 def test_a_clearance_shifts_a_split_as_50_digits_say(law, clearance):
     """The bearing with more clearance leaves its path less; alike they share alike."""
     key, stiffness, _ = law
@@ -391,6 +392,7 @@ def rounded_set(digits: int, torque: float) -> ls.Case:
 
 @pytest.mark.parametrize("engine", ["vectorised", "compiled"])
 @pytest.mark.parametrize("digits", [4, 6, 7, 8, 9, 12])
+@pytest.mark.quick(6)
 def test_what_only_rounding_presses_rests_at_the_end_of_its_clearance(digits, engine):
     torques = np.geomspace(50.0, 2000.0, 12)
     found = ls.solve_many(

@@ -91,6 +91,7 @@ def turned(case: ls.Case) -> np.ndarray:
 @pytest.mark.parametrize("phases", PLACES)
 @pytest.mark.parametrize("torque", ["600 N*m", "-600 N*m"])
 @pytest.mark.parametrize("play", [False, True])
+@pytest.mark.quick(6)
 def test_a_machine_does_not_depend_on_the_names_of_its_meshes(sampling, phases, torque, play):
     found = []
     for swapped in (False, True):
@@ -181,7 +182,7 @@ def carried(case: ls.Case) -> np.ndarray:
 @pytest.mark.parametrize("sampling", SAMPLED)
 @pytest.mark.parametrize("phases", PLACES)
 @pytest.mark.parametrize("engine", ["vectorised", "compiled"])
-@pytest.mark.quick(3)
+@pytest.mark.quick(2)
 def test_batches_and_marches_over_both_senses_of_torque_are_their_single_solves(
     sampling, phases, engine
 ):

@@ -125,6 +125,7 @@ def closed_form(planets: int, error: np.ndarray, floats: bool) -> np.ndarray:
 @pytest.mark.parametrize("planets", [3, 4, 5, 6, 7])
 @pytest.mark.parametrize("floating", ["", "sun", "ring", "carrier"])
 @pytest.mark.parametrize("error", [0.0, 10e-6, 60e-6, -15e-6])
+@pytest.mark.quick(30)
 def test_shares_are_the_closed_form(planets: int, floating: str, error: float) -> None:
     case = planetary(planets, errors={"p0": {"pin": {"tangential": f"{error:.17g} m"}}})
     if floating:
@@ -291,7 +292,7 @@ def drawn(seed: int) -> tuple[ls.Case, Set, str, float, set[str]]:
 
 
 @pytest.mark.parametrize("seed", mostly_slow(range(200), range(60)))
-@pytest.mark.quick(10)
+@pytest.mark.quick(6)
 def test_random_sets_are_those_of_a_second_model(seed: int) -> None:
     case, second, load, torque, held = drawn(seed)
     found = ls.solve(case).positions[0].equilibrium
@@ -306,6 +307,7 @@ def test_random_sets_are_those_of_a_second_model(seed: int) -> None:
 
 
 @pytest.mark.parametrize(("load", "output", "held"), CHOICES)
+@pytest.mark.quick(3)
 def test_a_set_that_turns_is_the_same_set_placed_anew(load: str, output: str, held: str) -> None:
     """Seen from the carrier as the march does it, and in the housing as every step finds it."""
     errors = {

@@ -12,7 +12,7 @@ from tests.support import shipped
 import loadshare as ls
 from loadshare.report import records
 from loadshare.report.flanks import carrying, reaction_size
-from loadshare.report.page.verdict import largest_forces, measure_of, sharing
+from loadshare.report.verdict import largest_forces, measure_of, sharing
 from loadshare.results.share import load_factors
 
 

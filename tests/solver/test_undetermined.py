@@ -48,6 +48,7 @@ def two_path(**changes: object) -> ls.Case:
 @pytest.mark.parametrize("shaft", ["rigid", "8e4 N*m/rad"])
 @pytest.mark.parametrize("backlash", [0.0, 1e-3, 0.2])
 @pytest.mark.parametrize("gap", [0.0, 30.0])
+@pytest.mark.quick(6)
 def test_an_unloaded_wheel_turns_by_its_backlash_over_its_base_radius(shaft, backlash, gap):
     """Both flanks of its mesh with the input gear limit it, and nothing else: what they leave along
     the line of action, over its base radius. If they leave nothing, it is determined.

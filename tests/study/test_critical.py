@@ -248,6 +248,7 @@ def test_a_branch_that_ends_on_the_way_is_left_in_time(end):
 
 
 @pytest.mark.parametrize("end", [800.0, 763.7, 500.0])
+@pytest.mark.quick(1)
 def test_an_event_is_exact_where_gauges_go_on_steeper_beyond_it(end):
     """A contact opens and lets an idler float: room beyond it shrinks 400 times as fast."""
     key = "errors.5.eccentricity.amount"
@@ -325,6 +326,7 @@ def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
 
 
 @pytest.mark.parametrize("number", mostly_slow((1, 6, 193), (1, 6)))
+@pytest.mark.quick(1)
 def test_random_paths_agree_with_a_scan(number):
     """On path 193 an enclosure neither contracts nor diverges: a matrix is singular."""
     outcome = judged(random_path(number), 400, "vectorised")

@@ -17,9 +17,9 @@ from loadshare.job import solve
 from loadshare.job.positions import prepared
 from loadshare.report.flanks import carrying
 from loadshare.report.numbers import decimals, fixed, omega, small
-from loadshare.report.page.verdict import measure_of, trust, verdict_tables
 from loadshare.report.palette import palette_of
 from loadshare.report.records import Cell, Record, Table, table
+from loadshare.report.verdict import measure_of, trust, verdict_tables
 from loadshare.report.words import boundary_name
 from loadshare.results import Position, Result
 from loadshare.settings import ALLOWED, EXPLORE

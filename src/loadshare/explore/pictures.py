@@ -11,7 +11,7 @@ import numpy as np
 from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.report.figures.layout import Body, Layout, layout_of
-from loadshare.report.figures.marks import Point, circle
+from loadshare.report.figures.paths import Point, circle
 from loadshare.report.figures.region import Journey
 from loadshare.report.flanks import carrying, reaction_size
 from loadshare.report.palette import Palette, palette_of

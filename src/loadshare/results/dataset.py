@@ -174,9 +174,20 @@ def _alike(name: str, expected: xr.Variable, found: xr.Variable) -> bool:
 
 def frame(result: Result) -> pd.DataFrame:
     """Tabulate position by mesh: torque [N·m], coefficients, the position's worst residual."""
-    arrays = result.dataset[["torque", "coast_torque", "share", "pair_share"]]
-    worst = [p.certificate.worst for p in result.positions]
-    return arrays.assign(worst_residual=("position", worst)).to_dataframe().reset_index()
+    import pandas as pd
+
+    parts, positions = result.figures, result.positions
+    names = parts[0].names
+    meshes = len(names["mesh"])
+    columns: dict[str, object] = {
+        "position": np.repeat([p.position for p in positions], meshes),
+        "mesh": [*names["mesh"]] * len(positions),
+    }
+    # Made without labelled arrays: to import those takes longer than to solve and write.
+    for name in ("torque", "coast_torque", "share", "pair_share"):
+        columns[name] = np.concatenate([p.as_numbers(name, names) for p in parts]).ravel()
+    columns["worst_residual"] = np.repeat([p.certificate.worst for p in positions], meshes)
+    return pd.DataFrame(columns)
 
 
 def with_units(table: pd.DataFrame, arrays: xr.Dataset) -> pd.DataFrame:

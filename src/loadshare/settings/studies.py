@@ -14,8 +14,10 @@ class Follow(NamedTuple):
     """Force over the load from which on a contact counts as closed."""
     facets: int = 24
     """Sides at first of the polygon that stands for a round ring in which a body floats."""
-    polygons: int = 24
-    """Polygons at most; two are taken as a rule, and each leaves a quarter of the error at most."""
+    finer: int = 8
+    """Into so many parts the angle between two sides is cut where a body came to rest."""
+    polygons: int = 8
+    """Polygons at most; two are taken as a rule, and each leaves 1/64 of the error at most."""
     full: float = 1e-3
     """Part of the room a polygon promises that may be missing."""
     spent: float = 1e-12

@@ -33,7 +33,7 @@ def floats(position: Position) -> dict[tuple[str, int], float]:
 
 
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
-@pytest.mark.quick(5)
+@pytest.mark.quick(4)
 def test_every_position_of_a_shipped_case(case):
     """Also what the equilibrium leaves open: both give the displacement of least norm."""
     hot, other = ls.solve(shipped(case)), ls.solve(shipped(case), solver="clarabel")

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from tests.certify.oracle import interval
-from tests.reproducible import TRAINS
+from tests.reproducible import TRAINS, examples
 from tests.solver.hot.trains import varied
 
 import loadshare as ls
@@ -87,7 +87,7 @@ stiffnesses = st.sampled_from([1e6, 1.78e7, 1e9])
 lengths = st.floats(0.0, 1e-4).map(lambda v: 0.0 if v < 1e-9 else v)
 
 
-@settings(TRAINS, max_examples=60)
+@settings(TRAINS, max_examples=examples(30, 60))
 @given(stiffnesses, lengths, lengths, st.floats(1.0, 3.0), st.booleans())
 def test_a_spline_is_the_chain_that_the_train_writes(
     stiffness, stick, clearance, jump, given_stick
@@ -103,14 +103,14 @@ def test_a_spline_is_the_chain_that_the_train_writes(
     tells_the_same(follows, judge, ends)
 
 
-@settings(TRAINS, max_examples=30)
+@settings(TRAINS, max_examples=examples(15, 30))
 @given(lengths, st.sampled_from([math.inf, 1e6, 1e9]))
 def test_a_round_ring_is_the_chain_that_the_train_writes(radius, stiffness):
     law = graph(0.0, 0.0, radius, 0.0, last=stiffness)
     tells_the_same(law, round_ring_law(radius, stiffness), (radius,))
 
 
-@settings(TRAINS, max_examples=60)
+@settings(TRAINS, max_examples=examples(30, 60))
 @given(stiffnesses, lengths, lengths, st.floats(0.0, 3.0))
 def test_a_law_without_meaning_is_reported(stiffness, stick, clearance, share):
     """Where the chain would drop, or S2 lies inside S1, the train raises; the hot path refuses."""

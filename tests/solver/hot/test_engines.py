@@ -110,6 +110,7 @@ def same(machine: Machine, one: Answers, other: Answers) -> None:
 
 
 @pytest.mark.parametrize("name", EVERY_SHIPPED)
+@pytest.mark.quick(12)
 def test_every_position_of_a_shipped_case(name):
     machine = Machine(build_train(shipped(name)))
     found = agree(machine, machine.situations(range(1, machine.train.count + 1)))

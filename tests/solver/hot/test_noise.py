@@ -74,7 +74,7 @@ def unloaded_set(direction: float) -> ls.Case:
 
 
 @pytest.mark.parametrize("turn", range(12))
-@pytest.mark.quick(4)
+@pytest.mark.quick(2)
 def test_a_set_without_torque_has_none(turn: int) -> None:
     direction = turn * math.pi / 6.0 + 0.1
     train = build_train(unloaded_set(direction))

@@ -89,7 +89,7 @@ def set_on_a_round_wall(torque: float) -> ls.Case:
 
 
 @pytest.mark.parametrize("torque", [0.9, 1.0, 1.1, 1.26])
-@pytest.mark.quick(2)
+@pytest.mark.quick(1)
 def test_a_carrier_that_has_far_to_roll_is_found(torque: float) -> None:
     train = build_train(set_on_a_round_wall(torque))
     machine = Machine(train)

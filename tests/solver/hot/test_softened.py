@@ -35,6 +35,7 @@ def drawn(name: str, seed: int) -> tuple[Laws, np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.quick(8)
 def test_forces_rise_along_every_way_and_are_the_same_one_by_one(name, seed):
     laws, start, way = drawn(name, seed)
     shares = np.linspace(0.0, 1.0, 41)

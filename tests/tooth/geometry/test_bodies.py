@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.reproducible import examples
 from tests.tooth.geometry.samples import face_gear, face_pair, gear, pair
 
 from loadshare.tooth.cylindrical.body import HelicoidBody, root_curve
@@ -89,7 +90,7 @@ def test_the_rack_touches_all_of_the_root_and_cuts_none_of_it():
     np.testing.assert_allclose(least[1:], 0.0, atol=2e-10)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(20, 40))
 @given(st.sampled_from(BODIES), st.floats(0.41, 1.0), st.floats(0.0, 1.0), st.sampled_from([1, -1]))
 def test_locate_finds_where_outline_stands(body, u, w, side):
     found = body.locate(body.outline(u, w, side))

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
+from tests.reproducible import examples
 from tests.tooth.ltca.hertz import PointContact, compression
 from tests.tooth.ltca.judged import certify_contact
 
@@ -99,7 +100,7 @@ def test_line_contact_against_its_closed_form():
 
 
 @given(st.integers(0, 10_000), st.floats(-3.0, 5.0))
-@settings(max_examples=40)
+@settings(max_examples=examples(20, 40))
 def test_every_load_is_certified(seed, exponent):
     """From a thousandth of a newton up: the certificate passes by orders of magnitude."""
     problem, load = uneven(seed), 10.0**exponent

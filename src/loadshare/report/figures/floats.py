@@ -12,7 +12,8 @@ from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
-from loadshare.report.figures.marks import Drawing, Panel, Point, Row, circle, hover, path_rows
+from loadshare.report.figures.marks import Drawing, Panel, Row, hover, path_rows
+from loadshare.report.figures.paths import Point, arrow, circle
 from loadshare.report.figures.region import Journey, Region
 from loadshare.report.flanks import reaction_size
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
@@ -200,7 +201,7 @@ class _Panel(Panel):
         x, y = self.places[self.journey.hardest]
         length = 0.45 * self.half
         tip = (x + length * reaction[0] / size, y + length * reaction[1] / size)
-        return marks.arrow((x, y), tip, 0.08 * self.half)
+        return arrow((x, y), tip, 0.08 * self.half)
 
     def _reaction(self) -> list[Any]:
         shaft = path_rows(self._shaft())

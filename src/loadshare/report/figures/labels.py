@@ -13,7 +13,8 @@ from typing import Any
 import altair as alt
 import numpy as np
 
-from loadshare.report.figures.marks import Drawing, Point, Row, chart, path_rows, rimmed
+from loadshare.report.figures.marks import Drawing, Row, chart, path_rows, rimmed
+from loadshare.report.figures.paths import Point
 from loadshare.report.palette import SOFT
 
 SIZE = 10

@@ -11,7 +11,8 @@ import numpy as np
 
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
-from loadshare.report.figures.marks import Point, Row, axis, chart, heading, hover
+from loadshare.report.figures.marks import Row, axis, chart, heading, hover
+from loadshare.report.figures.paths import Point
 from loadshare.report.numbers import significant
 from loadshare.report.palette import FAINT, SOFT
 from loadshare.report.units import MILLIMETRE

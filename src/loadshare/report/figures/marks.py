@@ -11,13 +11,13 @@ import altair as alt
 from altair.utils.schemapi import debug_mode
 
 from loadshare.report.figure import Figure
+from loadshare.report.figures.paths import Point
 from loadshare.report.palette import DASHES, INK, SHAPES, SOFT, WARNING, Look
 
 # Altair's types differ from mark to mark and from call to call; its schema checks a chart when it
 # is turned into a specification.
 Drawing = Any
 Row = dict[str, Any]
-Point = tuple[float, float]
 Subtitle = str | Sequence[str]
 
 
@@ -174,30 +174,6 @@ def path_rows(points: Iterable[Point], **fields: Any) -> list[Row]:
         {"x": float(f"{x:.7g}"), "y": float(f"{y:.7g}"), "order": k, **fields}
         for k, (x, y) in enumerate(points)
     ]
-
-
-def arrow(tail: Point, tip: Point, head: float) -> list[Point]:
-    """Path of an arrow with an open head of `head` length; nothing for one without length."""
-    dx, dy = tip[0] - tail[0], tip[1] - tail[1]
-    length = math.hypot(dx, dy)
-    if length == 0.0:
-        return []
-    ux, uy = dx / length, dy / length
-    half = 0.4 * head
-    left = (tip[0] - head * ux - half * uy, tip[1] - head * uy + half * ux)
-    right = (tip[0] - head * ux + half * uy, tip[1] - head * uy - half * ux)
-    return [tail, tip, left, tip, right]
-
-
-def circle(centre: Point, radius: float, count: int = 120) -> list[Point]:
-    """Path of a circle, closed."""
-    return arc(centre, radius, 0.0, 2.0 * math.pi, count)
-
-
-def arc(centre: Point, radius: float, start: float, end: float, count: int = 60) -> list[Point]:
-    """Path of an arc from angle `start` to `end` [rad]."""
-    angles = [start + (end - start) * k / count for k in range(count + 1)]
-    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
 
 
 def padded(low: float, high: float, least: float, share: float = 0.08) -> list[float]:

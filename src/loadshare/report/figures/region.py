@@ -16,7 +16,7 @@ import numpy as np
 
 from loadshare.certify import FloatState
 from loadshare.contact.radial import spline_law
-from loadshare.report.figures.marks import Point, circle
+from loadshare.report.figures.paths import Point, circle
 from loadshare.report.flanks import least_force
 from loadshare.report.numbers import significant
 from loadshare.report.units import MICROMETRE

@@ -15,16 +15,8 @@ from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
 from loadshare.report.figures.layout import ELASTIC, FIXED, FLOATS, Body, Layout, Pair, layout_of
-from loadshare.report.figures.marks import (
-    Drawing,
-    Panel,
-    Point,
-    Row,
-    arrow,
-    heading,
-    hover,
-    path_rows,
-)
+from loadshare.report.figures.marks import Drawing, Panel, Row, heading, hover, path_rows
+from loadshare.report.figures.paths import Point, arrow
 from loadshare.report.flanks import carrying
 from loadshare.report.numbers import significant
 from loadshare.report.palette import INK, SOFT, WARNING

@@ -20,10 +20,10 @@ from loadshare.report.figures.train import train as draw
 from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
-from loadshare.report.page.verdict import trust, verdict_tables
 from loadshare.report.plots import Plots
 from loadshare.report.records import Cell, Table, table
 from loadshare.report.teeth import teeth_tables
+from loadshare.report.verdict import trust, verdict_tables
 from loadshare.results import Result
 
 if TYPE_CHECKING:

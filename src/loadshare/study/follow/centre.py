@@ -37,13 +37,14 @@ def _into_the_middle(
 ) -> Array:
     """Move points (S, size) along moves (k, n) that nothing resists, to where room is largest.
 
-    A round limit is the polygon of its tangents, at first in equal turns, then where points came to
-    stand as well, until there is as much room as the polygon promises.
+    A round limit is the polygon of its tangents, at first in equal turns, then closer and closer
+    around where points came to stand, until there is as much room as the polygon promises.
     """
     z = z.copy()
     moves = [m / np.maximum(np.abs(m).max(axis=1, initial=0.0), 1e-300)[:, None] for m in moves]
     turns = 2.0 * np.pi * np.arange(FOLLOW.facets) / FOLLOW.facets
     ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    apart = turns[1] * np.arange(1 - FOLLOW.finer // 2, FOLLOW.finer // 2) / FOLLOW.finer
     facets = np.broadcast_to(ways, (len(z), len(equations.radials), FOLLOW.facets, 2))
     bends = any(k not in equations.polar_at for k in equations.arcs)
     rows, scale = np.arange(len(z)), np.ones(len(z))
@@ -68,9 +69,19 @@ def _into_the_middle(
         again = short | (bends and number == 0) & np.isfinite(promised)
         if not again.any():
             break
-        rows, facets = rows[again], np.concatenate([facets, along[:, :, None]], axis=2)[again]
+        rows, facets = rows[again], np.concatenate([facets, _turned(along, apart)], axis=2)[again]
+        apart = apart / FOLLOW.finer
         scale = np.clip(np.where(short, promised - actual, 1.0), FOLLOW.unit_of_room, 1.0)[again]
     return z
+
+
+def _turned(ways: Array, angles: Array) -> Array:
+    """Directions (…, 2) turned by every angle (k): (…, k, 2)."""
+    across = np.stack([-ways[..., 1], ways[..., 0]], axis=-1)
+    return (
+        ways[..., None, :] * np.cos(angles)[:, None]
+        + across[..., None, :] * np.sin(angles)[:, None]
+    )
 
 
 def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
