@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from loadshare.array_types import Array
 from loadshare.case.words import as_given
 from loadshare.results.differences import DIGITS, ROUND_OFF
 from loadshare.results.figures import COMPONENTS
@@ -16,6 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from loadshare.results.figures import Figures
     from loadshare.results.result import Result
 
 
@@ -113,14 +117,12 @@ def dataset(result: Result) -> xr.Dataset:
     import xarray as xr
 
     stamp, positions = result.stamp, result.positions
-    parts = {id(p.figures): p.figures for p in positions}
     # A train that is placed may have a shift to report at some positions only.
-    measures = list(dict.fromkeys(m for part in parts.values() for m in part.measured))
+    measures = list(dict.fromkeys(m for figures, _ in _groups(result) for m in figures.measured))
     names = {**positions[0].figures.names, "measure": measures}
     data = {}
     for name, variable in VARIABLES.items():
-        arrays = {key: part.as_numbers(name, names) for key, part in parts.items()}
-        values = np.array([arrays[id(p.figures)][p.row] for p in positions])
+        values = _stacked(result, name, names)
         values.flags.writeable = False
         data[name] = variable.labelled(values, "position")
     return xr.Dataset(
@@ -136,6 +138,17 @@ def dataset(result: Result) -> xr.Dataset:
             "tolerance": stamp.tolerance,
         },
     )
+
+
+def _groups(result: Result) -> Iterator[tuple[Figures, list[int]]]:
+    """Yield the figures of positions that were looked at together, and their rows in these."""
+    for figures, some in groupby(result.positions, attrgetter("figures")):
+        yield figures, [p.row for p in some]
+
+
+def _stacked(result: Result, name: str, names: Mapping[str, Sequence[str]]) -> Array:
+    """Return a figure of all positions as numbers."""
+    return np.concatenate([f.as_numbers(name, names)[rows] for f, rows in _groups(result)])
 
 
 def array_differences(expected: xr.Dataset, found: xr.Dataset) -> Iterator[tuple[str, str, str]]:
@@ -176,8 +189,8 @@ def frame(result: Result) -> pd.DataFrame:
     """Tabulate position by mesh: torque [N·m], coefficients, the position's worst residual."""
     import pandas as pd
 
-    parts, positions = result.figures, result.positions
-    names = parts[0].names
+    positions = result.positions
+    names = positions[0].figures.names
     meshes = len(names["mesh"])
     columns: dict[str, object] = {
         "position": np.repeat([p.position for p in positions], meshes),
@@ -185,7 +198,7 @@ def frame(result: Result) -> pd.DataFrame:
     }
     # Made without labelled arrays: to import those takes longer than to solve and write.
     for name in ("torque", "coast_torque", "share", "pair_share"):
-        columns[name] = np.concatenate([p.as_numbers(name, names) for p in parts]).ravel()
+        columns[name] = _stacked(result, name, names).ravel()
     columns["worst_residual"] = np.repeat([p.certificate.worst for p in positions], meshes)
     return pd.DataFrame(columns)
 
