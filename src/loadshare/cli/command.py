@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
 from contextvars import copy_context
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -104,12 +106,54 @@ class Command(TyperCommand):
             fail([f"Interrupted{under_way()}. {kept()}"], stop.code)
 
 
+class Commands(Mapping[str, Any]):
+    """Commands by their names, each made when it is asked for.
+
+    To make all of them takes longer than to print the help.
+
+    Parameters
+    ----------
+    make : callable
+        Returns a command.
+    helps : mapping of str to str
+        What the help says of each.
+    """
+
+    def __init__(self, make: Callable[[str], Any], helps: Mapping[str, str]) -> None:
+        self._made, self.helps = cache(make), helps
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self.helps:
+            raise KeyError(name)
+        return self._made(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.helps)
+
+    def __len__(self) -> int:
+        return len(self.helps)
+
+
 class Group(TyperGroup):
     """The commands together; an unknown word leads to the intended one."""
+
+    commands: Commands  # type: ignore[assignment]
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run a command; what it notes (outputs, ``--quiet``) ends with it."""
         return copy_context().run(super().main, *args, **kwargs)
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of all commands, in the order of the help."""
+        return list(self.commands)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the commands' names and what they do, which makes none of them."""
+        limit = formatter.width - 6 - max(map(len, self.commands))
+        helps = self.commands.helps.items()
+        rows = [(n, TyperCommand(n, help=h).get_short_help_str(limit)) for n, h in helps]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find the command that the first word names.

@@ -6,12 +6,13 @@ needs it, so that the help comes at once and a run does not wait for what it doe
 
 from __future__ import annotations
 
+import inspect
 import os
 import sys
 from collections.abc import Callable, Sequence
 from functools import cache
 from io import TextIOWrapper
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from typer.main import get_command
@@ -19,7 +20,7 @@ from typer.main import get_command
 from loadshare._version import __version__
 from loadshare.cli.batch.command import batch
 from loadshare.cli.check import check
-from loadshare.cli.command import Command, Group
+from loadshare.cli.command import Command, Commands, Group
 from loadshare.cli.draw import draw
 from loadshare.cli.everywhere import taking
 from loadshare.cli.exchange import export, import_machine
@@ -43,36 +44,51 @@ from loadshare.cli.waiting import echo
 from loadshare.cli.warm import warm
 from loadshare.output import Closed
 
+STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
+CASES = (run, batch, report, draw, check, export, explore, *STUDIES)
+SCRIPTED = (run, *STUDIES)
+"""Commands one of whose files can be JSON, and so be printed by ``--json``."""
+COMMANDS = {
+    **{
+        command.__name__: command
+        for command in (
+            *(run, batch, report, draw, explore, check, schema, new, ltca, export, warm),
+            *STUDIES,
+        )
+    },
+    "import": import_machine,
+}
+
+
+def _made(name: str) -> Any:
+    """Return a command with the options that it takes without a word of its own about them."""
+    command = COMMANDS[name]
+    has = {
+        "json": command in SCRIPTED,
+        "allow_outside": command in CASES,
+        "quiet": True,
+    }
+    alone = typer.Typer(rich_markup_mode=None, add_completion=False)
+    options = (option for option, wanted in has.items() if wanted)
+    alone.command(name, cls=Command)(taking(command, *options))
+    return get_command(alone)
+
+
+class _Loadshare(Group):
+    def __init__(self, **how: Any) -> None:
+        super().__init__(**how)
+        self.commands = Commands(_made, {n: inspect.getdoc(c) or "" for n, c in COMMANDS.items()})
+
+
 app = typer.Typer(
     name="loadshare",
-    cls=Group,
+    cls=_Loadshare,
     # Plain words survive a pipe, a log and a narrow terminal; boxes do not.
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
-CASES = (run, batch, report, draw, check, export, explore, *STUDIES)
-SCRIPTED = (run, *STUDIES)
-"""Commands one of whose files can be JSON, and so be printed by ``--json``."""
-for command in (
-    run,
-    batch,
-    report,
-    draw,
-    explore,
-    check,
-    schema,
-    new,
-    ltca,
-    export,
-    warm,
-    *STUDIES,
-):
-    has = {"json": command in SCRIPTED, "allow_outside": command in CASES, "quiet": True}
-    app.command(cls=Command)(taking(command, *(name for name, wanted in has.items() if wanted)))
-app.command("import", cls=Command)(taking(import_machine, "quiet"))
 
 
 def _tell_version(wanted: bool) -> None:
