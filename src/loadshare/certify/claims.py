@@ -1,4 +1,4 @@
-"""Claims of a train at some positions: all that is told of them one by one, found together.
+"""Claims of a train at some positions: the figures of each, found together.
 
 NumPy takes as long for one claim as for eight, so that positions of a result are looked at in
 groups. No figure of a certificate depends on the others of its group, to the last digit; bounds are
@@ -30,7 +30,7 @@ from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.situations import Situations, situation_of, situations_of
 from loadshare.train.train import Train
 
-Told = TypeVar("Told")
+Derived = TypeVar("Derived")
 
 
 class Claims:
@@ -61,7 +61,7 @@ class Claims:
     ) -> None:
         self.train, self.judge, self.positions, self.answers = train, judge, positions, answers
         self.undetermined, self.rigorous = undetermined, rigorous
-        self._told: dict[Callable[..., Any], Any] = {}
+        self._derived: dict[Callable[..., Any], Any] = {}
 
     @classmethod
     def of(cls, train: Train, answers: Sequence[Equilibrium], rigorous: bool = False) -> Claims:
@@ -75,11 +75,11 @@ class Claims:
             train, Judge(train), [answer.index for answer in answers], claimed, open_, rigorous
         )
 
-    def told(self, tell: Callable[[Claims], Told]) -> Told:
-        """Return what others tell of the claims, worked out once."""
-        if tell not in self._told:
-            self._told[tell] = tell(self)
-        return cast("Told", self._told[tell])
+    def derived(self, derive: Callable[[Claims], Derived]) -> Derived:
+        """Return what a later package works out from the claims, once."""
+        if derive not in self._derived:
+            self._derived[derive] = derive(self)
+        return cast("Derived", self._derived[derive])
 
     @cached_property
     def situations(self) -> Situations:

@@ -189,7 +189,7 @@ class Position(Viewed):
     @property
     def figures(self) -> Figures:
         """All figures, as arrays, of the answers that are looked at together with this one."""
-        return self.certificate.claims.told(Judged)
+        return self.certificate.claims.derived(Judged)
 
     @property
     def row(self) -> int:
