@@ -170,6 +170,23 @@ def test_each_sample_is_the_case_solved_alone(name):
                 np.testing.assert_allclose(moved, position.displacement[gear], atol=1e-8 * size)
 
 
+@pytest.mark.parametrize("name", VARIED)
+@pytest.mark.quick(3)
+def test_a_sample_alone_is_what_it_is_among_others(name):
+    """At all positions, though its situations come from its own train."""
+    case, samples = varied(name, 3, seed=12)
+    among = ls.solve_many(case, samples, keep=KEPT)
+    some = {key: values[1:2] for key, values in samples.items()}
+    alone = ls.solve_many(case, some, keep=KEPT).isel(sample=0)
+    here = among.isel(sample=1)
+    for variable in (*KEPT, "displaced", "arc_curvature"):
+        one, other = alone[variable].values, here[variable].values
+        size = np.abs(other[np.isfinite(other)]).max(initial=0.0)
+        np.testing.assert_allclose(one, other, rtol=1e-8, atol=1e-8 * size)
+    for variable in ("certified", "determined", "convex"):
+        np.testing.assert_array_equal(alone[variable].values, here[variable].values)
+
+
 def test_a_gear_that_floats_freely_is_not_determined():
     """Nothing holds gear 1 in its place; a rigid bearing does. Rings of up to 2 µm hold the others:
     the pinions press on them (Fig. 14).
