@@ -196,6 +196,8 @@ BODIES = [
     (b'{"position": NaN}', 400),
     (b'{"changes": {"rings.4.float": "\\ud800 um"}}', 400),
     (b'{"position": 1e308}', 400),
+    (b'{"position": 1e999}', 400),
+    (b'{"changes": {"rings.4.float": 1' + b"0" * 400 + b"}}", 400),
     (b'{"position": -1}', 400),
     (b'{"position": true}', 400),
     (b'{"changes": []}', 400),

@@ -88,8 +88,8 @@ def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
     """
     keys = inputs.keys(text(body, "name"))
     low, high = (finite(body, end) for end in ("low", "high"))
-    if not low < high:
-        raise RequestError(400, f"low {low:g} is not below high {high:g}")
+    if not 0.0 < high - low < math.inf:
+        raise RequestError(400, f"low {low:g} and high {high:g} are no ends of a stretch")
     return Along(
         by_parts(inputs, keys, setting(body)),
         keys,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from typing import Any, NoReturn
 
 from starlette.requests import Request
@@ -43,11 +44,16 @@ async def body_of(request: Request) -> dict[str, Any]:
         if len(held) > EXPLORE.body:
             raise RequestError(413, f"the request is longer than {EXPLORE.body} bytes")
     try:
-        found = json.loads(held, parse_constant=_no_number)
+        found = json.loads(
+            held,
+            parse_constant=_no_number,
+            parse_int=lambda text: _held(text, int),
+            parse_float=lambda text: _held(text, float),
+        )
         # Half a character, as JSON may write it, is in no file and no message.
         json.dumps(found, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
-        raise RequestError(400, "the request is no JSON") from None
+        raise RequestError(400, "the request is no JSON, or a number in it is too long") from None
     if not isinstance(found, dict):
         raise RequestError(400, "the request is no JSON object")
     return found
@@ -55,6 +61,13 @@ async def body_of(request: Request) -> dict[str, Any]:
 
 def _no_number(text: str) -> NoReturn:
     raise ValueError(text)
+
+
+def _held(text: str, kind: Callable[[str], float]) -> float:
+    """Return a number that double precision can hold."""
+    if math.isinf(float(text)):
+        raise ValueError(text)
+    return kind(text)
 
 
 def setting(body: Mapping[str, Any]) -> dict[str, object]:
