@@ -15,10 +15,12 @@ from tests.explore.asking import answer, ask
 from tests.explore.conftest import SEED
 from tests.report.pages import EVIL, EVIL_CASE
 from tests.support import CASES, shipped
+from tests.tooth.use.pairs import CASE, SPUR, written
 
 import loadshare as ls
 from loadshare.case import Case, load_case
 from loadshare.explore.answer import answer_of, plain, whole_of
+from loadshare.explore.files import case_file
 from loadshare.explore.guard import hosts_of
 from loadshare.explore.inputs import Inputs
 from loadshare.report.verdict import largest_forces, resting, sharing
@@ -324,6 +326,17 @@ def test_a_case_that_lacks_a_key_of_its_file_is_saved_whole(served):
         found = ask(address, "/toml", {"changes": {}})[2]
     assert Case(tomllib.loads(found["text"])) == case
     assert "stands alone" in found["note"]
+
+
+def test_a_case_saved_whole_needs_no_file_of_a_law(tmp_path):
+    written(tmp_path, SPUR, "spur.toml")
+    file = written(
+        tmp_path, CASE + 'geometry = "spur.toml"\n[errors.b]\ninstallation = ["0 um", "0 um"]'
+    )
+    case = load_case(file).replace({"errors": None})
+    found = case_file(Inputs(case), {}, file)
+    assert "stands alone" in found["note"]
+    assert ls.solve(Case(tomllib.loads(found["text"]))).positions[0].certificate.passed
 
 
 def test_hostile_texts_travel_as_texts(served):

@@ -12,6 +12,7 @@ from loadshare.case.reader import load_case
 from loadshare.case.writer import toml_text
 from loadshare.explore.inputs import Inputs
 from loadshare.job.positions import prepared
+from loadshare.tooth import written_in
 
 
 def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) -> dict[str, str]:
@@ -36,11 +37,11 @@ def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) ->
     prepared(changed)
     name = f"{inputs.case.name or 'case'}_explored.toml"
     if file is None:
-        return {"name": name, "text": changed.to_toml(), "note": ""}
+        return {"name": name, "text": written_in(changed).to_toml(), "note": ""}
     apart = _apart(load_case(file).to_dict(), changed.to_dict())
     if apart is None:
         note = "It stands alone: something of the original is gone, which extending cannot say."
-        return {"name": name, "text": changed.to_toml(), "note": note}
+        return {"name": name, "text": written_in(changed).to_toml(), "note": note}
     head = tomlkit.document()
     head.add("extends", tomlkit.item(file.name))
     text = f"{tomlkit.dumps(head).rstrip()}\n\n{toml_text(apart)}"
