@@ -42,8 +42,8 @@ LAWS = ("stiffness", "law", "table", "law_file", "geometry")
 MeshStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS.bounded(above=0)]
 Bending = Annotated[Quantity, TORSIONAL_COMPLIANCE.bounded(at_least=0)]
 Hertz = Annotated[Quantity, HERTZ_COMPLIANCE.bounded(at_least=0)]
-TableTorque = Annotated[Quantity, TORQUE.bounded(above=0)]
-TableAngle = Annotated[Quantity, ANGLE.bounded(above=0)]
+TableTorque = Annotated[Quantity, TORQUE.bounded(at_least=0)]
+TableAngle = Annotated[Quantity, ANGLE.bounded(at_least=0)]
 FileName = Annotated[str, Field(min_length=1)]
 
 
@@ -92,6 +92,9 @@ class Law(Element):
             yield Rule("b and c are both 0: the mesh would be rigid", hint="Give b, c or both.")
 
 
+IMPLIED = "Leave the point (0, 0) out; a gap of the unloaded flanks is the key gap of the mesh."
+
+
 class Table(Element):
     """Loaded deformation of a mesh at the driver as points; the point (0, 0) is implied."""
 
@@ -107,6 +110,9 @@ class Table(Element):
 
     def rules(self) -> Iterator[Rule]:
         """Yield the lists that do not increase or do not fit."""
+        for path, points in (("torque",), self.torque), *self._curves():
+            if points and points[0].si == 0.0:
+                yield Rule("begins at 0, which is implied", path, hint=IMPLIED)
         if not _increases(self.torque):
             yield Rule("does not increase", ("torque",))
         for path, points in self._curves():

@@ -49,6 +49,7 @@ CHECKS: tuple[Rule, ...] = (
     carriers.check_planet_shafts,
     carriers.check_held,
     carriers.check_twisted_shafts,
+    carriers.check_clockings,
     carriers.check_planet_errors,
     floats.check_support,
     floats.check_spline_law,
@@ -70,6 +71,7 @@ CHECKS: tuple[Rule, ...] = (
 
 LOOK_AT_VALUES: Mapping[Rule, frozenset[str]] = {
     carriers.check_names_of_planet_meshes: frozenset({"meshes"}),
+    carriers.check_clockings: frozenset({"shafts"}),
     fit.check_fit: frozenset({"meshes"}),
     floats.check_spline_law: frozenset({"splines"}),
     floats.check_idle_inputs: frozenset({"meshes"}),

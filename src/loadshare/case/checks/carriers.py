@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from loadshare.case.checks.fit import SQUARE, parallel
@@ -14,6 +15,9 @@ from loadshare.case.place import Vector, minus
 from loadshare.case.power_flow import rides_on
 from loadshare.case.words import choices
 from loadshare.errors import Problem
+
+SAME = 1e-9
+"""Difference of clockings that is round-off, as a part of their sum."""
 
 
 def check_carriers(draft: Draft) -> Iterator[Problem]:
@@ -142,6 +146,31 @@ def check_twisted_shafts(draft: Draft) -> Iterator[Problem]:
             )
             hint = "Leave it out, or let one end turn without the other."
             yield draft.problem(("shafts", name), what, hint=hint)
+
+
+def check_clockings(draft: Draft) -> Iterator[Problem]:
+    """Yield rigid shafts that other rigid shafts between their ends contradict."""
+    rigid = {name: s for name, s in draft.shafts.items() if s.stiffness == "rigid"}
+    lags: dict[str, float] = {}
+    size = SAME * math.fsum(abs(shaft.clocking.si) for shaft in rigid.values())
+    while rigid:
+        ahead = next((n for n, s in rigid.items() if not lags.keys().isdisjoint(s.ends)), None)
+        if ahead is None:
+            lags[next(iter(rigid.values())).ends[0]] = 0.0
+            continue
+        shaft = rigid.pop(ahead)
+        first, second = shaft.ends
+        lag = shaft.clocking.si
+        if first in lags and second in lags:
+            other = lags[second] - lags[first]
+            if abs(other - lag) > size:
+                what = f"is not {other:.6g} rad, as other rigid shafts between its ends have it"
+                hint = "Make the clockings agree, or give one of these shafts a stiffness."
+                yield draft.problem(("shafts", ahead, "clocking"), what, hint=hint)
+        elif first in lags:
+            lags[second] = lags[first] + lag
+        else:
+            lags[first] = lags[second] - lag
 
 
 def check_planet_errors(draft: Draft) -> Iterator[Problem]:
