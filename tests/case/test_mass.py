@@ -43,8 +43,9 @@ def test_a_thin_web_below_a_rim():
     assert inertia_of(webbed) == pytest.approx(inertia, rel=1e-14)
 
 
-def test_an_internal_gear_ends_where_its_rim_does():
-    ring = gear(type="internal", teeth=80, rim="13.75 mm")  # root at 206.25 mm, outside at 220 mm
+@pytest.mark.parametrize("outside", [{"rim": "13.75 mm"}, {"outside_diameter": "440 mm"}])
+def test_an_internal_gear_ends_where_its_rim_does(outside):
+    ring = gear(type="internal", teeth=80, **outside)  # root at 206.25 mm, outside at 220 mm
     expected = math.pi * (0.22**2 - 0.2**2) * 0.04 * 7850.0
     assert mass_of(ring) == pytest.approx(expected, rel=1e-14)
 

@@ -33,6 +33,15 @@ def test_a_thin_ring_under_two_opposite_forces():
     assert found < exact
 
 
+def test_a_rim_follows_from_the_outside_diameter():
+    gear = a_set().gears["ring"]
+    outside = f"{2e3 * gear.tooth.root + 30.0!r} mm"
+    other = shipped("planetary/four_planets").replace(
+        {"gears.ring.ovalisation": "rim", "gears.ring.outside_diameter": outside}
+    )
+    assert other.gears["ring"].rim_stiffnesses == pytest.approx(gear.rim_stiffnesses, rel=1e-12)
+
+
 def test_amplitudes_are_what_the_meshes_push():
     """Of every harmonic: forces times shapes over the stiffness, both written here again."""
     case = a_set()

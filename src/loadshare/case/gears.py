@@ -346,9 +346,9 @@ class Gear(Element):
         if self.type != "internal":
             yield Rule("is for internal gears only", ("ovalisation",))
         elif isinstance(self.ovalisation, str):
-            for key in ("rim", "face_width"):
-                if getattr(self, key) is None:
-                    yield Rule("is missing", (key,), LENGTH.allowed, "It goes with ovalisation.")
+            needed = {"rim": self.rim or self.outside_diameter, "face_width": self.face_width}
+            for key in (key for key, value in needed.items() if value is None):
+                yield Rule("is missing", (key,), LENGTH.allowed, "It goes with ovalisation.")
 
     def _axis_rules(self) -> Iterator[Rule]:
         if not isinstance(self.axis, str) and not any(self.axis):
@@ -391,6 +391,9 @@ class Gear(Element):
         if self.type == "external" and self.bore is not None and self.bore.si >= 2.0 * tooth.root:
             root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
             yield Rule(f"leaves no body below the teeth: {root}", ("bore",))
+        if self.type == "internal" and self.outside_diameter is not None and self.rim_depth <= 0.0:
+            root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
+            yield Rule(f"leaves no body beyond the teeth: {root}", ("outside_diameter",))
         tip, base = 1e3 * tooth.tip, 1e3 * tooth.base_radius
         keys = ("tip_alteration", "addendum", "profile_shift", "thickness_allowance")
         key = next(iter(self.given(*keys)), "module")
@@ -421,6 +424,15 @@ class Gear(Element):
         )
 
     @property
+    def rim_depth(self) -> float | None:
+        """Thickness of an internal gear's body beyond its teeth [m], where anything tells it."""
+        if self.rim is not None:
+            return self.rim.si
+        if self.tooth is None or self.outside_diameter is None:
+            return None
+        return 0.5 * self.outside_diameter.si - self.tooth.root
+
+    @property
     def rim_stiffnesses(self) -> tuple[float, ...]:
         """Stiffness of the rim against the harmonics 2, 3, … [N/m], none where it is rigid.
 
@@ -430,9 +442,10 @@ class Gear(Element):
             return ()
         if not isinstance(self.ovalisation, str):
             return tuple(k.si for k in self.ovalisation)
-        if self.tooth is None or self.rim is None or self.face_width is None:
+        thick = self.rim_depth
+        if self.tooth is None or thick is None or self.face_width is None:
             raise ValueError("a rim without dimensions")
-        thick, middle = self.rim.si, self.tooth.root + 0.5 * self.rim.si
+        middle = self.tooth.root + 0.5 * thick
         bending = math.pi * YOUNG * self.face_width.si * thick**3 / 12.0 / middle**3
         return tuple(bending * (n**2 - 1) ** 2 for n in range(2, 2 + HARMONICS))
 

@@ -15,10 +15,10 @@ def mass_of(gear: Gear) -> float | None:
     """Return the mass of a gear [kg]; None where nothing tells it.
 
     Rings of the face width: an external gear reaches from its bore to its reference circle, an
-    internal one from its reference circle to the outside of its `rim` below the root. Of a gear
-    with a thin web only the rim has the face width, and the web its own thickness. Teeth are as
-    much above the reference circle as they leave below it, except for the profile shift and the
-    clearance at the root; hubs, shafts and holes are not seen.
+    internal one from its reference circle to the outside of its body. Of a gear with a thin web
+    only the rim has the face width, and the web its own thickness. Teeth are as much above the
+    reference circle as they leave below it, except for the profile shift and the clearance at the
+    root; hubs, shafts and holes are not seen.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def _rings(gear: Gear) -> Iterator[tuple[float, float, float]]:
     def ring(inner: float, outer: float, width: float) -> tuple[float, float, float]:
         return math.pi * (outer**2 - inner**2) * width * density, inner, outer
 
-    width, rim = gear.face_width.si, gear.rim.si if gear.rim is not None else None
+    width, rim = gear.face_width.si, gear.rim_depth
     if tooth.internal:
         if rim is not None:
             yield ring(tooth.radius, tooth.root + rim, width)
