@@ -391,7 +391,8 @@ class Gear(Element):
         if self.type == "external" and self.bore is not None and self.bore.si >= 2.0 * tooth.root:
             root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
             yield Rule(f"leaves no body below the teeth: {root}", ("bore",))
-        if self.type == "internal" and self.outside_diameter is not None and self.rim_depth <= 0.0:
+        depth = self.rim_depth
+        if self.type == "internal" and depth is not None and depth <= 0.0:
             root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
             yield Rule(f"leaves no body beyond the teeth: {root}", ("outside_diameter",))
         tip, base = 1e3 * tooth.tip, 1e3 * tooth.base_radius
