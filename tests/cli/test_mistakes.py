@@ -68,6 +68,8 @@ def box(tmp_path_factory):
     assert command("run", RING, "--position", 1, "-q", *outputs).exit_code == 0
     swept = ("sweep", RING, "--over", "rings.4.float=4 um", "--position", 1, "-q", "-o")
     assert command(*swept, folder / "sweep.json").exit_code == 0
+    (folder / "answers").mkdir()
+    (folder / "answers/one.json").write_bytes((folder / "result.json").read_bytes())
     (folder / "unit.rexs").write_bytes(units.xml(*units.planetary()))
     (folder / "pair.toml").write_bytes((CASES / "fgfbstts/pairs/p12.toml").read_bytes())
     (folder / "law.toml").write_text('kind = "law"\n')
@@ -90,6 +92,7 @@ WRONG_FILES = {
     ("report", "result.html"): "is a page and no case",
     ("run", "tables"): "is a folder of tables; `loadshare import` makes a case of them",
     ("check", "tables"): "is a folder of tables; `loadshare import` makes a case of them",
+    ("check", "answers"): "no case file there; loadshare check takes results by file",
     ("run", "unit.rexs"): "is a gear unit in REXS; `loadshare import` makes a case of it",
     ("run", "pair.toml"): "is a pair with a face gear; `loadshare ltca` analyses it",
     ("run", "law.toml"): "is the law of a mesh, which names it by law_file",
@@ -128,6 +131,7 @@ WORDS = {
     ("run", BASE, "--over", "a=1"): "It is an option of sweep, critical, tolerance, fit, study.",
     ("run", BASE, "--positions", "1"): "It is an option of ltca.",
     ("run", BASE, "--sett", "a=1"): "Did you mean --set?",
+    ("new", "x", "-o", "x.json"): "no JSON file comes of this command. This command writes .toml.",
     ("new", "x", "--kind", "planetery"): "Did you mean planetary?",
     ("run", RING, "--set", "rings.4.float"): "is not of the form KEY=VALUE",
     ("run", RING, "--set", "4.float=4 um"): "Did you mean rings.4.float?",

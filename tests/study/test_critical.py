@@ -373,6 +373,7 @@ def test_an_interval_without_events():
         ("rings.4.float", "3 um", "2 um", "start 3 um is not below stop 2 um"),
         ("rings.4.flot", "0 um", "2 um", "Did you mean float?"),
         ("rong.*.float", "0 um", "2 um", "matches no key of the case"),
+        ("rings.4.float [um]", 0, 2, "has a unit in its name"),
         ("rings.4.float", "0 um", "2 kg", "cannot be expressed in um"),
         ("rings.4.float", "0 um", "2 N", "cannot be expressed in um"),
         ("rings..float", "0 um", "2 um", "is not a key path"),

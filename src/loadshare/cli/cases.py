@@ -134,8 +134,12 @@ def _no_case_text(path: Path) -> str:
     """Return the message for a folder or pattern without a case."""
     from loadshare.case.recognise import what_folder_is
 
-    tables = path.is_dir() and any(path.glob("*.csv"))
-    return f"no case file there: it {what_folder_is(path)}" if tables else "no case file there"
+    wrong = "no case file there"
+    if path.is_dir() and any(path.glob("*.csv")):
+        return f"{wrong}: it {what_folder_is(path)}"
+    if path.is_dir() and any(path.glob("*.json")):
+        return f"{wrong}; loadshare check takes results by file: {path / '*.json'}"
+    return wrong
 
 
 def _of_another_kind(file: Path) -> bool:

@@ -12,6 +12,7 @@ from loadshare.cli.cases import open_case
 from loadshare.cli.console import say
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
 from loadshare.cli.files import keep_inputs, save_text, tell_written
+from loadshare.cli.forms import check_case_file
 from loadshare.cli.options import CaseFile, Changes, Force, output
 from loadshare.input import real
 from loadshare.output import STANDARD
@@ -39,6 +40,7 @@ def import_machine(
 
     known = real(unit) if unit.is_dir() else unit
     target = to or Path(known.name or "case").with_suffix(".toml")
+    check_case_file(target)
     if target != STANDARD and target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
     keep_inputs([unit])

@@ -104,6 +104,20 @@ def read_output(text: str, forms: Sequence[str]) -> Output:
     raise typer.BadParameter(f"{text}: {wrong}. This command writes {can}{more}.")
 
 
+def check_case_file(file: Path) -> None:
+    """Refuse a name for a case that says it is something else.
+
+    Raises
+    ------
+    typer.BadParameter
+        If the ending is that of another form.
+    """
+    ending = file.suffix.lower().removeprefix(".")
+    if ending in FORMS and ending != "toml":
+        wrong = f"no {FORMS[ending]} comes of this command. This command writes .toml."
+        raise typer.BadParameter(f"{file}: {wrong}", param_hint="--output")
+
+
 def _first(forms: Sequence[str]) -> str:
     """Return the form of what goes to standard output."""
     return next(form for form in forms if form != FOLDER)

@@ -11,6 +11,7 @@ import typer
 from loadshare.cli.completion import kind_names
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import save_text, tell_written
+from loadshare.cli.forms import check_case_file
 from loadshare.cli.options import Force, output
 from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError
@@ -48,6 +49,7 @@ def new(
     if not title:
         raise typer.BadParameter("a case needs a name", param_hint="NAME")
     target = file or Path(name).with_name(f"{title}.toml")
+    check_case_file(target)
     if target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
     try:

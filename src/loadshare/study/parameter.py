@@ -218,6 +218,8 @@ def matches(case: Case, pattern: str) -> tuple[str, ...]:
         wanted = parse(pattern.strip())
     except ValueError:
         raise _unusable(pattern, "is not a key path", allowed) from None
+    if " [" in str(wanted[-1]):
+        raise _unusable(pattern, "has a unit in its name", "the key alone, and values such as 4 um")
     if wanted[0] in ABOUT:
         raise _unusable(pattern, "describes the case and is no input", allowed)
     if not any("*" in str(step) for step in wanted):
