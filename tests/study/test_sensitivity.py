@@ -1,6 +1,7 @@
 """Sensitivities: against closed forms and differences of certified solves."""
 
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from tests.support import EVERY_SHIPPED, mostly_slow, shipped
 import loadshare as ls
 from benchmarks.random_trains.draw import draw
 from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
+from loadshare.case.starter import starter_case
 from loadshare.cli.tables.sensitivity import good
 from loadshare.errors import CaseError
 from loadshare.job import machine
@@ -585,3 +587,35 @@ def test_entries_of_a_support_s_matrix(matrix) -> None:
             assert abs(rates.torque["a-b"]) <= rates.error.torque["a-b"]
     # The set is the same in all directions: nothing is differenced between solves.
     assert not found.remarks
+
+
+def test_a_set_that_cannot_act_is_tried_without_a_warning() -> None:
+    found = ls.sensitivity(
+        ls.Case(tomllib.loads(starter_case("star", "star"))).replace(
+            {
+                **{f"gears.planet{k}.support": None for k in (2, 3, 4, 5)},
+                "gears.planet3.temperature": "8 K",
+                "gears.ring.ovalisation": "rim",
+                "gears.ring.rim": "30 mm",
+                "errors": {"planet5": {"installation": ["8.4 um", "2 um"]}},
+                "bearings": {
+                    "ring": {"clearance": "26.5 um", "stiffness": "rigid"},
+                    "planet3": {
+                        "clearance": "0.3 um",
+                        "offset": ["19.5 um", "0 um"],
+                        "stiffness": "rigid",
+                    },
+                },
+                "gears.sun.support": None,
+                "rings.sun": {"radius": "18 um"},
+                "splines.planet5": {
+                    "bending_stiffness": "1e8 N/m",
+                    "clearance": "70 um",
+                    "friction": 0.1,
+                    "radius": "30 mm",
+                },
+            }
+        ),
+        "splines.planet5.bending_stiffness",
+    )
+    assert len(found.inputs) == 1

@@ -408,8 +408,10 @@ class Equations:
         z = np.zeros((len(x), self.size))
         z[:, : self.n] = x
         if self.size > self.n:
-            off = self.residual(z, numbers)[:, : self.n]
-            borders = self.jacobian(z, numbers)[:, : self.n, self.n :]
+            # On a set that cannot act here, nothing is finite: there is no solution near by.
+            with np.errstate(all="ignore"):
+                off = self.residual(z, numbers)[:, : self.n]
+                borders = self.jacobian(z, numbers)[:, : self.n, self.n :]
             z[:, self.n :] = -(np.linalg.pinv(borders) @ off[:, :, None])[:, :, 0]
         return z
 
