@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from loadshare.contact import RIGID, ContactProblem, PowerLaw, Row, solve_contact
+from loadshare.contact import (
+    RIGID,
+    ContactProblem,
+    Piece,
+    PowerLaw,
+    Radial,
+    RadialLaw,
+    Row,
+    solve_contact,
+)
 from loadshare.errors import Refused
 
 
@@ -36,3 +45,19 @@ def test_three_sides_without_a_place_are_named():
     )
     with pytest.raises(Refused, match=r"contradict one another: left, below, slope$"):
         solve_contact(ContactProblem(("x", "y"), 1e6 * np.eye(2), [1.0, 2.0], rows))
+
+
+def test_a_disc_that_lies_beyond_a_stop_is_named_with_it():
+    """Discs, too, leave no place: 3 µm about (1, 0) µm lies within x ≤ 4 µm."""
+    drum = Radial(
+        "drum", np.eye(2), np.array([1e-6, 0.0]), RadialLaw((Piece(0.0, 0.0, 3e-6, "in"),))
+    )
+
+    def block(gap: float) -> ContactProblem:
+        stop = Row("stop", "stop", np.array([-2.0, 0.0]), -2.0 * gap, RIGID)
+        load = np.array([10.0, 3.0])
+        return ContactProblem(("x", "y"), np.zeros((2, 2)), load, rows=(stop,), radials=(drum,))
+
+    assert solve_contact(block(3.9e-6)).passed
+    with pytest.raises(Refused, match=r"contradict one another: drum, stop$|: stop, drum$"):
+        solve_contact(block(4.1e-6))

@@ -1,7 +1,8 @@
-"""Which rigid rows cannot hold together, if any."""
+"""Which rigid limits cannot hold together, if any."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -9,8 +10,14 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.contact.law import PowerLaw
-from loadshare.contact.problem import ContactProblem, Row
+from loadshare.contact.problem import ContactProblem, Radial, Row
 from loadshare.settings import PLACES
+
+RIGID = PowerLaw(0.0, 0.0)
+AXES = np.vstack([np.eye(2), -np.eye(2)])
+"""Directions of the first tangents."""
+Rounds = list[tuple[Radial, float]]
+"""Round limits, each with how far it lets its offset go."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,18 +77,77 @@ def is_rigid(row: Row) -> bool:
     return isinstance(row.law, PowerLaw) and row.law.is_rigid
 
 
-def conflict(problem: ContactProblem) -> tuple[str, ...]:
-    """Return the rigid rows that contradict one another; empty if all can hold.
+def rounds_of(problem: ContactProblem) -> Rounds:
+    """Return the round limits of a problem that end at a rigid wall."""
+    laws = {r: r.at_rest for r in problem.radials if not r.follows_torque}
+    return [(r, law.reach) for r, law in laws.items() if law and math.isfinite(law.reach)]
 
-    Arcs and round limits leave room that turns with the place; they are not judged here.
+
+def squeezing(
+    rows: Sequence[Row], rounds: Rounds, size: int, unit: float, overlap: float
+) -> tuple[str, ...]:
+    r"""Return the limits that leave no place; empty if all can hold.
+
+    They are those of the least overlap t of any displacement (see `least_overlap`), with
+
+    .. math:: \lVert P_j x - m_j\rVert - t \le R_j
+
+    of round limits j besides. These count by tangents, which leave more room, so that a positive
+    overlap is one all the same.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Rigid ones.
+    rounds : list of (Radial, float)
+    size : int
+        Coordinates.
+    unit : float
+        Of lengths [m], enlarged where a gap is larger.
+    overlap : float
+        In that unit, what counts as round-off.
+    """
+    rows = [*rows, *(_tangent(r, reach, along) for r, reach in rounds for along in AXES)]
+    if not rows:
+        return ()
+    unit = max(unit, *(abs(r.gap) for r in rows)) or 1.0
+    for _ in range(PLACES.programmes):
+        found = least_overlap(rows, size, unit)
+        if found is None:
+            return ()
+        if found.size > overlap:
+            return found.names
+        offsets = [r.matrix @ found.place * unit - r.centre for r, _ in rounds]
+        beyond = [
+            _tangent(r, reach, offset / np.linalg.norm(offset))
+            for (r, reach), offset in zip(rounds, offsets, strict=True)
+            if np.linalg.norm(offset) - reach > max(found.size, overlap) * unit
+        ]
+        if not beyond:
+            return ()
+        rows += beyond
+    return ()
+
+
+def _tangent(radial: Radial, reach: float, along: Array) -> Row:
+    """Half-plane that holds a round limit, where that meets a direction (2,)."""
+    return Row(
+        radial.name,
+        "stop",
+        along @ radial.matrix,
+        reach + float(along @ radial.centre),
+        RIGID,
+    )
+
+
+def conflict(problem: ContactProblem) -> tuple[str, ...]:
+    """Return the rigid limits that contradict one another; empty if all can hold.
+
+    Arcs leave room that turns with the place; they are not judged here.
     """
     rows = []
     for row in filter(is_rigid, problem.rows):
         norm = float(np.linalg.norm(row.vector))
         rows.append(replace(row, vector=row.vector / norm, gap=row.gap / norm))
-    if not rows:
-        return ()
-    unit = max(abs(row.gap) for row in rows) or 1.0
-    found = least_overlap(rows, problem.size, unit)
     # The programme is solved to some 1e-9 of the unit: less than that is no proof.
-    return found.names if found is not None and found.size > PLACES.pushed else ()
+    return squeezing(rows, rounds_of(problem), problem.size, 0.0, PLACES.pushed)
