@@ -19,6 +19,7 @@ from tests.support import furthest, shipped
 
 import loadshare as ls
 from benchmarks import families
+from loadshare.case import starter_case
 from loadshare.errors import CaseError
 from loadshare.job import many
 from loadshare.job.block import RUNGS
@@ -185,6 +186,18 @@ def test_a_sample_alone_is_what_it_is_among_others(name):
         np.testing.assert_allclose(one, other, rtol=1e-8, atol=1e-8 * size)
     for variable in ("certified", "determined", "convex"):
         np.testing.assert_array_equal(alone[variable].values, here[variable].values)
+
+
+@pytest.mark.parametrize("engine", ["vectorised", "compiled"])
+def test_rings_that_hold_floats_by_next_to_no_force_need_no_search(tmp_path, engine):
+    """Two pinions roll far along lines of action that all but coincide: the forces of their rings
+    are a hundred-thousandth of the load."""
+    path = tmp_path / "four.toml"
+    path.write_text(starter_case("four", "four-branch"))
+    radii = {"rings.pinion1.radius [um]": np.linspace(5.0, 60.0, 12)}
+    found = ls.solve_many(path, radii, engine=engine)
+    assert found.certified.all()
+    np.testing.assert_array_equal(named(found.rung), HOT)
 
 
 def test_a_gear_that_floats_freely_is_not_determined():

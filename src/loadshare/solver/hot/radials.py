@@ -60,7 +60,9 @@ def block(
     if status in (at.CORNER, at.WALL):
         along = direction(force, offset)
         limit = law.stick if status == at.CORNER else law.reach
-        inner, outer = np.zeros(count), limit / np.where(size > 0.0, size, push)
+        # A wall that carries nothing yet holds its float along its direction alone.
+        unknown = HOT.softest if status == at.WALL else limit / push
+        inner, outer = np.zeros(count), np.where(size > 0.0, limit / size, unknown)
         start = limit
     else:
         along = direction(offset, force)
@@ -139,7 +141,8 @@ def misplaced(
         slips = (law.reach > law.stick) & (radius >= law.stick) & (size > HOT.gross * law.bound)
         after, before = stays, np.where(slips, level, back)
     else:
-        up, down = False, inward | (size <= force_band)
+        # A wall may hold a float by next to no force.
+        up, down = False, inward | (size <= faint)
         after, before = stays, np.full(len(radius), at.OPEN)
     wrong = np.broadcast_to(up | down, radius.shape)
     return wrong, np.where(up, after, before).astype(np.int8)

@@ -92,7 +92,9 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
             size, push, reach, bound = one[m], two[m], law[at.REACH, m], law[at.BOUND, m]
             if by_force:
                 begin = law[at.FIRST_END, m] if status == CORNER else reach
-                inner, outer = 0.0, begin / (size if size > 0.0 else push)
+                # A wall that carries nothing yet holds its float along its direction alone.
+                unknown = HOT.softest if status == WALL else begin / push
+                inner, outer = 0.0, begin / size if size > 0.0 else unknown
             elif status == SLIP:
                 begin = 0.0
                 outer = max(size, law[at.FIRST_END, m])

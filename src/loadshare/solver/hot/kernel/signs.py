@@ -110,7 +110,8 @@ def misplaced(status, law, u, v, p, q, force_band, length_band, faint):  # type:
             slips = reach > stick and radius >= stick and size > HOT.gross * bound
             return level if slips else back
         return at.STOP
-    return at.OPEN if inward or size <= force_band else at.WALL
+    # A wall may hold a float by next to no force.
+    return at.OPEN if inward or size <= faint else at.WALL
 
 
 @bare
