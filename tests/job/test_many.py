@@ -21,12 +21,13 @@ import loadshare as ls
 from benchmarks import families
 from loadshare.case import starter_case
 from loadshare.errors import CaseError
-from loadshare.job import many
+from loadshare.job import machine, many
 from loadshare.job.block import RUNGS
 from loadshare.job.hot import HOT
 from loadshare.job.many import solve_blocks
 from loadshare.job.table import KEPT
 from loadshare.settings import CERTIFY, JOB
+from loadshare.train import build_train
 from loadshare.train.samples import samples_of
 
 RINGS = {
@@ -38,7 +39,8 @@ LIMIT_RING = "fgfbstts/limit_ring"
 
 def small_blocks(monkeypatch, samples: int) -> None:
     """Take so many samples at a time, and one position after another."""
-    monkeypatch.setattr(many, "JOB", JOB._replace(block=samples, together=1))
+    for module in (many, machine):
+        monkeypatch.setattr(module, "JOB", JOB._replace(block=samples, together=samples))
 
 
 def named(rung) -> np.ndarray:
@@ -559,3 +561,11 @@ def test_shares_are_computed_when_they_are_read(tmp_path):
     again.to_netcdf(tmp_path / "found.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "found.nc", engine="h5netcdf") as read:
         np.testing.assert_array_equal(read.share, found.share)
+
+
+def test_wide_trains_are_solved_in_smaller_blocks():
+    """Arrays larger than what glibc uses again would be fetched anew, page by page."""
+    few, wide = (machine.Machine(build_train(families.split_torque(n))) for n in (8, 64))
+    assert few.together == JOB.together
+    places = 8 * 3 * len(wide.train.gears)
+    assert places * wide.together <= JOB.allocated < places * (wide.together + 1)

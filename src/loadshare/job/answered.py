@@ -179,11 +179,11 @@ def answer_samples(
     groups = samples_of(case, samples)
     every = wanted_of((group.train for _, group in groups), positions)
     total, done = sum(len(rows) for rows, _ in groups), 0
-    each = max(1, JOB.together // len(every))
     parts, lacking = [], dict[int, tuple[int, ...]]()
     for rows, group in groups:
         machine = Machine(group.train)
         share(machine)
+        each = max(1, machine.together // len(every))
         wanted = tuple(k for k in every if k <= group.train.count)
         if positions is not None and len(wanted) < len(every):
             lacking |= dict.fromkeys(rows.tolist(), tuple(k for k in every if k not in wanted))

@@ -203,7 +203,7 @@ def solve_block(
         As for `solve_blocks`.
     """
     block, message = _Open(len(rows), positions), dict[tuple[int, int], str]()
-    abreast = 1 if machine.train.is_placed_anew else max(1, JOB.together // len(rows))
+    abreast = 1 if machine.train.is_placed_anew else max(1, machine.together // len(rows))
     for at in range(0, len(positions), abreast):
         some = positions[at : at + abreast]
         situations, here = samples.abreast(some), machine.at(some[0])

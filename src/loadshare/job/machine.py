@@ -139,6 +139,12 @@ class Machine:
         """What is measured on the displacements of its answers."""
         return self.judge.measuring
 
+    @property
+    def together(self) -> int:
+        """Equilibria that are solved together: no more than memory is used again for."""
+        widest = max(len(self.at(1).structure.names), 3 * len(self.train.gears))
+        return min(JOB.together, JOB.allocated // (8 * widest))
+
     def share(self, other: Machine) -> None:
         """Take over what is reduced of a machine that differs in its situations only."""
         self._like = other

@@ -78,11 +78,11 @@ def _solved(
     tolerance, workers = checked_tolerance(tolerance), whole("workers", workers)
     keep_freed_memory()
     total = sum(len(rows) for rows, _ in groups)
-    size = max(JOB.block, JOB.together // len(wanted))
     solver = engine_named(engine, total * len(wanted))
     tasks: list[tuple[Machine, Numbers, Samples, slice]] = []
     for rows, group in groups:
         machine = _machine(case, group)
+        size = max(min(JOB.block, machine.together), machine.together // len(wanted))
         # Equal blocks: a short one takes more time for every sample.
         each = -(-len(rows) // max(1, -(-len(rows) // size)))
         tasks += [(machine, rows, group, slice(at, at + each)) for at in range(0, len(rows), each)]
