@@ -100,15 +100,14 @@ def prepared(workload: Workload, count: int) -> Prepared:
     machine = Machine(samples.train)
     structure = machine.structure
     loading = loading_of(structure, stack([samples.situations(k) for k in positions]))
-    iterate, states = at_rest(structure, loading), first_sets(structure, loading)
     taught = loading.take(samples_to_learn(loading.count))
     forces = at_rest(structure, taught)
     found = exchange(structure, taught, forces, compiled.settle)
     rows, share = structure.rows, np.abs(forces.force) / pushes(taught)[:, None]
     rule = rule_of(taught, found.states[:, :rows], share)
-    named = rule.named(loading)
+    states, named = first_sets(structure, loading), rule.named(loading)
     states[:, :rows] = rule.states[named]
-    iterate.begin(slice(None), rule.share, loading, named)
+    iterate = at_rest(structure, loading, rule.share, named)
     return Prepared(structure, loading, iterate, states)
 
 

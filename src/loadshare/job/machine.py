@@ -319,10 +319,9 @@ class Machine:
 
     def _by_rule(self, loading: Loading, engine: Engine, rule: Rule) -> tuple[Iterate, Found]:
         """Let samples begin where a rule says."""
-        iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
-        named = rule.named(loading)
+        states, named = first_sets(self.structure, loading), rule.named(loading)
         states[:, : self.structure.rows] = rule.states[named]
-        iterate.begin(slice(None), rule.share, loading, named)
+        iterate = at_rest(self.structure, loading, rule.share, named)
         return iterate, exchange(self.structure, loading, iterate, engine, states)
 
     def _search(

@@ -67,21 +67,37 @@ class Iterate:
         roots = np.cbrt(np.maximum(share[..., loading.bent], HOT.least_share))
         roots = roots if which is None else roots[which]
         of_load = loading.root[samples] if len(loading.root) > 1 else loading.root
-        self.root[samples, loading.bent] = of_load[:, None] * roots
+        if isinstance(samples, slice):
+            np.multiply(of_load[:, None], roots, out=self.root[samples, loading.bent])
+        else:
+            self.root[samples, loading.bent] = of_load[:, None] * roots
 
 
-def at_rest(structure: Structure, loading: Loading) -> Iterate:
-    """Return the state before anything has moved; laws are first taken at half the load."""
+def at_rest(
+    structure: Structure,
+    loading: Loading,
+    share: Array | None = None,
+    which: Numbers | None = None,
+) -> Iterate:
+    """Return the state before anything has moved.
+
+    Parameters
+    ----------
+    structure : Structure
+    loading : Loading
+    share, which : ndarray, optional
+        As in `Iterate.begin`; laws are first taken at half the load where nothing is given.
+    """
     count, width = loading.count, len(structure.kinds)
-    root = np.zeros((count, width))
-    root[:, loading.bent] = np.cbrt(0.5) * loading.root[:, None]
-    return Iterate(
+    found = Iterate(
         x=np.zeros((count, structure.size)),
         force=np.zeros((count, width)),
-        root=root,
+        root=np.zeros((count, width)),
         floor=np.array(np.broadcast_to(HOT.floor * loading.root, (count,))),
         stays=np.zeros(count, dtype=bool),
     )
+    found.begin(slice(None), np.full(width, 0.5) if share is None else share, loading, which)
+    return found
 
 
 def pushes(loading: Loading) -> Array:
