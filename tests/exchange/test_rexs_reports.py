@@ -179,3 +179,63 @@ def test_a_known_version_is_nothing_to_report(written, version) -> None:
 def test_an_unknown_version_is_reported(written, version) -> None:
     found = import_rexs(written(xml(*two_stages(), version))).assumed
     assert any((version or "no version") in s and "read as one from 1.1 to 2.0" in s for s in found)
+
+
+def test_a_relation_that_is_given_twice_counts_once(written) -> None:
+    """Twice it doubled torques and stiffnesses, and made sections overlap."""
+    components, relations = two_stages()
+    once, twice = (
+        import_rexs(written(xml(components, given), name))
+        for given, name in ((relations, "unit.rexs"), (relations + relations, "twice.rexs"))
+    )
+    about = ("title", "source")
+    assert {k: v for k, v in twice.data.items() if k not in about} == {
+        k: v for k, v in once.data.items() if k not in about
+    }
+    assert any(f"{len(relations)} left out" in line for line in twice.assumed)
+    assert not any("more than once" in line for line in once.assumed)
+
+
+def test_two_gears_mesh_in_one_stage(written) -> None:
+    """A second stage of theirs took the place of the first, unsaid."""
+    components, relations = two_stages()
+    stiff = next(c for c in components if c[0] == 41)[3]
+    components.append((42, "cylindrical_stage", "", stiff))
+    relations.append(("stage", {"stage": 42, "gear_1": 21, "gear_2": 20}))
+    found = import_rexs(written(xml(components, relations)))
+    assert found.data["meshes"]["gear_20-gear_21"] == {"law": "iso"}
+    assert any("stage 42" in line and "in stage 40" in line for line in found.left_out)
+
+
+def test_an_id_is_that_of_one_component(written) -> None:
+    components, relations = two_stages()
+    components.append((20, "cylindrical_gear", "other", teeth(25, 2.0)))
+    with pytest.raises(CaseError, match="2 components with the id '20'"):
+        import_rexs(written(xml(components, relations)))
+
+
+@pytest.mark.parametrize(("second", "is_read"), [("2.0", True), ("3.0", False)])
+def test_a_number_that_is_given_as_two_is_refused(written, second, is_read) -> None:
+    one = b'<attribute id="normal_module" unit="mm">2.0</attribute>'
+    content = xml(*two_stages()).replace(one, one + one.replace(b"2.0", second.encode()))
+    if is_read:
+        import_rexs(written(content))
+        return
+    with pytest.raises(CaseError, match=r"normal_module: is given several times.*3 more"):
+        import_rexs(written(content))
+
+
+@pytest.mark.parametrize("role", ["outer_part", "gear_2"])
+def test_relations_to_components_that_are_missing_are_named(written, role) -> None:
+    """A bearing that holds a shaft in nothing is left out; behind a lost mesh no output is."""
+    components, relations = two_stages()
+    kind, part = ("side", 61) if role == "outer_part" else ("stage", 41)
+    for at, (given, roles) in enumerate(relations):
+        if given == kind and part in roles.values():
+            relations[at] = given, {**roles, role: 999}
+    message = f"relations '{kind}': 1 left out, the file has no component '999'"
+    if kind == "side":
+        assert message in import_rexs(written(xml(components, relations))).left_out
+        return
+    with pytest.raises(CaseError, match=message):
+        import_rexs(written(xml(components, relations)))

@@ -103,6 +103,10 @@ def unused(of: Gearing, used: set[str]) -> list[str]:
         f"stage {stage.id}: {one.title()} or {other.title()} turns loose, its coupling is open"
         for stage, one, other in of.loose
     ]
+    found += [
+        f"stage {stage.id}: {one.title()} and {other.title()} mesh in stage {first.id} already"
+        for (stage, one, other), (first, *_) in of.repeated
+    ]
     loads = applied_loads(of)
     used = used | {joint.part.id for each in loads for joint in each.route}
     sides = {part.id: both for part, *both in of.joined(*BEARINGS, *COUPLINGS)}

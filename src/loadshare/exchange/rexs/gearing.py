@@ -64,6 +64,11 @@ def loose_stages(
         opened |= {shaft_of[g.id].id for stage in found for g in stage[1:] if g.id in shaft_of}
 
 
+def _both(stage: Stage) -> frozenset[str]:
+    """Ids of both gears of a stage."""
+    return frozenset(gear.id for gear in stage[1:])
+
+
 class Joint(NamedTuple):
     """A bearing or coupling, and the side of it on which a shaft is: "inner" or "outer"."""
 
@@ -115,11 +120,25 @@ class Gearing:
 
     @cached_property
     def _pairs(self) -> list[Stage]:
-        return [
-            (stage, one, other)
-            for stage, one, other in self.model.related("stage", "stage", "gear_1", "gear_2")
-            if one.type in GEARS and other.type in GEARS and one is not other
-        ]
+        return list(self._by_gears[0].values())
+
+    @property
+    def repeated(self) -> list[tuple[Stage, Stage]]:
+        """Stages of gears that mesh already, each with the first stage of these."""
+        first, further = self._by_gears
+        return [(stage, first[_both(stage)]) for stage in further]
+
+    @cached_property
+    def _by_gears(self) -> tuple[dict[frozenset[str], Stage], list[Stage]]:
+        """The first stage of every two gears, by their ids, and all further ones."""
+        first: dict[frozenset[str], Stage] = {}
+        further: list[Stage] = []
+        for stage, one, other in self.model.related("stage", "stage", "gear_1", "gear_2"):
+            if one.type in GEARS and other.type in GEARS and one is not other:
+                each = (stage, one, other)
+                if first.setdefault(_both(each), each) is not each:
+                    further.append(each)
+        return first, further
 
     @cached_property
     def gears(self) -> list[Component]:

@@ -81,7 +81,9 @@ class _Importer:
         gears |= {self.of.names[c.id]: self._carrier(c) for c in self.of.carriers}
         flow = flow_of(self.of, self.assumed, self._lacks)
         if self.problems:
-            raise CaseError(self.problems)
+            # What is missing may be what these relations were to say.
+            also = [Problem(str(self.path), "", "", note) for note in self.of.model.pointless]
+            raise CaseError([*self.problems, *also])
         assert flow is not None
         self.left_out += flow.left_out
         for name in self.links.held:
@@ -235,6 +237,7 @@ class _Importer:
     def _count_left_out(self) -> None:
         kinds = Counter(c.type for c in self.of.model.components.values() if c.type not in READ)
         self.left_out += [f"{count} {kind}" for kind, count in sorted(kinds.items())]
+        self.left_out += self.of.model.pointless
         idle = [g for g in self.of.model.of_type(*GEARS) if g.id not in self.of.names]
         self.left_out += [f"gear {g.name or g.id}: no mesh of it carries load" for g in idle]
         holding = [id_ for held in self.holding.values() for id_ in held.parts]

@@ -91,12 +91,15 @@ class Model:
     relations : tuple of Relation
     notes : tuple of str
         What was assumed in reading it.
+    pointless : tuple of str
+        Which relations were left out because they name components that the file does not have.
     """
 
     version: str
     components: Mapping[str, Component]
     relations: tuple[Relation, ...]
     notes: tuple[str, ...] = field(default=())
+    pointless: tuple[str, ...] = field(default=())
 
     def of_type(self, *types: str) -> list[Component]:
         """Components of some types."""

@@ -10,7 +10,8 @@ import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from io import BytesIO
 from pathlib import Path
 from typing import Any, NoReturn
@@ -18,8 +19,8 @@ from xml.etree import ElementTree
 from xml.parsers import expat
 
 from loadshare.errors import CaseError, Problem
-from loadshare.exchange.rexs.model import Component, Model, Relation, Value
-from loadshare.exchange.rexs.quantities import in_si
+from loadshare.exchange.rexs.model import Component, Model, Relation, Unread, Value
+from loadshare.exchange.rexs.quantities import QUANTITIES, in_si
 from loadshare.input import Unreadable, read_file
 from loadshare.settings import ALLOWED
 
@@ -122,7 +123,7 @@ def _from_xml(content: bytes) -> Model:
         )
         for r in root.iterfind("relations/relation")
     ]
-    whole = {c.get("id", ""): _component(c) for c in root.iterfind("components/component")}
+    whole = [_component(c) for c in root.iterfind("components/component")]
     cases = [
         {c.get("id", ""): _component(c) for c in case.iter("component")}
         for case in root.iterfind("load_spectrum/load_case")
@@ -189,8 +190,12 @@ def _relation(kind: str, roles: dict[str, str]) -> Relation:
 def _put(attributes: dict[str, Value], name: str, value: Value, unit: str) -> None:
     name = FIRST_NAMES.get(name, name)
     read = in_si(name, value, unit)
-    if read is not None:
-        attributes[name] = read
+    if read is None:
+        return
+    before = attributes.get(name, read)
+    if name in QUANTITIES and before != read and not isinstance(before, Unread):
+        read = Unread("", "is given several times, with different values", "one value")
+    attributes[name] = read
 
 
 def _scalar(text: str) -> Value:
@@ -238,7 +243,7 @@ def _from_json(content: bytes) -> Model:
         )
         for r in tables(model.get("relations"))
     ]
-    whole = {c.id: c for c in map(_json_component, tables(model.get("components")))}
+    whole = [_json_component(c) for c in tables(model.get("components"))]
     spectrum = model.get("load_spectrum")
     cases = [
         {c.id: c for c in map(_json_component, tables(case.get("components")))}
@@ -278,11 +283,15 @@ def _json_value(given: Any) -> Value:
 
 def _loaded(
     version: str,
-    whole: dict[str, Component],
+    components: list[Component],
     relations: list[Relation],
     cases: list[dict[str, Component]],
 ) -> Model:
     """Return a model with what its first load case says of components laid over them."""
+    whole = {component.id: component for component in components}
+    for id_, count in Counter(component.id for component in components).items():
+        if count > 1:
+            raise _NoRexs(f"has {count} components with the id {id_!r}: every id is that of one")
     notes: tuple[str, ...] = ()
     if not VERSIONS.fullmatch(version):
         given = f"version {version} is not known" if version else "no version is given"
@@ -294,4 +303,22 @@ def _loaded(
                 one = whole[id_]
                 attributes = {**one.attributes, **changed.attributes}
                 whole[id_] = Component(one.id, one.type, one.name, attributes)
-    return Model(version, whole, tuple(relations), notes)
+    once = {(r.type, frozenset(r.roles.items())): r for r in relations}
+    if repeated := len(relations) - len(once):
+        notes += (f"relations given more than once count once: {repeated} left out",)
+    single = tuple(once.values())
+    return Model(version, whole, single, notes, _pointless(single, whole))
+
+
+def _pointless(relations: Iterable[Relation], whole: Mapping[str, Component]) -> tuple[str, ...]:
+    """Say which relations name components that the file does not have, each kind once."""
+    missing: dict[str, list[str]] = {}
+    for relation in relations:
+        lost = sorted(id_ for id_ in relation.roles.values() if id_ not in whole)
+        missing.setdefault(relation.type, []).extend(lost[:1])
+    return tuple(
+        f"relations {kind!r}: {len(ids)} left out, the file has no component {ids[0]!r}"
+        + (", nor others that they name" if len(set(ids)) > 1 else "")
+        for kind, ids in missing.items()
+        if ids
+    )
