@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from tests.support import shipped
 from tests.tooth.use.pairs import CASE, FACE, PAIRS, SPUR, written
 from typer.testing import CliRunner
 
@@ -11,7 +12,7 @@ from loadshare.cli.main import app
 from loadshare.errors import CaseError
 from loadshare.tooth import resolve
 from loadshare.tooth.law.file import law_text
-from loadshare.tooth.law.folder import known_law
+from loadshare.tooth.law.folder import computed_law, known_law
 from loadshare.tooth.pair.file import PairFile, load_pair
 
 pytestmark = pytest.mark.usefixtures("shared_cache")
@@ -266,6 +267,21 @@ def test_another_kind_of_gear_is_reported(case, tmp_path):
     written(tmp_path, FACE, "face.toml")
     found = problems_of(case.replace({'meshes."a-b".geometry': str(tmp_path / "face.toml")}))
     assert found["gears.b.type"].message == "face has a gear of type face"
+
+
+@pytest.mark.parametrize("key", ["geometry", "law_file"])
+def test_a_face_gear_of_another_shaft_angle_is_reported(tmp_path, key):
+    """In a case its axis is at right angles to the pinion's; the law was taken unsaid."""
+    wide = FACE.replace('face_width = "20 mm"', 'face_width = "24 mm"')
+    oblique = wide.replace("outer", 'shaft_angle = "80 deg"\nouter')
+    file = written(tmp_path, oblique, "face.toml")
+    if key == "law_file":
+        file = written(tmp_path, law_text(computed_law(load_pair(file))), "law.toml")
+    case = shipped("fgfbstts/base").replace(
+        {'meshes."1-2".stiffness': None, f'meshes."1-2".{key}': str(file)}
+    )
+    with pytest.raises(CaseError, match=rf'"1-2"\.{key}.*has axes 80 deg apart.*90 deg'):
+        resolve(case)
 
 
 def test_files_that_are_wrong_are_reported(case, spur, tmp_path):

@@ -36,6 +36,10 @@ def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Itera
     """
     mesh = case.meshes[name]
     here = f"{source} has"
+    if gears.shaft_angle is not None:
+        message = f"{here} axes {degrees(gears.shaft_angle.si)} apart"
+        hint = "The axes of a face gear and its pinion are at right angles in a case."
+        yield case.problem(_source_of(case, name), message, "a pair of axes at 90 deg", hint)
     cut = facing(mesh, case.gears, case.centres())
     for gear, facing_it, own in zip(mesh.ends, cut, (gears.driver, gears.driven), strict=True):
         yield from _gear(case, gear, here, gears, own)
@@ -50,14 +54,19 @@ def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Itera
     for key, found, wanted in angles:
         if abs(abs(found) - wanted) > TEETH.angle:
             given = getattr(mesh, key) is not None
-            source_key = "geometry" if mesh.geometry is not None else "law_file"
-            path = dotted(("meshes", name, key if given else source_key))
+            path = dotted(("meshes", name, key)) if given else _source_of(case, name)
             message = f"{here} {degrees(wanted)}"
             if not given:
                 message = (
                     f"{here} the {key} {degrees(wanted)}; by the centres it is {degrees(found)}"
                 )
             yield case.problem(path, message, degrees(wanted) if given else "")
+
+
+def _source_of(case: Case, name: str) -> str:
+    """Key by which a mesh names the file of its law."""
+    key = "geometry" if case.meshes[name].geometry is not None else "law_file"
+    return dotted(("meshes", name, key))
 
 
 def _gear(case: Case, name: str, here: str, gears: PairGears, own: PairGear) -> Iterator[Problem]:

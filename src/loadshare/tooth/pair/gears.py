@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from loadshare.case.element import Element
 from loadshare.case.quantity import Angle
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import HelicoidPair
 from loadshare.tooth.face.pair import FaceGearPair
@@ -60,6 +61,9 @@ class PairGears(Element):
     base_helix_angle: Angle
     """Base helix angle, without its sign [angle]."""
 
+    shaft_angle: Steep | None = None
+    """Angle between the axes of a face-gear pair where it is no right angle [angle]."""
+
     helices: Literal[1, 2] = 1
     """2 for a herringbone pair [-]."""
 
@@ -93,6 +97,8 @@ def gears_of(pair: HelicoidPair | FaceGearPair) -> PairGears:
             "teeth": pair.gear.teeth,
             "base_radius": _millimetres(radius),
         }
+        if abs(pair.gear.shaft_angle - 0.5 * math.pi) > TEETH.angle:
+            found["shaft_angle"] = _degrees(pair.gear.shaft_angle)
     else:
         driven = _cylindrical(pair.driven_gear)
         if gear.helices == 2:

@@ -170,16 +170,17 @@ class Face(Body):
     """A face gear, the envelope of its shaper."""
 
     inner: Size
-    """L1, inner end of the teeth [length]."""
+    """L1, inner end of the teeth along the pinion's axis from where the axes cross [length]."""
 
     outer: Size
-    """L2, outer end of the teeth [length]."""
+    """L2, outer end of the teeth along that axis [length]."""
 
     addendum: Number = 1.0
     """Height of the teeth above the shaper's pitch cylinder, in modules [-]."""
 
     shaft_angle: Steep = Quantity("90 deg", 1.5707963267948966)
-    """Angle between the axes [angle]."""
+    """Angle between the pinion's axis, away from where the axes cross, and the gear's, the way its
+    teeth point [angle]."""
 
     shaper: Cutter
     """The shaper that cuts it."""
