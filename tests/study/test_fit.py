@@ -266,3 +266,53 @@ def test_a_figure_of_what_carries_no_load_is_reported():
             ask(case)
     there = {"measured.mean.position": 2}
     assert ls.compare(case.replace(there)).deviations
+
+
+def one_share(*values: float) -> ls.Case:
+    """A case of which one share was measured, several times."""
+    shares = {
+        f"m{k}": {"position": 1, "pair_share": {"6-10": v}, "uncertainty": 0.01}
+        for k, v in enumerate(values)
+    }
+    return both_errors(**shares)
+
+
+AMOUNT = "errors.6.installation.amount"
+
+
+@pytest.mark.parametrize(
+    ("values", "chi", "contradict"),
+    [
+        # Equal weights meet in the middle: χ² = 2 (0.1/0.01)² and 2 (0.02/0.01)².
+        ((0.8, 1.0), 200.0, True),
+        ((0.88, 0.92), 8.0, False),
+        # Nothing between the bounds comes near; there is no degree of freedom.
+        ((7.0,), None, True),
+    ],
+)
+def test_figures_that_contradict_one_another_are_reported(values, chi, contradict):
+    """For one degree of freedom, one χ² in a thousand is above 10.83."""
+    found = ls.fit(one_share(*values), {AMOUNT: ("0 mm", "0.2 mm")})
+    if chi is not None:
+        assert found.chi_square == pytest.approx(chi, rel=1e-6)
+    assert any("contradict" in line and "10.8" in line for line in found.warnings) is contradict
+
+
+def test_bounds_may_be_a_text():
+    """As the command takes them; each of its letters was taken for a bound."""
+    case = one_share(0.9)
+    (by_text,) = ls.fit(case, {AMOUNT: "0 mm:0.2 mm"}).unknowns
+    (by_pair,) = ls.fit(case, {AMOUNT: ("0 mm", "0.2 mm")}).unknowns
+    assert by_text == by_pair
+
+
+@pytest.mark.parametrize("bounds", [5, None, "0.1 mm", ()])
+def test_what_is_no_range_is_reported(bounds):
+    with pytest.raises(ls.CaseError, match=r"installation\.amount.*Allowed: lowest and highest"):
+        ls.fit(one_share(0.9), {AMOUNT: bounds})
+
+
+def test_a_bound_that_makes_no_case_is_named():
+    """The best value is at no amount; a trial beyond it was named, "-0.00945... mm"."""
+    with pytest.raises(ls.CaseError, match=r'"-0\.2 mm": is negative.*The bound -0\.2 mm'):
+        ls.fit(one_share(1.3), {AMOUNT: ("-0.2 mm", "0.2 mm")})

@@ -209,6 +209,8 @@ class Fit(NamedTuple):
     """Distance to a bound, over the range, at which a search begins at least."""
     last: float = 1e-13
     """Relative change of inputs, figures and slopes that ends a search."""
+    improbable: float = 1e-3
+    """How seldom the stated uncertainties make χ² as large as one that is told."""
 
 
 class Tolerance(NamedTuple):

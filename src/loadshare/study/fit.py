@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
@@ -82,7 +82,8 @@ class Fit(Viewed):
     singular_values : ndarray, shape (min(m, n),)
         Of the sensitivities, measured in standard deviations over the range of each unknown.
     warnings : tuple of str
-        Which inputs the data cannot determine separately, and which are at a bound.
+        Which inputs the data cannot determine separately, which are at a bound, and whether the
+        figures are too far from the measured ones for their uncertainties.
     comparison : Comparison
         Measured against computed at the fitted values, certified.
     starts : tuple of float
@@ -153,7 +154,7 @@ class Fit(Viewed):
 
 def fit(
     case: Case | str | FilePath,
-    unknowns: Mapping[Any, Sequence[object]],
+    unknowns: Mapping[Any, Sequence[object] | str],
     *,
     starts: int = 1,
     seed: int = 0,
@@ -166,8 +167,9 @@ def fit(
     case : Case or path
         With measurements, ``[measured.NAME]``.
     unknowns : mapping of key to (low, high)
-        Bounds by dotted key path, pattern or tuple of keys (which take the same value). The case's
-        own value is the first starting point if it lies between, else the middle.
+        Bounds, also as a text "LOW:HIGH", by dotted key path, pattern or tuple of keys (which take
+        the same value). The case's own value is the first starting point if it lies between, else
+        the middle.
     starts : int
         Starting points; the further ones are Sobol points between the bounds.
     seed : int
@@ -217,7 +219,7 @@ def fit(
             progress(number, starts)
     if not reached:
         assert refusal is not None
-        raise refusal
+        raise problem.of_bounds() or refusal
     _, best = min(reached, key=lambda r: r[0])
     return problem.fitted(best, tuple(chis))
 
@@ -225,7 +227,7 @@ def fit(
 class _Problem:
     """The least-squares problem, its unknowns scaled to [0, 1] between their bounds."""
 
-    def __init__(self, case: Case, unknowns: Mapping[Any, Sequence[object]]) -> None:
+    def __init__(self, case: Case, unknowns: Mapping[Any, Sequence[object] | str]) -> None:
         self.case = case
         self.targets: list[Target] = targets(case)
         self.positions = needed(self.targets)
@@ -234,9 +236,10 @@ class _Problem:
         self.parameters: list[Parameter] = []
         lows, highs = [], []
         for key, bounds in unknowns.items():
-            numbers, unit = grid(list(bounds), named(key), RANGE)
+            ends = _ends(bounds)
+            numbers, unit = grid(ends, named(key), RANGE)
             if len(numbers) != 2 or not numbers[0] < numbers[1]:
-                given = ", ".join(map(str, bounds))
+                given = ", ".join(map(str, ends))
                 raise CaseError([Problem(STUDY, named(key), given, "is no range", RANGE)])
             self.parameters.append(read_parameter(case, key, unit))
             lows.append(numbers[0])
@@ -247,6 +250,19 @@ class _Problem:
         self.measured = np.array([t.value for t in self.targets])
         self.evaluations = 0
         self._last: tuple[bytes, Case, Result] | None = None
+
+    def of_bounds(self) -> CaseError | None:
+        """Return which bounds make no case by themselves, if any does not."""
+        problems: list[Problem] = []
+        for parameter, *ends in zip(self.parameters, self.low, self.high, strict=True):
+            for end in map(float, ends):
+                try:
+                    applied(self.case, [parameter], [end])
+                except CaseError as error:
+                    tried = Value(end, parameter.unit).text
+                    hint = f"The bound {tried} of the fit makes no case."
+                    problems += [replace(p, hint=p.hint or hint) for p in error.problems]
+        return CaseError(problems) if problems else None
 
     def starting_points(self, count: int, seed: int) -> list[Array]:
         """Return the values of `own`, then Sobol points."""
@@ -362,7 +378,8 @@ class _Problem:
         unknowns = [Unknown(p, *of) for p, of in zip(self.parameters, figures, strict=True)]
         warnings += [f"{u.parameter.name} is at its bound." for u in unknowns if u.at_bound]
         values = computed(self.case, self.targets, result)
-        deviations = tuple(map(Deviation, self.targets, values))
+        comparison = Comparison(tuple(map(Deviation, self.targets, values)), result)
+        warnings += _too_far(comparison, len(unknowns))
         return Fit(
             case=case,
             unknowns=tuple(unknowns),
@@ -370,10 +387,32 @@ class _Problem:
             correlation=correlation,
             singular_values=np.asarray(sizes),
             warnings=tuple(warnings),
-            comparison=Comparison(deviations, result),
+            comparison=comparison,
             starts=chis,
             evaluations=self.evaluations,
         )
+
+
+def _too_far(comparison: Comparison, unknowns: int) -> list[str]:
+    """Say if χ² is larger than the stated uncertainties make it, but for one time in a thousand."""
+    from scipy import special
+
+    freedom, chi = len(comparison.deviations) - unknowns, comparison.chi_square
+    # Where all could be met, what is not met at a bound counts as one figure.
+    usual = float(special.chdtri(max(freedom, 1), FIT.improbable))
+    if chi <= usual:
+        return []
+    return [
+        f"The figures contradict the case or one another: χ² is {chi:.4g}, above {usual:.3g} for "
+        f"their uncertainties, so that the deviations of the inputs mean little."
+    ]
+
+
+def _ends(bounds: object) -> list[object]:
+    """Ends of a range, which a text may hold as a command takes it, "0 um:100 um"."""
+    if isinstance(bounds, str):
+        return [*bounds.split(":")]
+    return list(bounds) if isinstance(bounds, Iterable) else [bounds]
 
 
 def _mean(rates: Sensitivity, key: str, position: int, kind: str) -> dict[str, float]:
