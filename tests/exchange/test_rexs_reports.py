@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from tests.exchange.units import changed, section, teeth, two_pinions, two_stages, xml
+from tests.exchange.units import changed, planetary, section, teeth, two_pinions, two_stages, xml
 
 from loadshare.errors import CaseError
 from loadshare.exchange.rexs import import_rexs
@@ -239,3 +239,38 @@ def test_relations_to_components_that_are_missing_are_named(written, role) -> No
         return
     with pytest.raises(CaseError, match=message):
         import_rexs(written(xml(components, relations)))
+
+
+@pytest.mark.parametrize(("distance", "reported"), [(60.0, False), (61.0, True)])
+def test_another_distance_than_that_of_the_axes_is_reported(written, distance, reported) -> None:
+    unit = changed(two_stages(), _40={"center_distance": (distance, MM)})
+    lines = import_rexs(written(xml(*unit))).assumed
+    said = "mesh gear_20-gear_21: the axes of its gears are 60 mm apart, whatever the"
+    assert any(line.startswith(said) for line in lines) is reported
+
+
+@pytest.mark.parametrize(("aside", "reported"), [(0.0, False), (1.0, True)])
+def test_a_gear_off_the_axis_of_its_shaft_is_reported(written, aside, reported) -> None:
+    unit = changed(two_stages(), _22={"support_vector": ([125.0, 60.0, aside], MM)})
+    lines = import_rexs(written(xml(*unit))).assumed
+    assert any("gear_22" in line and "1 mm off the axis" in line for line in lines) is reported
+
+
+@pytest.mark.parametrize(("speed", "reported"), [(-1000.0 / 6.0, False), (-1000.0 / 5.0, True)])
+def test_another_speed_than_the_teeth_make_is_reported(written, speed, reported) -> None:
+    """20 to 40 teeth and 20 to 60: the output turns as the input does, at a sixth."""
+    speeds = {
+        f"_{id_}": {"rotational_speed": (n, "1 / min")} for id_, n in ((10, -1e3), (12, speed))
+    }
+    lines = import_rexs(written(xml(*changed(two_stages(), **speeds)))).assumed
+    said = [line for line in lines if "the teeth make it -166.667 rpm" in line]
+    assert bool(said) is reported
+    assert not reported or said[0].startswith("gear_23: shaft 12 (out) is given a speed of -200")
+
+
+@pytest.mark.parametrize(("speed", "reported"), [(1500.0 * 17.0 / 78.0, False), (1500.0, True)])
+def test_the_speed_of_a_carrier_is_compared_as_the_set_turns(written, speed, reported) -> None:
+    """Sun 17, held ring 61: the carrier turns at 17/(17 + 61) of the sun's speed."""
+    unit = changed(planetary(), _4={"rotational_speed": (speed, "1 / min")})
+    lines = import_rexs(written(xml(*unit))).assumed
+    assert any("carrier_3: shaft 4" in line and "326.923" in line for line in lines) is reported

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from loadshare.case import Case
@@ -37,6 +38,8 @@ class Flow:
         Torques on other bodies, about their axes [N·m].
     left_out : list of str
         Loads without a torque that are on neither.
+    speed : float
+        Of the input about its axis [rad/s]; 0 where the file gives none.
     """
 
     first: str
@@ -46,6 +49,7 @@ class Flow:
     output: float
     others: dict[str, float]
     left_out: list[str]
+    speed: float
 
 
 def flow_of(of: Gearing, assumed: list[str], lacks: Lacks) -> Flow | None:
@@ -92,7 +96,8 @@ def flow_of(of: Gearing, assumed: list[str], lacks: Lacks) -> Flow | None:
     ahead = [*turning, torque][0] > 0.0
     running = "counter-clockwise" if ahead else "clockwise"
     driven = torque if ahead else -torque
-    return Flow(first, others[0].body, driven, running, output, further, beside)
+    speed = [*turning, 0.0][0]
+    return Flow(first, others[0].body, driven, running, output, further, beside, speed)
 
 
 def _torque(load: Component) -> float:
@@ -130,18 +135,20 @@ ALIKE = 1e-2
 larger one: files give few digits, and losses [-]."""
 
 
-def balanced(data: Data, flow: Flow, assumed: list[str], left_out: list[str]) -> Data:
+def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: list[str]) -> Data:
     """Return a case with the torques on neither input nor output.
 
     Parameters
     ----------
+    of : Gearing
     data : Data
         The case without them.
     flow : Flow
     assumed, left_out : list of str
-        Take what is to be said of the torques.
+        Take what is to be said of torques and speeds.
     """
-    if not flow.others and not flow.output:
+    speeds = _speeds(of, flow)
+    if not flow.others and not flow.output and not speeds:
         return data
 
     def loaded(torques: dict[str, float]) -> Data:
@@ -156,6 +163,7 @@ def balanced(data: Data, flow: Flow, assumed: list[str], left_out: list[str]) ->
     except CaseError:
         left_out += [f"{name}: a torque that the case cannot have as it is" for name in flow.others]
         return data
+    assumed += _other_speeds(flow, speeds, gears)
     power = flow.torque
     external: dict[str, float] = {}
     for name, torque in flow.others.items():
@@ -165,6 +173,38 @@ def balanced(data: Data, flow: Flow, assumed: list[str], left_out: list[str]) ->
     if flow.output:
         assumed += _contradiction(flow, gears[flow.last], power)
     return loaded(external)
+
+
+def _speeds(of: Gearing, flow: Flow) -> dict[tuple[str, str], float]:
+    """Speeds about the axes of bodies [rad/s] beside the input's, by shaft and body.
+
+    Not of planets, of which files may give the speed on their pins. What a file says of the input
+    is needed to compare any with.
+    """
+    planets = {of.names[planet] for planet in of.carrier_of}
+    found: dict[tuple[str, str], float] = {}
+    for shaft in of.model.of_type("shaft") if flow.speed else ():
+        speed, bodies = shaft.number("rotational_speed"), of.on_shaft(shaft)
+        name = bodies[0][1] if bodies else flow.first
+        if speed and name != flow.first and name not in planets:
+            found[shaft.title(), name] = of.sense(shaft, name) * speed
+    return found
+
+
+def _other_speeds(
+    flow: Flow, speeds: dict[tuple[str, str], float], gears: Mapping[str, Gear]
+) -> list[str]:
+    """Say which shafts are given another speed than follows from the input's and the teeth."""
+    found = []
+    for (shaft, name), given in speeds.items():
+        expected = gears[name].ratio * gears[name].sense * abs(flow.speed)
+        if expected and abs(given - expected) > ALIKE * max(abs(given), abs(expected)):
+            rpm = [f"{speed * 30.0 / math.pi:.6g}" for speed in (given, expected)]
+            found.append(
+                f"{name}: {shaft} is given a speed of {rpm[0]} rpm; with that of the input, the "
+                f"teeth make it {rpm[1]} rpm, which counts"
+            )
+    return found
 
 
 def _contradiction(flow: Flow, last: Gear, power: float) -> list[str]:

@@ -28,6 +28,8 @@ from loadshare.exchange.rexs.model import BEARINGS, COUPLINGS, GEARS, READ, Comp
 from loadshare.exchange.rexs.quantities import torque_of
 from loadshare.exchange.rexs.reading import read_model
 
+ON_AXIS = 1e-6
+"""How far from the axis of its shaft a gear may be unreported [m]."""
 SHIFTS = ("profile_shift_coefficient", "addendum_modification_coefficient")
 
 
@@ -108,7 +110,7 @@ class _Importer:
             data["errors"] = errors
         data["stages"] = stages_of(self.of, data["meshes"])
         data = {key: value for key, value in data.items() if value not in ("", {})}
-        data = balanced(data, flow, self.assumed, self.left_out)
+        data = balanced(self.of, data, flow, self.assumed, self.left_out)
         self._count_left_out()
         taken = tuple(
             f"{len(part)} {what}"
@@ -162,6 +164,10 @@ class _Importer:
             self.assumed.append(f"{name}: no direction of its axis is given, x is assumed")
         if shaft is not None and not self.of.places.are_parallel(gear, shaft):
             self.assumed.append(f"{name}: its axis is its shaft's, not the one that it gives")
+        if shaft is not None and (off := self.of.places.off_axis(gear, shaft)) > ON_AXIS:
+            self.assumed.append(
+                f"{name}: at the place that it gives, {_mm(off)} off the axis of its shaft"
+            )
         made |= self._placed(gear, self.of.middle(gear))
         if gear.id in self.of.carrier_of:
             made["carrier"] = self.of.names[self.of.carrier_of[gear.id].id]

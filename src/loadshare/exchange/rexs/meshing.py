@@ -6,16 +6,18 @@ import math
 from collections import Counter, deque
 
 from loadshare.case.gears import YOUNG
+from loadshare.case.place import minus
 from loadshare.exchange.imported import Data
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.links import Links
 from loadshare.exchange.rexs.model import Component
+from loadshare.exchange.rexs.places import dot
 from loadshare.exchange.rexs.shafts import material_of
 
 LIKE_STEEL = 0.05
 """Part by which a modulus of elasticity may differ from that of steel unreported."""
 ALIKE = 1e-3
-"""Part by which widths may differ unreported."""
+"""Part by which widths, or distances, may differ unreported."""
 
 
 def meshes_of(of: Gearing, first: str, links: Links, assumed: list[str]) -> Data:
@@ -33,6 +35,7 @@ def meshes_of(of: Gearing, first: str, links: Links, assumed: list[str]) -> Data
         name = f"{of.names[driver.id]}-{of.names[driven.id]}"
         made[name] = _law(of, stage, driver, driven)
         assumed += _width_assumed(name, made[name], stage, driver, driven)
+        assumed += _distance_assumed(of, name, stage, driver, driven)
     if any("law" in law for law in made.values()):
         assumed.append('meshes: their law is "iso", ISO 6336-1 method B')
         assumed += _not_of_steel(of)
@@ -118,6 +121,23 @@ def _width_assumed(
             f"{1e3 * given:g} mm"
         ]
     return []
+
+
+def _distance_assumed(
+    of: Gearing, name: str, stage: Component, driver: Component, driven: Component
+) -> list[str]:
+    """Say if a stage gives another distance than the places of its gears."""
+    given, places = stage.number("center_distance"), (of.middle(driver), of.middle(driven))
+    if given is None or None in places:
+        return []
+    apart, axis = minus(*filter(None, places)), of.axis(driver)
+    found = math.dist(apart, tuple(dot(apart, axis) * a for a in axis))
+    if abs(abs(given) - found) <= ALIKE * found:
+        return []
+    return [
+        f"mesh {name}: the axes of its gears are {1e3 * found:.6g} mm apart, whatever the "
+        f"center_distance of {1e3 * given:g} mm"
+    ]
 
 
 def _not_of_steel(of: Gearing) -> list[str]:

@@ -74,6 +74,14 @@ class Places:
             return coordinate + 0.5 * (part.number("face_width") or 0.0)
         return coordinate
 
+    def off_axis(self, part: Component, shaft: Component) -> float:
+        """How far a part lies from the axis of a shaft [m]; 0 where a place is not given."""
+        here, start = self.of(part), self.of(shaft)
+        if here is None or start is None:
+            return 0.0
+        apart, axis = minus(here, start), self.axis(shaft)
+        return math.dist(apart, tuple(dot(apart, axis) * a for a in axis))
+
     def on_axis(self, shaft: Component, along: float) -> Vector | None:
         """A place along a shaft, in the unit [m]; None if the place of the shaft is not given."""
         start = self.of(shaft)
