@@ -316,3 +316,18 @@ def test_a_bound_that_makes_no_case_is_named():
     """The best value is at no amount; a trial beyond it was named, "-0.00945... mm"."""
     with pytest.raises(ls.CaseError, match=r'"-0\.2 mm": is negative.*The bound -0\.2 mm'):
         ls.fit(one_share(1.3), {AMOUNT: ("-0.2 mm", "0.2 mm")})
+
+
+def test_a_start_in_a_flat_place_does_not_blame_the_data():
+    """From 11 µm on, floats touch nothing and move no share; the data came from 4 µm."""
+    base = shipped("fgfbstts/limit_ring")
+    floats = ("rings.4.float", "rings.5.float")
+    data = measured(base, 0.001, **dict.fromkeys(floats, "4 um"))
+    case = base.replace({**dict.fromkeys(floats, "11 um"), "measured.bench": data})
+    bounds = {"rings.*.float": ("0 um", "12 um")}
+    flat, better = (ls.fit(case, bounds, starts=starts) for starts in (1, 4))
+    idle, far = flat.warnings
+    assert idle == "Where the search ended, the figures do not depend on rings.*.float."
+    assert "further starting points" in far
+    assert better.unknowns[0].value == pytest.approx(4.0, abs=1e-6)
+    assert better.warnings == ()

@@ -349,6 +349,9 @@ class _Problem:
     def fitted(self, u: Array, chis: tuple[float, ...]) -> Fit:
         """Return the fit at a point."""
         case, result = self.solved(u)
+        values = computed(self.case, self.targets, result)
+        comparison = Comparison(tuple(map(Deviation, self.targets, values)), result)
+        too_far = _too_far(comparison, len(self.parameters))
         jacobian = self.jacobian(u)
         _, sizes, right = np.linalg.svd(jacobian, full_matrices=True)
         full = np.zeros(len(self.parameters))
@@ -358,8 +361,10 @@ class _Problem:
         covariance = known.T @ np.diag(full[~loose] ** -2.0) @ known
         names = [p.name for p in self.parameters]
         groups = _groups(right[loose])
+        # Elsewhere they may well depend on it: a start in a flat place goes nowhere.
+        idle = "Where the search ended, the figures do not depend on" if too_far else ""
         warnings = [
-            f"The data do not determine {names[group[0]]}."
+            f"{idle or 'The data do not determine'} {names[group[0]]}."
             if len(group) == 1
             else f"The data cannot tell {', '.join(names[k] for k in group)} apart."
             for group in groups
@@ -377,9 +382,7 @@ class _Problem:
         figures = zip(*(column.tolist() for column in columns), at_bound, strict=True)
         unknowns = [Unknown(p, *of) for p, of in zip(self.parameters, figures, strict=True)]
         warnings += [f"{u.parameter.name} is at its bound." for u in unknowns if u.at_bound]
-        values = computed(self.case, self.targets, result)
-        comparison = Comparison(tuple(map(Deviation, self.targets, values)), result)
-        warnings += _too_far(comparison, len(unknowns))
+        warnings += too_far
         return Fit(
             case=case,
             unknowns=tuple(unknowns),
@@ -403,8 +406,9 @@ def _too_far(comparison: Comparison, unknowns: int) -> list[str]:
     if chi <= usual:
         return []
     return [
-        f"The figures contradict the case or one another: χ² is {chi:.4g}, above {usual:.3g} for "
-        f"their uncertainties, so that the deviations of the inputs mean little."
+        f"χ² is {chi:.4g}, above {usual:.3g} for the stated uncertainties: the figures contradict "
+        "the case or one another, or further starting points lead to better values. The deviations "
+        "of the inputs mean little."
     ]
 
 
