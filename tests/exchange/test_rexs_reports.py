@@ -274,3 +274,18 @@ def test_the_speed_of_a_carrier_is_compared_as_the_set_turns(written, speed, rep
     unit = changed(planetary(), _4={"rotational_speed": (speed, "1 / min")})
     lines = import_rexs(written(xml(*unit))).assumed
     assert any("carrier_3: shaft 4" in line and "326.923" in line for line in lines) is reported
+
+
+def test_speeds_of_a_differential_are_free(written) -> None:
+    """With its ring loose a set has two speeds: that of the carrier does not follow."""
+    components, relations = changed(
+        planetary(),
+        _4={"rotational_speed": (400.0, "1 / min")},
+        _65={"is_engaged": (False, NONE)},
+    )
+    torque = {"torque_around_u_axis": (1591.549 * 61.0 / 17.0, "N m")}
+    components.append((39, "external_load", "ring", torque))
+    relations.append(("assembly", {"assembly": 62, "part": 39}))
+    found = import_rexs(written(xml(components, relations)))
+    assert "held" not in found.data["gears"]["gear_58"]
+    assert not any("rpm" in line for line in found.assumed)

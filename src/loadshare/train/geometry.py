@@ -72,11 +72,14 @@ class Geometry:
     pairs : mapping of mesh to Pair
     period : Period or None
         Of all meshes, where the positions go through it.
+    determined : bool
+        Whether all speeds follow from the input's; in a differential they do not.
     """
 
     gears: Mapping[str, Gear]
     pairs: Mapping[str, Pair]
     period: Period | None = None
+    determined: bool = True
 
 
 def geometry_of(case: spec.Case) -> Geometry:
@@ -103,7 +106,7 @@ def geometry_of(case: spec.Case) -> Geometry:
         raise CaseError(problems)
     period = _period(case, kinematics.gears) if common else None
     pairs = _pairs(case, kinematics.gears, period)
-    return Geometry(kinematics.gears, in_phase(case, pairs), period)
+    return Geometry(kinematics.gears, in_phase(case, pairs), period, kinematics.determined)
 
 
 def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:

@@ -159,11 +159,13 @@ def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: 
 
     try:
         # Senses of rotation do not depend on the signs.
-        gears = geometry_of(Case(loaded(flow.others))).gears
+        geometry = geometry_of(Case(loaded(flow.others)))
     except CaseError:
         left_out += [f"{name}: a torque that the case cannot have as it is" for name in flow.others]
         return data
-    assumed += _other_speeds(flow, speeds, gears)
+    gears = geometry.gears
+    if geometry.determined:
+        assumed += _other_speeds(flow, speeds, gears)
     power = flow.torque
     external: dict[str, float] = {}
     for name, torque in flow.others.items():
