@@ -7,19 +7,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from loadshare.report.figure import Figure
+from loadshare.report.figures import marks
 from loadshare.report.figures.marks import (
-    Drawing,
-    Row,
+    axis,
     channels,
-    chart,
     curves,
     heading,
+    hover,
     padded,
     rimmed,
     rules,
 )
 from loadshare.report.numbers import decimals
 from loadshare.report.palette import FAINT, INK, Look
+from loadshare.report.vega_lite import OWN_LEGENDS, Channel, Drawing, Row, channel, joined, layer
+from loadshare.report.vega_lite import panel as one_panel
 
 WIDTH, HEIGHT = 330, 250
 PAPER = "paper"
@@ -127,51 +129,39 @@ def picture(name: str, title: str, subtitle: str, panels: Sequence[Panel]) -> Fi
         Heading, and what the marks mean.
     panels : sequence of Panel
     """
-    import altair as alt
-
     columns = 3 if len(panels) == 3 else 2
-    drawn = alt.concat(*(_panel(p, 2 if columns == 2 else 3) for p in panels), columns=columns)
-    drawn = drawn.resolve_scale(color="independent", shape="independent")
-    return Figure(name, drawn.properties(title=heading(title, subtitle)))
+    drawn = [_panel(one, columns) for one in panels]
+    whole = joined("concat", drawn, columns=columns, resolve=OWN_LEGENDS)
+    return marks.figure(name, whole, title, subtitle)
 
 
 def _panel(panel: Panel, columns: int) -> Drawing:
-    import altair as alt
-
     rows = _rows(panel)
     x, y = _axes(panel, rows)
     colour = channels("name", panel.looks, panel.named)["color"]
     layers: list[Any] = []
     if panel.band:
         low, high = panel.band
-        area = chart([{"y": low, "y2": high}]).mark_rect(color=FAINT)
-        layers.append(area.encode(y=y, y2="y2:Q"))
+        ends = {"y": y, "y2": channel("y2")}
+        layers.append(layer("rect", [{"y": low, "y2": high}], ends, color=FAINT))
     for level in panel.levels:
-        line = chart([{"y": level.y, "name": level.name}]).encode(y=y)
-        rule = line.mark_rule(strokeDash=[1, 3], strokeWidth=1.6)
-        layers.append(rule.encode(color=colour))
-        words = line.encode(
-            x=alt.value(4 + level.along * WIDTH),
-            text=alt.value(f"{PAPER}, {level.name}"),
-        )
+        line = [{"y": level.y, "name": level.name, "text": f"{PAPER}, {level.name}"}]
+        across = {"y": y, "color": colour}
+        layers.append(layer("rule", line, across, strokeDash=[1, 3], strokeWidth=1.6))
+        place = {"x": {"value": 4 + level.along * WIDTH}, "y": y}
         side = {"baseline": "top", "dy": 4} if level.below else {"baseline": "bottom", "dy": -2}
-        layers += rimmed(words, INK, align="left", fontSize=10, **side)
-    hover = [
-        alt.Tooltip("name:N", title=panel.named),
-        alt.Tooltip("x:Q", title=panel.x_title),
-        alt.Tooltip("y:Q", title=panel.y_title, format=".6~g"),
-    ]
-    layers += curves(
-        rows, "name", panel.looks, panel.named, x=x, y=y, tooltip=hover, order="order:Q"
-    )
+        layers += rimmed(line, place, INK, align="left", fontSize=10, **side)
+    tooltip = hover(("name:N", panel.named), ("x:Q", panel.x_title), ("y:Q", panel.y_title, ".6~g"))
+    order = channel("order:Q")
+    layers += curves(rows, "name", panel.looks, panel.named, x=x, y=y, tooltip=tooltip, order=order)
     width = WIDTH if columns == 2 else 235
     if panel.rules:
-        marks = [{"x": at, "text": text} for at, text in panel.rules]
-        xs = [row["x"] for row in (*rows, *marks)]
-        layers += rules(marks, x, width / (max(xs) - min(xs)))
+        events = [{"x": at, "text": text} for at, text in panel.rules]
+        xs = [row["x"] for row in (*rows, *events)]
+        layers += rules(events, x, width / (max(xs) - min(xs)))
     layers += _printed(panel.printed, x, y)
     height = WIDTH if panel.true_to_shape else HEIGHT
-    return alt.layer(*layers).properties(width=width, height=height, title=heading(panel.title))
+    return one_panel(layers, width, height, title=heading(panel.title))
 
 
 def _rows(panel: Panel) -> list[Row]:
@@ -185,10 +175,8 @@ def _rows(panel: Panel) -> list[Row]:
     ]
 
 
-def _axes(panel: Panel, rows: Sequence[Row]) -> tuple[Any, Any]:
+def _axes(panel: Panel, rows: Sequence[Row]) -> tuple[Channel, Channel]:
     """Both axes, around the curves and what is printed."""
-    import altair as alt
-
     xs = [r["x"] for r in rows] + [p.x for p in panel.printed]
     ys = [r["y"] for r in rows] + [p.y for p in panel.printed]
     ys += [*(panel.band or ()), *(level.y for level in panel.levels)]
@@ -196,33 +184,26 @@ def _axes(panel: Panel, rows: Sequence[Row]) -> tuple[Any, Any]:
         middles = [(min(v) + max(v)) / 2 for v in (xs, ys)]
         side = max(max(v) - min(v) for v in (xs, ys))
         domains = [padded(m - side / 2, m + side / 2, side) for m in middles]
-        scales = [alt.Scale(domain=d, nice=False, zero=False) for d in domains]
+        scales: list[dict[str, Any]] = [{"domain": ends, "zero": False} for ends in domains]
     else:
         domain = padded(min(ys), max(ys), panel.least)
-        scales = [
-            alt.Scale(nice=False, zero=False, padding=6),
-            alt.Scale(domain=domain, nice=False),
-        ]
+        scales = [{"zero": False, "padding": 6}, {"domain": domain}]
     # A count beside given ticks would thin them out.
     ticks = {"values": list(panel.ticks)} if panel.ticks else {"tickCount": 6}
-    x_axis = alt.Axis(**ticks, grid=panel.true_to_shape)
-    x = alt.X("x:Q", title=panel.x_title, scale=scales[0], axis=x_axis)
-    y = alt.Y("y:Q", title=panel.y_title, scale=scales[1], axis=alt.Axis(tickCount=6))
-    return x, y
+    x = axis("x:Q", panel.x_title, scale=scales[0], **ticks, grid=panel.true_to_shape)
+    return x, axis("y:Q", panel.y_title, scale=scales[1], tickCount=6)
 
 
-def _printed(marks: Sequence[Printed], x: Any, y: Any) -> list[Drawing]:
+def _printed(printed: Sequence[Printed], x: Channel, y: Channel) -> list[Drawing]:
     """Oblique crosses in ink, each with its words."""
-    if not marks:
+    if not printed:
         return []
-    rows = [{"x": m.x, "y": m.y, "text": m.text, "side": m.side} for m in marks]
-    cross = chart(rows).mark_point(
-        shape=CROSS, size=90, filled=False, color=INK, strokeWidth=2, opacity=1
-    )
-    layers: list[Drawing] = [cross.encode(x=x, y=y)]
+    rows = [{"x": p.x, "y": p.y, "text": p.text, "side": p.side} for p in printed]
+    where = {"x": x, "y": y}
+    cross = {"shape": CROSS, "size": 90, "filled": False, "color": INK, "strokeWidth": 2}
+    layers = [layer("point", rows, where, opacity=1, **cross)]
     for side, style in SIDES.items():
         own = [row for row in rows if row["side"] == side]
         if own:
-            words = chart(own).encode(x=x, y=y, text="text:N")
-            layers += rimmed(words, INK, **style, fontSize=10)
+            layers += rimmed(own, where, INK, **style, fontSize=10)
     return layers

@@ -56,11 +56,9 @@ def test_the_preferred_side_is_taken_when_it_is_free():
 
 def leader(labels):
     """Ends of the line that leads to the one label that was placed; none for a label beside it."""
-    import altair as alt
-
-    for layer in labels.layers(alt.X("x:Q"), alt.Y("y:Q")):
-        if layer.to_dict()["mark"]["type"] == "line":
-            return [(row["x"], row["y"]) for row in layer.data.values]
+    for layer in labels.layers({}, {}):
+        if layer["mark"]["type"] == "line":
+            return [(row["x"], row["y"]) for row in layer["data"]["values"]]
     return []
 
 

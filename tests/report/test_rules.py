@@ -12,16 +12,13 @@ from loadshare.report.figures.marks import BREADTH, rules
 
 def sides(places: list[float]) -> list[str]:
     """Side of the words of each rule [px], "" for a rule without words."""
-    import altair as alt
-
     named = [{"x": place, "text": f"{k}"} for k, place in enumerate(places)]
     found = dict.fromkeys(range(len(places)), "")
-    for layer in rules(named, alt.X("x:Q"), 1.0):
-        spec = layer.to_dict()
-        if spec["mark"]["type"] == "text":
+    for layer in rules(named, {}, 1.0):
+        if layer["mark"]["type"] == "text":
             # By its baseline: words below it run on the left of a rule, turned as they are.
-            side = {"bottom": "left", "top": "right"}[spec["mark"]["baseline"]]
-            for row in layer.data.values:
+            side = {"bottom": "left", "top": "right"}[layer["mark"]["baseline"]]
+            for row in layer["data"]["values"]:
                 found[int(row["text"])] = side
     return list(found.values())
 

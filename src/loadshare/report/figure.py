@@ -1,11 +1,12 @@
-"""A picture: an Altair chart that saves itself without a network."""
+"""A picture: a Vega-Lite specification that saves itself without a network."""
 
 from __future__ import annotations
 
 import json
+import os
 import re
-from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,8 +15,16 @@ from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
 from loadshare.output import write_whole
 from loadshare.report import beside
-from loadshare.report.altair_alone import vega_lite_version
 from loadshare.report.palette import FAINT, INK, SOFT
+from loadshare.report.vega_lite import (
+    OWN_LEGENDS,
+    SCHEMA,
+    Drawing,
+    joined,
+    layered,
+    version,
+    with_datasets,
+)
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -76,16 +85,19 @@ CONFIG: dict[str, Any] = {
 """The look of all pictures."""
 
 
-@dataclass(frozen=True)
 class Figure:
     """A picture of a result, a case or a study.
+
+    Parameters
+    ----------
+    name : str
+        Short, for a file: "floats".
+    chart : altair chart or dict
+        Also a specification in Vega-Lite.
 
     Attributes
     ----------
     name : str
-        Short, for a file: "floats".
-    chart : altair chart
-        To be changed or combined like any other.
 
     Notes
     -----
@@ -94,8 +106,18 @@ class Figure:
     a `Figure`, with the same look and ``save``.
     """
 
-    name: str
-    chart: alt.TopLevelMixin
+    def __init__(self, name: str, chart: Drawing | alt.TopLevelMixin) -> None:
+        self.name = name
+        # Vega-Lite checks it when it draws.
+        drawn = chart if isinstance(chart, dict) else chart.to_dict(validate=False)
+        # Altair writes a configuration of its own, which would set other sizes.
+        self._view = {key: part for key, part in drawn.items() if key not in ("$schema", "config")}
+
+    @cached_property
+    def chart(self) -> alt.TopLevelMixin:
+        """Altair chart, to be changed or combined like any other."""
+        chart: alt.TopLevelMixin = _altair().Chart.from_dict(with_datasets(self._view))
+        return chart
 
     def __or__(self, other: Figure | alt.TopLevelMixin) -> Figure:
         """Put another picture, or any Altair chart, to the right."""
@@ -113,34 +135,23 @@ class Figure:
         LoadshareError
             If either has several panels, which cannot be laid over one another.
         """
-        import altair as alt
-
-        charts = [self.chart, _chart(other)]
-        if not all(isinstance(c, alt.Chart | alt.LayerChart) for c in charts):
+        views = [self._view, _figure(other)._view]
+        if not all("mark" in view or "layer" in view for view in views):
             raise LoadshareError(
                 f"{self.name}: a picture of several panels cannot be laid over another. Put them "
                 "side by side with |, one above the other with &, or draw `to_dataframe()`"
             )
-        return Figure(self.name, alt.layer(*charts))
+        return Figure(self.name, layered(views))
 
     def _beside(self, other: Figure | alt.TopLevelMixin, how: str) -> Figure:
-        import altair as alt
-
-        joined = getattr(alt, how)(self.chart, _chart(other))
-        # Each keeps the colours and the legend of its own gears.
-        drawn = joined.resolve_scale(color="independent", shape="independent")
         name = f"{self.name}_{other.name}" if isinstance(other, Figure) else self.name
-        return Figure(name, drawn)
+        # Each keeps the colours and the legend of its own gears.
+        return Figure(name, joined(how, [self._view, _figure(other)._view], resolve=OWN_LEGENDS))
 
     @cached_property
     def spec(self) -> dict[str, Any]:
         """Vega-Lite specification, with the look of all pictures."""
-        # Vega-Lite checks it once more when it draws.
-        spec: dict[str, Any] = self.chart.to_dict(validate=False)
-        # Altair writes a configuration of its own, which would set other sizes.
-        spec["config"] = CONFIG
-        spec["datasets"] = {name: list(rows) for name, rows in spec.get("datasets", {}).items()}
-        return spec
+        return {"$schema": SCHEMA, "config": CONFIG, **with_datasets(self._view)}
 
     def save(self, path: str | Path, scale: float = 2.0) -> Path:
         """Write the picture; the ending selects the format.
@@ -231,12 +242,25 @@ class Figure:
 
     @cached_property
     def _as_svg(self) -> Future[str]:
-        return beside.begin("vegalite_to_svg", self.spec, vl_version=vega_lite_version())
+        return beside.begin("vegalite_to_svg", self.spec, vl_version=version())
 
     def _repr_mimebundle_(self, *_: object, **__: object) -> dict[str, Any]:
         """Show the picture in a notebook, which draws SVG without any extension."""
         return {"image/svg+xml": self.to_svg()}
 
 
-def _chart(of: Figure | alt.TopLevelMixin) -> Any:
-    return of.chart if isinstance(of, Figure) else of
+def _figure(of: Figure | alt.TopLevelMixin) -> Figure:
+    return of if isinstance(of, Figure) else Figure("", of)
+
+
+def _altair() -> Any:
+    """Return Altair, which asks for the user's home even where there is none."""
+    try:
+        Path.home()
+    except RuntimeError:
+        os.environ["HOME"] = os.sep
+        try:
+            return import_module("altair")
+        finally:
+            del os.environ["HOME"]
+    return import_module("altair")

@@ -10,16 +10,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-import altair as alt
-
 from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
-from loadshare.report.figures.marks import Drawing, Row, axis, chart, heading
+from loadshare.report.figures.marks import axis, heading
 from loadshare.report.numbers import ALIKE, decimals, fixed
 from loadshare.report.palette import SOFT, Look, palette_of
 from loadshare.report.units import Unit, engineering
+from loadshare.report.vega_lite import Channel, Drawing, Row, channel, layer, panel
 from loadshare.results import Result
 
 Mean = Literal["stage", "group"]
@@ -168,10 +167,10 @@ def _figure(
         looks = {mesh: palette.mesh(mesh) for mesh in meshes}
         if _alike(own, reading.field):
             first = [r for r in own if r["position"] == own[0]["position"]]
-            panel = _bars(first, looks, reading, hover)
+            drawn = _bars(first, looks, reading, hover)
         else:
-            panel = _lines(own, looks, reading, hover)
-        panels.append(panel.properties(title=heading(stage)))
+            drawn = _lines(own, looks, reading, hover)
+        panels.append(drawn | {"title": heading(stage)})
     subtitle = [
         result.stamp.title or result.stamp.case,
         _same_everywhere(result, rows, reading.field),
@@ -205,12 +204,12 @@ def _lines(
     if reading.reference is not None:
         values.append(reading.reference)
     field, domain = f"{reading.field}:Q", marks.padded(min(values), max(values), reading.least)
-    y = axis(alt.Y, field, reading.title, domain, tickCount=6)
+    y = axis(field, reading.title, domain, tickCount=6)
     spaced = {"zero": False, "padding": 12}
     there = sorted({row["position"] for row in rows})
     # Beside one another in panels, few ticks come at halves, which would be written as wholes.
     ticks = {"values": there} if len(there) <= TICKS else {"tickMinStep": 1}
-    x = axis(alt.X, "position:Q", "position", scale=spaced, format="d", grid=False, **ticks)
+    x = axis("position:Q", "position", scale=spaced, format="d", grid=False, **ticks)
     missing = set(range(there[0], there[-1])) - {*there}
     # Where there is no answer a line is broken.
     none = [{"mesh": m, "position": at, reading.field: None} for m in looks for at in missing]
@@ -219,7 +218,7 @@ def _lines(
     if reading.reference is not None:
         layers.append(_reference_rule(reading, y=y))
     layers += marks.curves(rows, "mesh", looks, "mesh", x=x, y=y, tooltip=hover, width=1.6, size=46)
-    return alt.layer(*layers).properties(width=WIDTH, height=190)
+    return panel(layers, WIDTH, 190)
 
 
 def _bars(
@@ -235,28 +234,25 @@ def _bars(
     shown = [
         {**row, "start": start, "text": fixed(row[reading.field], reading.places)} for row in rows
     ]
-    x = axis(alt.X, f"{reading.field}:Q", reading.title, domain, tickCount=5)
-    y = alt.Y("mesh:N", title=None, sort=names, axis=alt.Axis(domain=False, ticks=False))
-    colours = alt.Color(
-        "mesh:N",
-        scale=alt.Scale(domain=names, range=[looks[name].colour for name in names]),
-        legend=None,
-    )
-    bars = chart(shown).mark_bar(height=13)
-    layers = [bars.encode(y=y, x=x, x2=alt.X2("start:Q"), color=colours, tooltip=hover)]
+    x = axis(f"{reading.field}:Q", reading.title, domain, tickCount=5)
+    y = channel("mesh:N", title=None, sort=names, axis={"domain": False, "ticks": False})
+    scale = {"domain": names, "range": [looks[name].colour for name in names]}
+    where = {"x": x, "y": y, "tooltip": hover}
+    ends = {"x2": channel("start"), "color": channel("mesh:N", scale=scale, legend=None)}
+    layers = [layer("bar", shown, where | ends, height=13)]
     # What is printed as the reference shall not appear on its other side by round-off.
     below = [round(row[reading.field], reading.places) < start for row in shown]
     for is_below, align, dx in ((True, "right", -5), (False, "left", 5)):
         part = [row for row, its in zip(shown, below, strict=True) if its is is_below]
         if part:
-            text = chart(part).mark_text(align=align, dx=dx, fontSize=10)
-            layers.append(text.encode(x=x, y=y, text=alt.Text("text:N"), tooltip=hover))
+            words = where | {"text": channel("text:N")}
+            layers.append(layer("text", part, words, align=align, dx=dx, fontSize=10))
     if reading.reference is not None:
         layers.append(_reference_rule(reading, x=x))
-    return alt.layer(*layers).properties(width=WIDTH, height=ROW * len(rows))
+    return panel(layers, WIDTH, ROW * len(rows))
 
 
-def _reference_rule(reading: Reading, **channel: Any) -> Drawing:
+def _reference_rule(reading: Reading, **where: Channel) -> Drawing:
     """Rule at the reference, in the channel of the values: an axis of its own would begin at 0."""
-    rule = chart([{reading.field: reading.reference}]).mark_rule(color=SOFT, strokeWidth=1)
-    return rule.encode(**channel)
+    rows = [{reading.field: reading.reference}]
+    return layer("rule", rows, where, color=SOFT, strokeWidth=1)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import altair as alt
-
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
-from loadshare.report.figures.marks import Row, chart, hover, padded
+from loadshare.report.figures.marks import axis, hover, padded
 from loadshare.report.palette import COLOURS, FAINT, SOFT
+from loadshare.report.vega_lite import Row, channel, layer, panel
 from loadshare.study.compare import Comparison
 
 WIDTH = 340
@@ -40,29 +39,27 @@ def comparison(found: Comparison) -> Figure:
     names = [row["figure"] for row in rows]
     reach = [EXPECTED, -EXPECTED, *(row["deviations"] for row in rows)]
     title = "computed less measured, in standard deviations"
-    scale = alt.Scale(domain=padded(min(reach), max(reach), 1.0), nice=False)
-    x = alt.X("deviations:Q", title=title, scale=scale)
-    looks = alt.Axis(domain=False, ticks=False, labelLimit=LABEL)
-    y = alt.Y("figure:N", sort=names, title=None, axis=looks)
-    band = alt.Chart(alt.InlineData(values=[{"low": -EXPECTED, "high": EXPECTED}]))
-    drawing = alt.layer(
-        band.mark_rect(color=FAINT).encode(x=alt.X("low:Q", title=title, scale=scale), x2="high:Q"),
-        alt.Chart(alt.InlineData(values=[{"at": 0.0}])).mark_rule(color=SOFT).encode(x="at:Q"),
-        chart(rows)
-        .mark_point(filled=True, opacity=1, size=60, color=COLOURS[0])
-        .encode(
-            x=x,
-            y=y,
-            tooltip=hover(
-                "figure:N",
-                ("measured:Q", "measured", ".6g"),
-                ("uncertainty:Q", "±", ".3g"),
-                ("computed:Q", "computed", ".6g"),
-                "unit:N",
-                ("deviations:Q", "in standard deviations", "+.2f"),
-            ),
+    domain = padded(min(reach), max(reach), 1.0)
+    looks = {"domain": False, "ticks": False, "labelLimit": LABEL}
+    where = {
+        "x": axis("deviations:Q", title, domain),
+        "y": channel("figure:N", sort=names, title=None, axis=looks),
+        "tooltip": hover(
+            "figure:N",
+            ("measured:Q", "measured", ".6g"),
+            ("uncertainty:Q", "±", ".3g"),
+            ("computed:Q", "computed", ".6g"),
+            "unit:N",
+            ("deviations:Q", "in standard deviations", "+.2f"),
         ),
-    ).properties(width=WIDTH, height=ROW * len(rows))
+    }
+    band = {"x": axis("low:Q", title, domain), "x2": channel("high")}
+    layers = [
+        layer("rect", [{"low": -EXPECTED, "high": EXPECTED}], band, color=FAINT),
+        layer("rule", [{"at": 0.0}], {"x": channel("at:Q")}, color=SOFT),
+        layer("point", rows, where, filled=True, opacity=1, size=60, color=COLOURS[0]),
+    ]
+    drawing = panel(layers, WIDTH, ROW * len(rows))
     subtitle = [
         f"χ² = {found.chi_square:.4g} over {len(rows)} figures",
         f"grey: ±{EXPECTED:g} standard deviations of the measurement",

@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import altair as alt
-
 from loadshare.certify import Touch
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
-from loadshare.report.figures.marks import Drawing, Panel, Row, hover, path_rows
+from loadshare.report.figures.marks import Panel, hover, path_rows
 from loadshare.report.figures.paths import Point, arrow, circle
 from loadshare.report.figures.region import Journey, Region
 from loadshare.report.flanks import reaction_size
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
 from loadshare.report.units import MICROMETRE, engineering, read_best
+from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.report.words import boundary_name, direction_name, places_text
 from loadshare.results import Result
 from loadshare.train import Train
@@ -67,7 +66,7 @@ def floats(result: Result, train: Train) -> Figure:
         "grey: where the centre may be; points: where it is, with the numbers of the positions; "
         "arrow: reaction of the ring on the gear where it is largest",
     ]
-    grid = alt.concat(*panels, columns=3 if len(panels) != 4 else 2)
+    grid = joined("concat", panels, columns=3 if len(panels) != 4 else 2)
     return marks.figure("floats", grid, "Where the floats rest", subtitle)
 
 
@@ -102,8 +101,8 @@ class _Panel(Panel):
             *self._path(),
         ]
         subtitle = [*self.journey.subtitle, *[" "] * (lines - len(self.journey.subtitle))]
-        title = alt.TitleParams(text=f"Gear {self.journey.gear}", subtitle=subtitle)
-        return alt.layer(*layers).properties(width=SIDE, height=SIDE, title=title)
+        title = {"text": f"Gear {self.journey.gear}", "subtitle": subtitle}
+        return panel(layers, SIDE, SIDE, title=title)
 
     def _here(self, points: list[Point]) -> list[Point]:
         return [(self.unit.of(x), self.unit.of(y)) for x, y in points]
@@ -146,7 +145,7 @@ class _Panel(Panel):
             for row in path_rows(self._here(circle((0.0, 0.0), radius)), circle=name)
         ]
         style = {"clip": True, "color": SOFT, "strokeWidth": 1.2, "strokeDash": [5, 3]}
-        return self.line(rows, "circle", ["circle:N"], **style)
+        return self.line(rows, "circle", hover("circle:N"), **style)
 
     def _origin(self) -> list[Any]:
         """Cross at the centre's place without displacement."""

@@ -10,12 +10,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
-import altair as alt
 import numpy as np
 
-from loadshare.report.figures.marks import Drawing, Row, chart, path_rows, rimmed
+from loadshare.report.figures.marks import path_rows, rimmed
 from loadshare.report.figures.paths import Point
 from loadshare.report.palette import SOFT
+from loadshare.report.vega_lite import Drawing, Row, channel, layer
 
 SIZE = 10
 """Of the letters [px]."""
@@ -120,15 +120,12 @@ class Labels:
         leaders, self._leaders = self._leaders, []
         if not rows:
             return []
-        words = chart(rows).encode(x=x, y=y, text=alt.Text("text:N"))
-        texts = rimmed(words, colour, fontSize=SIZE, baseline="middle", **style)
+        where = {"x": x, "y": y}
+        texts = rimmed(rows, where, colour, fontSize=SIZE, baseline="middle", **style)
         if not leaders:
             return texts
-        line = chart(leaders).mark_line(color=colour, strokeWidth=0.6)
-        return [
-            line.encode(x=x, y=y, order=alt.Order("order:Q"), detail=alt.Detail("label:N")),
-            *texts,
-        ]
+        where |= {"order": channel("order:Q"), "detail": channel("label:N")}
+        return [layer("line", leaders, where, color=colour, strokeWidth=0.6), *texts]
 
     def _around(
         self, anchor: Point, letters: int, gap: float

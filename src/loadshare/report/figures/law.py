@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-import altair as alt
-
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.branches import stages_of
-from loadshare.report.figures.marks import Drawing, Row, axis, channels, chart, heading, hover
+from loadshare.report.figures.marks import axis, channels, heading, hover
 from loadshare.report.flanks import Flank, carrying
 from loadshare.report.palette import SOFT, palette_of
 from loadshare.report.units import Unit, engineering
+from loadshare.report.vega_lite import Drawing, Row, channel, layer, panel
 from loadshare.results import Result
 from loadshare.train import Train
 from loadshare.train.mesh import Mesh
@@ -50,8 +49,8 @@ def law(result: Result, train: Train) -> Figure:
         curves = [_scaled(r, torque_unit, angle_unit) for r in _curves(train, meshes, reach)]
         shown = [_scaled(r, torque_unit, angle_unit) for r in points]
         looks = {mesh: palette.mesh(mesh) for mesh in meshes}
-        panel = _panel(curves, shown, channels("mesh", looks, "mesh"), torque_unit, angle_unit)
-        panels.append(panel.properties(title=heading(title)))
+        drawn = _panel(curves, shown, channels("mesh", looks, "mesh"), torque_unit, angle_unit)
+        panels.append(drawn | {"title": heading(title)})
     subtitle = [
         result.stamp.title or result.stamp.case,
         "grey: the law of a mesh at each meshing position; points: where it works",
@@ -122,9 +121,8 @@ def _panel(
     # The axes end where the laws do: a figure at the very end would push the panel's title up.
     reach, top = (max(row[name] for row in curves) for name in ("torque", "angle"))
     title = torque.title("torque on the driver")
-    x = axis(alt.X, "torque:Q", title, [0.0, reach], tickCount=6)
-    y = axis(alt.Y, "angle:Q", angle.title("deformation at the driver"), [0.0, top])
-    lines = chart(curves).mark_line(color=SOFT, strokeWidth=1, opacity=0.7)
+    x = axis("torque:Q", title, [0.0, reach], tickCount=6)
+    y = axis("angle:Q", angle.title("deformation at the driver"), [0.0, top])
     tooltip = hover(
         "mesh:N",
         "position:Q",
@@ -133,8 +131,10 @@ def _panel(
         ("torque:Q", torque.title("torque on the flank"), ".2f"),
         ("angle:Q", angle.title("deformation"), ".3f"),
     )
-    working = chart(points).mark_point(filled=True, size=44, opacity=0.9)
-    return alt.layer(
-        lines.encode(x=x, y=y, detail=alt.Detail("curve:N")),
-        working.encode(x=x, y=y, **by_mesh, tooltip=tooltip),
-    ).properties(width=300, height=200)
+    along = {"x": x, "y": y, "detail": channel("curve:N")}
+    working = {"x": x, "y": y, **by_mesh, "tooltip": tooltip}
+    layers = [
+        layer("line", curves, along, color=SOFT, strokeWidth=1, opacity=0.7),
+        layer("point", points, working, filled=True, size=44, opacity=0.9),
+    ]
+    return panel(layers, 300, 200)

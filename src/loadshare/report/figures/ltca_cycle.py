@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-import altair as alt
 import numpy as np
 
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
-from loadshare.report.figures.marks import Drawing, Row, axis, curves, hover, padded
+from loadshare.report.figures.marks import axis, curves, hover, padded
 from loadshare.report.numbers import significant
 from loadshare.report.palette import look
 from loadshare.report.units import MICRORADIAN, Unit
+from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.analysis.tables import STIFFNESS_LOADS
 
@@ -40,14 +40,14 @@ def stiffness(found: Ltca, title: str) -> Figure:
     values = {_name(part): found.secant(part) for part in STIFFNESS_LOADS}
     rated = values[_name(1.0)]
     unit = stiffness_unit(rated)
-    panel = _panel(found.phase, values, unit, "mesh stiffness at the driver")
+    drawn = _panel(found.phase, values, unit, "mesh stiffness at the driver")
     subtitle = [
         title,
         f"at T = {significant(found.rated)} N·m from {significant(unit.of(rated.min()))} to "
         f"{significant(unit.of(rated.max()))} {unit.name}, max/min "
         f"{rated.max() / rated.min():.3f}",
     ]
-    return marks.figure("stiffness", panel, "Mesh stiffness", subtitle)
+    return marks.figure("stiffness", drawn, "Mesh stiffness", subtitle)
 
 
 def stiffness_unit(values: np.ndarray) -> Unit:
@@ -74,10 +74,11 @@ def transmission_error(found: Ltca, title: str) -> Figure:
     values = {_name(part): found.angle[:, np.argmin(np.abs(parts - part))] for part in ERROR_LOADS}
     values[UNLOADED] = found.unloaded_error
     varying = {name: angles - angles.mean() for name, angles in values.items()}
-    both = alt.hconcat(
+    panels = [
         _panel(found.phase, values, MICRORADIAN, "lead of the driver"),
         _panel(found.phase, varying, MICRORADIAN, "the same less its mean"),
-    )
+    ]
+    both = joined("hconcat", panels)
     swing = np.ptp(values[_name(1.0)])
     subtitle = [
         title,
@@ -95,11 +96,11 @@ def _panel(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what
     # What stays within round-off shall not fill the panel.
     least = max(1e-3 * max(map(abs, every)), 1e-6)
     title = unit.title(what)
-    y = axis(alt.Y, "y:Q", title, padded(min(every), max(every), least))
-    x = axis(alt.X, "x:Q", "phase of the mesh cycle", [0, 1])
+    y = axis("y:Q", title, padded(min(every), max(every), least))
+    x = axis("x:Q", "phase of the mesh cycle", [0, 1])
     tooltip = hover(("name:N", "torque"), ("x:Q", "phase", ".3~f"), ("y:Q", title, ".5~g"))
     drawn = curves(rows, "name", looks, "torque", x=x, y=y, tooltip=tooltip)
-    return alt.layer(*drawn).properties(width=WIDTH, height=HEIGHT)
+    return panel(drawn, WIDTH, HEIGHT)
 
 
 def _rows(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit) -> Iterable[Row]:

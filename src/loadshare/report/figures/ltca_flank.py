@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
-import altair as alt
 import numpy as np
 
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
-from loadshare.report.figures.marks import Row, axis, chart, heading, hover
+from loadshare.report.figures.marks import axis, heading, hover
 from loadshare.report.figures.paths import Point
 from loadshare.report.numbers import significant
 from loadshare.report.palette import FAINT, SOFT
 from loadshare.report.units import MILLIMETRE
+from loadshare.report.vega_lite import Channel, Row, channel, joined, layer, panel
 from loadshare.tooth.analysis.result import LineLoad, Ltca
 from loadshare.tooth.geometry.body import ToothBody
 
 WIDTH, HEIGHT = 460, 230
-SHADES: Literal["tealblues"] = "tealblues"
+SHADES = "tealblues"
 """Light to dark in one direction, so that it reads in grey."""
 MOST = 0.99
 """Part of the loaded length by which the shades are chosen."""
@@ -77,23 +77,24 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     rows = [row for number, line in lines for row in _ribbon(planes[0], number, line)]
     top = _top([line.per_length for _, line in lines], lines, 1e-3)
     where = _axes(planes[0])
-    colour = alt.Color("value:Q", title=["load per length", "[N/mm]"], **_shades(top))
-    bare = chart([row for row in rows if row["value"] == 0.0])
-    loaded = chart([row for row in rows if row["value"] > 0.0])
+    colour = _shades(["load per length", "[N/mm]"], top)
+    bare = [row for row in rows if row["value"] == 0.0]
+    loaded = [row for row in rows if row["value"] > 0.0]
     tooltip = hover("position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "load [N/mm]", ".4~g"))
-    ends = {**where, "x2": "x2:Q", "y2": "y2:Q"}
+    ends = {**where, "x2": channel("x2"), "y2": channel("y2")}
+    shown = ends | {"color": colour, "tooltip": tooltip}
     # Thin enough that the lines of neighbouring positions stand apart.
     thick = float(np.clip(0.6 * HEIGHT / max(len(lines), 1), 2.0, 6.0))
-    panel = alt.layer(
-        bare.mark_rule(strokeWidth=1, color=SOFT, opacity=0.5).encode(**ends),
-        loaded.mark_rule(strokeWidth=thick).encode(**ends, color=colour, tooltip=tooltip),
-    ).properties(width=WIDTH, height=HEIGHT)
+    layers = [
+        layer("rule", bare, ends, strokeWidth=1, color=SOFT, opacity=0.5),
+        layer("rule", loaded, shown, strokeWidth=thick),
+    ]
     subtitle = [
         title,
         f"contact lines of {len(found.positions)} positions on the driver's flank at "
         f"{significant(found.rated)} N·m; {BELOW} {significant(top, 3)} N/mm",
     ]
-    return marks.figure("load_map", panel, "Load on the flank", subtitle)
+    return marks.figure("load_map", panel(layers, WIDTH, HEIGHT), "Load on the flank", subtitle)
 
 
 def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
@@ -114,23 +115,22 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     panels = []
     for which, (name, plane) in enumerate(zip(("driver", "driven gear"), planes, strict=True)):
         rows = [row for number, line in lines for row in _band(plane, number, line, which)]
-        areas = chart(rows).mark_line(filled=True, interpolate="linear-closed", clip=True)
-        shown = areas.encode(
+        shown = {
             **_axes(plane),
-            order=alt.Order("order:Q"),
-            detail=alt.Detail("cell:N"),
-            color=alt.Color("value:Q", title=["pressure", "[MPa]"], **_shades(top)),
-            tooltip=tooltip,
-        )
-        panels.append(
-            shown.properties(width=WIDTH, height=HEIGHT, title=heading(f"flank of the {name}"))
-        )
+            "order": channel("order:Q"),
+            "detail": channel("cell:N"),
+            "color": _shades(["pressure", "[MPa]"], top),
+            "tooltip": tooltip,
+        }
+        areas = layer("line", rows, shown, filled=True, interpolate="linear-closed", clip=True)
+        called = heading(f"flank of the {name}")
+        panels.append(areas | {"width": WIDTH, "height": HEIGHT, "title": called})
     subtitle = [
         title,
         f"areas of contact at {len(found.positions)} positions and "
         f"{significant(found.rated)} N·m; {BELOW} {significant(top, 3)} MPa",
     ]
-    return marks.figure("contact_pattern", alt.vconcat(*panels), "Contact pattern", subtitle)
+    return marks.figure("contact_pattern", joined("vconcat", panels), "Contact pattern", subtitle)
 
 
 def _lines(found: Ltca) -> list[tuple[int, LineLoad]]:
@@ -144,8 +144,8 @@ def _axes(plane: Plane) -> dict[str, Any]:
     sizes = [MILLIMETRE.of(size) for size in plane.size]
     titles = ("along the tooth [mm]", "from the fillet to the tip [mm]")
     return {
-        name: axis(channel, f"{name}:Q", title, [0.0, size], grid=True, gridColor=FAINT)
-        for name, channel, title, size in zip("xy", (alt.X, alt.Y), titles, sizes, strict=True)
+        name: axis(f"{name}:Q", title, [0.0, size], grid=True, gridColor=FAINT)
+        for name, title, size in zip("xy", titles, sizes, strict=True)
     }
 
 
@@ -163,12 +163,11 @@ def _top(
     return factor * float(every[order][np.searchsorted(below, MOST * below[-1])])
 
 
-def _shades(top: float) -> dict[str, Any]:
-    """Scale and legend of a shade from 0 to `top`; what is above has the darkest."""
-    return {
-        "scale": alt.Scale(scheme=SHADES, domain=[0.0, top], nice=False, clamp=True),
-        "legend": alt.Legend(type="gradient", gradientLength=160),
-    }
+def _shades(title: list[str], top: float) -> Channel:
+    """Channel of a shade from 0 to `top`; what is above has the darkest."""
+    scale = {"scheme": SHADES, "domain": [0.0, top], "nice": False, "clamp": True}
+    legend = {"type": "gradient", "gradientLength": 160}
+    return channel("value:Q", title=title, scale=scale, legend=legend)
 
 
 def _edges(places: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What all pictures are drawn with: rows of plain data, looks as scales, arrows as paths."""
+"""What all pictures are drawn with: looks as scales, lines, words, axes, rules."""
 
 from __future__ import annotations
 
@@ -7,44 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
-import altair as alt
-from altair.utils.schemapi import debug_mode
-
 from loadshare.report.figure import Figure
 from loadshare.report.figures.paths import Point
 from loadshare.report.palette import DASHES, INK, SHAPES, SOFT, WARNING, Look
+from loadshare.report.vega_lite import OWN_LEGENDS, Channel, Drawing, Row, channel, joined, layer
 
-# Altair's types differ from mark to mark and from call to call; its schema checks a chart when it
-# is turned into a specification.
-Drawing = Any
-Row = dict[str, Any]
 Subtitle = str | Sequence[str]
-
-
-class _Encoding(alt.FacetedEncoding):
-    """Channels that charts share: Altair copies what it joins over and over, layer by layer."""
-
-    def __deepcopy__(self, _: object) -> _Encoding:
-        return self
-
-
-class _Chart(alt.Chart):
-    """A chart of which nothing is copied but the chart itself."""
-
-    def __deepcopy__(self, _: object) -> _Chart:
-        return self.copy(deep=False)
-
-    def encode(self, *channels: Any, **named: Any) -> Any:
-        drawn = super().encode(*channels, **named)
-        drawn.encoding = _Encoding(**drawn.encoding._kwds)
-        return drawn
-
-
-def chart(rows: Sequence[Mapping[str, Any]]) -> Drawing:
-    """Return a chart on plain rows."""
-    # What is checked with the specification need not be checked row by row before.
-    with debug_mode(False):
-        return _Chart(alt.InlineData(values=tuple(rows)))
 
 
 def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any]:
@@ -63,39 +31,16 @@ def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any
     dict
         Channels by name; a mark takes those that it knows.
     """
-    names = list(looks)
-    legend = alt.Legend(title=title)
-
-    def scale(values: list[Any]) -> alt.Scale:
-        return alt.Scale(domain=names, range=values)
-
     found = distinct(looks)
+
+    def by_name(values: list[Any]) -> Channel:
+        scale = {"domain": list(looks), "range": values}
+        return channel(f"{field}:N", scale=scale, legend={"title": title})
+
     return {
-        "color": alt.Color(f"{field}:N", scale=scale([v.colour for v in found]), legend=legend),
-        "shape": alt.Shape(f"{field}:N", scale=scale([v.shape for v in found]), legend=legend),
+        "color": by_name([v.colour for v in found]),
+        "shape": by_name([v.shape for v in found]),
     }
-
-
-def dashed_lines(
-    rows: Sequence[Row], field: str, looks: Mapping[str, Look], width: float
-) -> list[Drawing]:
-    """Lines told apart by their dashes, a layer each: a scale of dashes would spoil the legend.
-
-    Parameters
-    ----------
-    rows : sequence of dict
-    field : str
-        Field that holds the names.
-    looks : mapping of name to Look
-    width : float
-        Of the lines [px].
-    """
-    layers = []
-    for name, use in zip(looks, distinct(looks), strict=True):
-        own = [row for row in rows if row[field] == name]
-        if own:
-            layers.append(chart(own).mark_line(strokeWidth=width, strokeDash=list(use.dash)))
-    return layers
 
 
 def distinct(looks: Mapping[str, Look]) -> list[Look]:
@@ -121,7 +66,7 @@ def curves(
     x: Any,
     y: Any,
     tooltip: Any,
-    order: str | None = None,
+    order: Channel | None = None,
     width: float = 1.8,
     size: float = 26.0,
 ) -> list[Drawing]:
@@ -138,8 +83,8 @@ def curves(
     x, y : channel
     tooltip : list of channels
         Shown for each point.
-    order : str, optional
-        Channel along which the points are joined; by default from left to right.
+    order : channel, optional
+        Along which the points are joined; by default from left to right.
     width : float
         Of the lines [px].
     size : float
@@ -147,25 +92,35 @@ def curves(
     """
     by_name = channels(field, looks, title)
     where = {"x": x, "y": y, "color": by_name["color"]}
-    along = {"order": order} if order else {}
-    lines = [line.encode(**where, **along) for line in dashed_lines(rows, field, looks, width)]
-    points = chart(rows).mark_point(filled=True, size=size, opacity=1)
-    return [*lines, points.encode(**where, shape=by_name["shape"], tooltip=tooltip)]
+    shown = {**where, "shape": by_name["shape"], "tooltip": tooltip}
+    along = where | ({"order": order} if order else {})
+    # A layer for each dash: a scale of dashes would spoil the legend.
+    lines = [
+        layer("line", own, along, strokeWidth=width, strokeDash=list(use.dash))
+        for name, use in zip(looks, distinct(looks), strict=True)
+        if (own := [row for row in rows if row[field] == name])
+    ]
+    return [*lines, layer("point", rows, shown, filled=True, size=size, opacity=1)]
 
 
-def rimmed(base: Drawing, colour: str, **style: Any) -> list[Drawing]:
+def rimmed(
+    rows: Sequence[Row], channels: Mapping[str, Any], colour: str, **style: Any
+) -> list[Drawing]:
     """Words with a white rim, which keeps them readable where they must cross a line.
 
     Parameters
     ----------
-    base : Chart
-        With the channel text.
+    rows : sequence of dict
+        Each with ``text``.
+    channels : mapping
+        Where the words are.
     colour : str
     **style
         Of the text mark.
     """
-    rim = base.mark_text(color="white", stroke="white", strokeWidth=3, opacity=0.8, **style)
-    return [rim, base.mark_text(color=colour, **style)]
+    words = {**channels, "text": channel("text:N")}
+    rim = {"color": "white", "stroke": "white", "strokeWidth": 3, "opacity": 0.8}
+    return [layer("text", rows, words, **look, **style) for look in (rim, {"color": colour})]
 
 
 def path_rows(points: Iterable[Point], **fields: Any) -> list[Row]:
@@ -182,42 +137,38 @@ def padded(low: float, high: float, least: float, share: float = 0.08) -> list[f
     return [middle - half * (1 + 2 * share), middle + half * (1 + 2 * share)]
 
 
-def heading(title: str, subtitle: Subtitle = "") -> alt.TitleParams:
+def heading(title: str, subtitle: Subtitle = "") -> dict[str, Any]:
     """Return the title of a picture or panel."""
-    lines = [subtitle] if isinstance(subtitle, str) else list(subtitle)
-    lines = [line for line in lines if line]
-    return alt.TitleParams(text=title, subtitle=lines) if lines else alt.TitleParams(text=title)
+    lines = [line for line in ([subtitle] if isinstance(subtitle, str) else subtitle) if line]
+    return {"text": title, "subtitle": lines} if lines else {"text": title}
 
 
 def figure(name: str, drawing: Drawing, title: str, subtitle: Subtitle = "") -> Figure:
     """Return a drawing as a figure under a title."""
-    return Figure(name, drawing.properties(title=heading(title, subtitle)))
+    return Figure(name, drawing | {"title": heading(title, subtitle)})
 
 
-def hover(*fields: str | tuple[str, ...]) -> list[alt.Tooltip]:
+def hover(*fields: str | tuple[str, ...]) -> list[Channel]:
     """Return what the tooltip shows: fields by their own names, or (field, title, format)."""
     named = [(f, f.partition(":")[0]) if isinstance(f, str) else f for f in fields]
     return [
-        alt.Tooltip(field, title=title, format=form[0] if form else alt.Undefined)
+        channel(field, title=title, **({"format": form[0]} if form else {}))
         for field, title, *form in named
     ]
 
 
 def axis(
-    channel: type[Any],
     field: str,
     title: str | None,
     domain: Sequence[float] | None = None,
     *,
     scale: Mapping[str, Any] | None = None,
     **look: Any,
-) -> Any:
+) -> Channel:
     """Return the channel of an axis that ends where its values do, not at round figures.
 
     Parameters
     ----------
-    channel : type
-        Such as ``alt.X``.
     field : str
     title : str or None
     domain : sequence of float, optional
@@ -227,17 +178,14 @@ def axis(
     **look
         Of the axis.
     """
-    ends = alt.Undefined if domain is None else list(domain)
-    drawn = {"axis": alt.Axis(**look)} if look else {}
-    return channel(
-        field, title=title, scale=alt.Scale(nice=False, domain=ends, **scale or {}), **drawn
-    )
+    ends = {} if domain is None else {"domain": list(domain)}
+    drawn = {"axis": look} if look else {}
+    return channel(field, title=title, scale={"nice": False, **ends, **(scale or {})}, **drawn)
 
 
-def stages(panels: Sequence[Drawing]) -> Drawing:
+def stages(panels: Iterable[Drawing]) -> Drawing:
     """Return the panels of stages side by side, each with its own legend."""
-    grid = alt.concat(*panels, columns=2)
-    return grid.resolve_scale(color="independent", shape="independent")
+    return joined("concat", panels, columns=2, resolve=OWN_LEGENDS)
 
 
 class Panel:
@@ -261,10 +209,8 @@ class Panel:
     def __init__(self, low: Point, high: Point, titles: Iterable[str], **look: Any) -> None:
         self.low, self.high = low, high
         self.x, self.y = (
-            axis(channel, f"{name}:Q", title, (a, b), scale={"zero": False}, **look)
-            for channel, name, title, a, b in zip(
-                (alt.X, alt.Y), "xy", titles, low, high, strict=True
-            )
+            axis(f"{name}:Q", title, ends, scale={"zero": False}, **look)
+            for name, title, *ends in zip("xy", titles, low, high, strict=True)
         )
 
     def line(
@@ -274,20 +220,20 @@ class Panel:
 
         Rows may have a colour each; a filled path is filled with it.
         """
-        # Channels, not their short forms: to find out which is meant, Altair hashes its schema.
-        encoding: dict[str, Any] = {"order": alt.Order("order:Q")}
-        encoding |= {"detail": alt.Detail(f"{by}:N")} if by else {}
+        if not rows:
+            return []
+        encoding = {"x": self.x, "y": self.y, "order": channel("order:Q")}
+        encoding |= {"detail": channel(f"{by}:N")} if by else {}
         encoding |= {"tooltip": tooltip} if tooltip else {}
-        if rows and "colour" in rows[0]:
-            encoding["stroke"] = alt.Stroke("colour:N", scale=None)
-            encoding |= {"fill": alt.Fill("colour:N", scale=None)} if style.get("filled") else {}
-        drawn = chart(rows).mark_line(**style)
-        return [drawn.encode(x=self.x, y=self.y, **encoding)] if rows else []
+        if "colour" in rows[0]:
+            coloured = ("stroke", "fill") if style.get("filled") else ("stroke",)
+            encoding |= dict.fromkeys(coloured, channel("colour:N", scale=None))
+        return [layer("line", rows, encoding, **style)]
 
     def points(self, rows: Sequence[Row], tooltip: Any, **style: Any) -> list[Drawing]:
         """Return points as a layer; no layer without rows."""
-        drawn = chart(rows).mark_point(opacity=1, **style)
-        return [drawn.encode(x=self.x, y=self.y, tooltip=tooltip)] if rows else []
+        encoding = {"x": self.x, "y": self.y, "tooltip": tooltip}
+        return [layer("point", rows, encoding, opacity=1, **style)] if rows else []
 
 
 BESIDE = {
@@ -328,13 +274,13 @@ def rules(
     for warns, colour, dash in ((False, SOFT, [4, 3]), (True, WARNING, [1, 0])):
         own = [(row, side) for row, side in sided if row.get("warns", False) is warns]
         if own:
-            line = chart([row for row, _ in own]).encode(**where)
-            layers.append(line.mark_rule(color=colour, strokeDash=dash, strokeWidth=1.3))
+            look = {"color": colour, "strokeDash": dash, "strokeWidth": 1.3}
+            layers.append(layer("rule", [row for row, _ in own], where, **look))
         groups = dict.fromkeys((side, row.get("top", TOP)) for row, side in own if side)
         for side, top in groups if words else ():
             named = [row for row, s in own if s == side and row.get("top", TOP) == top]
-            text = chart(named).encode(**where, y=alt.value(top), text="text:N")
-            layers += rimmed(text, WARNING if warns else INK, **BESIDE[side])
+            place = {**where, "y": {"value": top}}
+            layers += rimmed(named, place, WARNING if warns else INK, **BESIDE[side])
     return layers
 
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 
-import altair as alt
-
 from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
-from loadshare.report.figures.marks import Row, chart, hover
+from loadshare.report.figures.marks import hover
 from loadshare.report.palette import COLOURS
+from loadshare.report.vega_lite import Row, channel, layer
 from loadshare.study.sensitivity import Sensitivity
 from loadshare.study.tolerance.result import OVERS, Over
 
@@ -74,31 +73,25 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
     shown = [key for key in order if any(row["change"] for row in bars[key])][:MOST]
     rows = [row for key in shown for row in bars[key]]
     sides = [side for side in (BOTH, *CALLED.values()) if any(r["side"] == side for r in rows)]
-    axis = alt.Axis(domain=False, ticks=False, labelLimit=LABEL)
-    where = {"yOffset": alt.YOffset("side:N", sort=sides)} if len(sides) > 1 else {}
-    drawing = (
-        chart(rows)
-        .mark_bar()
-        .encode(
-            x=alt.X("change:Q", title="change of Ω over the whole value of the input"),
-            y=alt.Y("input:N", sort=shown, title=None, axis=axis),
-            color=alt.Color(
-                "side:N",
-                scale=alt.Scale(domain=sides, range=list(COLOURS[: len(sides)])),
-                legend=alt.Legend(title=None, orient="bottom") if len(sides) > 1 else None,
-            ),
-            tooltip=hover(
-                "input:N",
-                "value:N",
-                ("side:N", "side"),
-                ("rate:Q", "dΩ", "+.4g"),
-                ("unit:N", "which is"),
-                ("change:Q", "over its whole value", "+.4g"),
-            ),
-            **where,
-        )
-        .properties(width=WIDTH, height=ROW * max(len(shown), 1))
-    )
+    axis = {"domain": False, "ticks": False, "labelLimit": LABEL}
+    colours = {"domain": sides, "range": list(COLOURS[: len(sides)])}
+    several = len(sides) > 1
+    legend = {"title": None, "orient": "bottom"} if several else None
+    bar = {
+        "x": channel("change:Q", title="change of Ω over the whole value of the input"),
+        "y": channel("input:N", sort=shown, title=None, axis=axis),
+        "color": channel("side:N", scale=colours, legend=legend),
+        "tooltip": hover(
+            "input:N",
+            "value:N",
+            ("side:N", "side"),
+            ("rate:Q", "dΩ", "+.4g"),
+            ("unit:N", "which is"),
+            ("change:Q", "over its whole value", "+.4g"),
+        ),
+    } | ({"yOffset": channel("side:N", sort=sides)} if several else {})
+    size = {"width": WIDTH, "height": ROW * max(len(shown), 1)}
+    drawing = layer("bar", rows, bar) | size
     left = len(found.inputs) - len(shown)
     name = "the system" if stage == "system" else f"stage {stage}"
     subtitle = [

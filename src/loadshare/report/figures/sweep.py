@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import altair as alt
 import numpy as np
 
 from loadshare.errors import LoadshareError
@@ -18,10 +17,7 @@ from loadshare.report.figures.marks import (
     BREADTH,
     LETTER,
     TOP,
-    Drawing,
-    Row,
     axis,
-    chart,
     curves,
     heading,
     hover,
@@ -30,6 +26,7 @@ from loadshare.report.figures.marks import (
 )
 from loadshare.report.palette import WARNING, Look, Palette, ends_from_names, look
 from loadshare.report.units import Unit, engineering
+from loadshare.report.vega_lite import Drawing, Row, channel, joined, layer, panel
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -222,8 +219,8 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
         for line, values in zip(shown.names, shown.values, strict=True)
         for x, y in zip(grid, values, strict=True)
     ]
-    y_axis = axis(alt.Y, "y:Q", shown.axis, shown.domain(0.08))
-    x_axis = axis(alt.X, "x:Q", title, scale={"zero": False})
+    y_axis = axis("y:Q", shown.axis, shown.domain(0.08))
+    x_axis = axis("x:Q", title, scale={"zero": False})
     tooltip = hover(("name:N", shown.by), ("x:Q", title), ("y:Q", shown.axis, ".6~g"))
     layers = curves(rows, "name", shown.looks, shown.by, x=x_axis, y=y_axis, tooltip=tooltip)
     if events:
@@ -235,7 +232,7 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
         ]
         event_tooltip = hover(("text:N", "event"), ("x:Q", title))
         layers += rules(marked, x_axis, pixels, tooltip=event_tooltip)
-    return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
+    return panel(layers, WIDTH, HEIGHT)
 
 
 def _clear(shown: _Shown, grid: np.ndarray, at: float, text: str, pixels: float) -> float:
@@ -256,22 +253,19 @@ def _clear(shown: _Shown, grid: np.ndarray, at: float, text: str, pixels: float)
 def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
     (xs, x_title), (ys, y_title) = (_parameter(data, name) for name in parameters)
     x_edges, y_edges = _edges(xs), _edges(ys)
-    colour = alt.Color(
+    colour = channel(
         "value:Q",
         title=textwrap.wrap(shown.axis, 36),
         # Light to dark in one direction, so that it reads in grey.
-        scale=alt.Scale(scheme="tealblues", domain=shown.domain(0.0), nice=False),
-        legend=alt.Legend(titleLimit=240, gradientLength=200),
+        scale={"scheme": "tealblues", "domain": shown.domain(0.0), "nice": False},
+        legend={"titleLimit": 240, "gradientLength": 200},
     )
-    places = {
-        name: axis(channel, f"{name}:Q", title, [float(e.min()), float(e.max())], grid=False)
-        for channel, name, title, e in (
-            (alt.X, "x", x_title, x_edges),
-            (alt.Y, "y", y_title, y_edges),
-        )
+    where: dict[str, Any] = {
+        name: axis(f"{name}:Q", title, [float(e.min()), float(e.max())], grid=False)
+        for name, title, e in (("x", x_title, x_edges), ("y", y_title, y_edges))
     }
-    where = {**places, "x2": "x2:Q", "y2": "y2:Q"}
     tooltip = hover(("a:Q", x_title), ("b:Q", y_title), ("value:Q", shown.axis, ".6~g"))
+    where |= {"x2": channel("x2"), "y2": channel("y2"), "tooltip": tooltip}
     panels = []
     for name, values in zip(shown.names, shown.values, strict=True):
         certified: list[Row] = []
@@ -284,15 +278,15 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
             else:
                 refused.append({**cell, "value": None})
         # Each cell reaches under the next ones: seams would look like lines of the map.
-        cells = chart(certified).mark_rect(x2Offset=0.5, y2Offset=-0.5)
-        layers: list[Any] = [cells.encode(**where, color=colour, tooltip=tooltip)]
+        coloured = where | {"color": colour}
+        layers = [layer("rect", certified, coloured, x2Offset=0.5, y2Offset=-0.5)]
         if refused:
-            crossed = chart(refused).mark_rect(fillOpacity=0, stroke=WARNING, strokeDash=[2, 2])
-            layers.append(crossed.encode(**where, tooltip=tooltip))
-        panel = alt.layer(*layers).properties(width=MAP, height=MAP)
+            crossed = {"fillOpacity": 0, "stroke": WARNING, "strokeDash": [2, 2]}
+            layers.append(layer("rect", refused, where, **crossed))
         called = name if name == "system" else f"{shown.by} {name}"
-        panels.append(panel.properties(title=heading(called[:1].upper() + called[1:])))
-    return alt.concat(*panels, columns=2)
+        title = heading(called[:1].upper() + called[1:])
+        panels.append(panel(layers, MAP, MAP, title=title))
+    return joined("concat", panels, columns=2)
 
 
 def _edges(values: np.ndarray) -> np.ndarray:

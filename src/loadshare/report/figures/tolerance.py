@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import altair as alt
 import numpy as np
 
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks as drawn
-from loadshare.report.figures.marks import Drawing, Row, axis, chart, heading, hover, rules
+from loadshare.report.figures.marks import axis, heading, hover, rules
 from loadshare.report.numbers import significant
 from loadshare.report.palette import COLOURS, INK
+from loadshare.report.vega_lite import Channel, Drawing, Row, channel, joined, layer, panel
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +28,7 @@ MOST = 20
 """Inputs that are shown; of the others, the number is given."""
 BAR, TOTAL = COLOURS[0], COLOURS[1]
 SHARE, BELOW = "share of samples", "samples at or below"
-PERCENT = alt.Axis(format="~%", tickCount=4)
+PERCENT: dict[str, Any] = {"format": "~%", "tickCount": 4}
 HEADROOM = 1.3
 """Height of the histogram over that of its largest bar."""
 
@@ -64,7 +64,7 @@ def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
     one = data.sel(stage=stage)
     limit = one.attrs.get("limit")
     found = _Distribution(*_histogram(one), _marks(one, limit))
-    parts: list[Any] = [alt.vconcat(found.bars(), found.cumulative(), spacing=14)]
+    parts = [joined("vconcat", [found.bars(), found.cumulative()], spacing=14)]
     if "first_order" in one or "total_order" in one:
         parts.append(_inputs(one))
     subtitle = [
@@ -76,7 +76,7 @@ def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
     if limit is not None and "exceedance" in one:
         subtitle.append(_exceedance(one, float(limit)))
     name = "the system" if stage == "system" else f"stage {stage}"
-    grid = alt.hconcat(*parts, spacing=40)
+    grid = joined("hconcat", parts, spacing=40)
     return drawn.figure("tolerance", grid, f"How Ω of {name} scatters", subtitle)
 
 
@@ -123,19 +123,14 @@ class _Distribution:
     counts: np.ndarray
     marks: list[Row]
 
-    def panel(
-        self, bars: Drawing, title: str | None, y: Any, height: int, *, words: bool, **more: Any
-    ) -> Drawing:
-        """Return a panel over Ω with all bins and all marks, whose words are in one panel."""
+    def along(self, title: str | None, *, words: bool) -> tuple[Channel, list[Drawing]]:
+        """Return an axis of Ω with all bins and all marks, and rules at the marks."""
         every = [float(self.edges[0]), float(self.edges[-1]), *(row["x"] for row in self.marks)]
         room = 0.03 * (max(every) - min(every)) or LEAST
         low, high = min(every) - room, max(every) + room
-        whole = {"zero": False}
-        x = axis(alt.X, "x:Q", title, [low, high], scale=whole, tickCount=6, grid=False)
+        x = axis("x:Q", title, [low, high], scale={"zero": False}, tickCount=6, grid=False)
         tooltip = hover(("text:N", "mark"), ("x:Q", "Ω", ".5f"))
-        marked = rules(self.marks, x, WIDTH / (high - low), tooltip=tooltip, words=words)
-        layers = [bars.encode(x=x, y=y, **more), *marked]
-        return alt.layer(*layers).properties(width=WIDTH, height=height)
+        return x, rules(self.marks, x, WIDTH / (high - low), tooltip=tooltip, words=words)
 
     def bars(self) -> Drawing:
         """Share of the samples in each bin."""
@@ -144,23 +139,33 @@ class _Distribution:
             {"x": float(a), "x2": float(b), "share": float(v), "count": float(c)}
             for a, b, v, c in zip(self.edges[:-1], self.edges[1:], part, self.counts, strict=True)
         ]
-        tooltip = hover(("x:Q", "Ω from", ".5f"), ("x2:Q", "to", ".5f"), ("share:Q", SHARE, ".4%"))
-        bars = chart(rows).mark_rect(color=BAR, opacity=0.85, stroke="white", strokeWidth=0.3)
         # The names of the marks are above the bars.
         room = HEADROOM if self.marks else 1.0
-        scale = alt.Scale(domain=[0.0, room * float(part.max())], nice=False)
-        y = alt.Y("share:Q", title=SHARE, axis=PERCENT, scale=scale)
-        ends = {"x2": "x2:Q", "y2": alt.datum(0), "tooltip": tooltip}
-        return self.panel(bars, None, y, HEIGHT, words=True, **ends)
+        x, marked = self.along(None, words=True)
+        where = {
+            "x": x,
+            "x2": channel("x2"),
+            "y": axis("share:Q", SHARE, [0.0, room * float(part.max())], **PERCENT),
+            "y2": {"datum": 0},
+            "tooltip": hover(
+                ("x:Q", "Ω from", ".5f"), ("x2:Q", "to", ".5f"), ("share:Q", SHARE, ".4%")
+            ),
+        }
+        style = {"color": BAR, "opacity": 0.85, "stroke": "white", "strokeWidth": 0.3}
+        return panel([layer("rect", rows, where, **style), *marked], WIDTH, HEIGHT)
 
     def cumulative(self) -> Drawing:
         """Share of the samples at or below each edge."""
         reached = np.concatenate([[0.0], np.cumsum(self.counts) / self.counts.sum()])
         rows = [{"x": float(v), "p": float(p)} for v, p in zip(self.edges, reached, strict=True)]
-        line = chart(rows).mark_line(color=BAR, strokeWidth=1.8, point={"size": 12, "color": BAR})
-        y = alt.Y("p:Q", title=BELOW, axis=PERCENT)
-        tooltip = hover(("x:Q", "Ω", ".5f"), ("p:Q", BELOW, ".4%"))
-        return self.panel(line, "Ω", y, HEIGHT // 2, words=False, tooltip=tooltip)
+        x, marked = self.along("Ω", words=False)
+        where = {
+            "x": x,
+            "y": channel("p:Q", title=BELOW, axis=PERCENT),
+            "tooltip": hover(("x:Q", "Ω", ".5f"), ("p:Q", BELOW, ".4%")),
+        }
+        style = {"color": BAR, "strokeWidth": 1.8, "point": {"size": 12, "color": BAR}}
+        return panel([layer("line", rows, where, **style), *marked], WIDTH, HEIGHT // 2)
 
 
 def _inputs(one: xr.Dataset) -> Drawing:
@@ -177,8 +182,11 @@ def _inputs(one: xr.Dataset) -> Drawing:
             ends = {e: float(of[f"{order}_{e}"]) for e in ("low", "high") if f"{order}_{e}" in one}
             rows.append({"input": name, "order": called[order], "index": float(of[order]), **ends})
     domain = [called[order] for order in orders]
-    y = alt.Y("input:N", sort=shown, title=None, axis=alt.Axis(domain=False, ticks=False))
-    base = chart(rows).encode(y=y, yOffset=alt.YOffset("order:N", sort=domain))
+    looks = {"domain": False, "ticks": False}
+    where = {
+        "y": channel("input:N", sort=shown, title=None, axis=looks),
+        "yOffset": channel("order:N", sort=domain),
+    }
     bounds = [end for end in ("low", "high") if any(end in row for row in rows)]
     tooltip = hover(
         "input:N",
@@ -186,19 +194,19 @@ def _inputs(one: xr.Dataset) -> Drawing:
         ("index:Q", "share of the variance", ".4f"),
         *((f"{end}:Q", end, ".4f") for end in bounds),
     )
-    scale = alt.Scale(domain=domain, range=[BAR, TOTAL][: len(domain)])
-    layers: list[Any] = [
-        base.mark_bar(height=ROW * 0.36).encode(
-            x=alt.X("index:Q", title="share of the variance of Ω", axis=alt.Axis(tickCount=5)),
-            color=alt.Color("order:N", scale=scale, legend=alt.Legend(title=None)),
-            tooltip=tooltip,
-        )
-    ]
+    colours = {"domain": domain, "range": [BAR, TOTAL][: len(domain)]}
+    bar = where | {
+        "x": channel("index:Q", title="share of the variance of Ω", axis={"tickCount": 5}),
+        "color": channel("order:N", scale=colours, legend={"title": None}),
+        "tooltip": tooltip,
+    }
+    layers = [layer("bar", rows, bar, height=ROW * 0.36)]
     if len(bounds) == 2:
-        layers.append(base.mark_rule(color=INK).encode(x="low:Q", x2="high:Q"))
+        span = where | {"x": channel("low:Q"), "x2": channel("high")}
+        layers.append(layer("rule", rows, span, color=INK))
     left = len(names) - len(shown)
     title = heading("Where it comes from", f"and {left} inputs of less effect" if left else "")
-    return alt.layer(*layers).properties(width=260, height=ROW * len(shown), title=title)
+    return panel(layers, 260, ROW * len(shown), title=title)
 
 
 def _exceedance(one: xr.Dataset, limit: float) -> str:

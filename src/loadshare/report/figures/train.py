@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import altair as alt
 import numpy as np
 
 from loadshare.case import Case
@@ -15,12 +14,13 @@ from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
 from loadshare.report.figures.layout import ELASTIC, FIXED, FLOATS, Body, Layout, Pair, layout_of
-from loadshare.report.figures.marks import Drawing, Panel, Row, heading, hover, path_rows
+from loadshare.report.figures.marks import Panel, heading, hover, path_rows
 from loadshare.report.figures.paths import Point, arrow
 from loadshare.report.flanks import carrying
 from loadshare.report.numbers import significant
 from loadshare.report.palette import INK, SOFT, WARNING
 from loadshare.report.units import MILLIMETRE
+from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.report.words import direction_name
 from loadshare.results import Position, Result
 from loadshare.train import Train, build_train
@@ -81,7 +81,7 @@ def train(case: Sections, result: Result | None = None) -> Figure:
         "centres: filled on a bearing, diamond on an elastic bearing, ring floating",
         *(_misfit_text(pair) for pair in layout.pairs if not pair.fits),
     ]
-    return marks.figure("train", alt.vconcat(*panels), "The train", subtitle)
+    return marks.figure("train", joined("vconcat", panels), "The train", subtitle)
 
 
 def _train_of(case: Sections) -> Train | None:
@@ -145,9 +145,8 @@ class _View(Panel):
         ]
         wide, tall = self._extent
         towards = direction_name(np.cross(self.frame[0], self.frame[1]))
-        return alt.layer(*layers).properties(
-            width=scale * wide, height=scale * tall, title=heading(f"Seen against {towards}")
-        )
+        title = heading(f"Seen against {towards}")
+        return panel(layers, scale * wide, scale * tall, title=title)
 
     def _flat_array(self, points: Vector) -> Vector:
         return np.asarray(MILLIMETRE.factor * points @ self.frame.T)

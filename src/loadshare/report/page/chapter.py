@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from altair.utils.schemapi import debug_mode
-
 from loadshare.case import Case, load_case
 from loadshare.case.reader import load_draft
 from loadshare.errors import CaseError, LoadshareError, Refused
@@ -151,24 +149,22 @@ def chapter(
         result = refusal.partial
         problems = str(refusal).splitlines()
         outcome = REFUSED if result is None else PARTLY
-    # Vega-Lite checks what it draws; part by part, as Altair does, takes a tenth of a page's time.
-    with debug_mode(False):
-        return Chapter(
-            file=file,
-            title=case.title or case.name,
-            outcome=outcome,
-            verdict=_verdict(result, len(problems)),
-            problems=problems,
-            case=case,
-            result=result,
-            drawing=draw(case, result).begin(),
-            figures=tuple(f.begin() for f in _figures(result)) if result else (),
-            summary=tuple(verdict_tables(result)) if result else (),
-            trust=trust(result) if result else {},
-            tables=tuple(_tables(result)) if result else (),
-            inputs=tuple(input_tables(case)),
-            derived=tuple(teeth_tables(case)),
-        )
+    return Chapter(
+        file=file,
+        title=case.title or case.name,
+        outcome=outcome,
+        verdict=_verdict(result, len(problems)),
+        problems=problems,
+        case=case,
+        result=result,
+        drawing=draw(case, result).begin(),
+        figures=tuple(f.begin() for f in _figures(result)) if result else (),
+        summary=tuple(verdict_tables(result)) if result else (),
+        trust=trust(result) if result else {},
+        tables=tuple(_tables(result)) if result else (),
+        inputs=tuple(input_tables(case)),
+        derived=tuple(teeth_tables(case)),
+    )
 
 
 def _unusable(file: str, error: CaseError) -> Chapter:

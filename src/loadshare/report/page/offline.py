@@ -9,7 +9,7 @@ from hashlib import sha256
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from loadshare.report.altair_alone import vega_lite_version
+from loadshare.report import vega_lite
 from loadshare.user_cache import digest_of, read_entry, write_entry
 
 if TYPE_CHECKING:
@@ -31,12 +31,12 @@ def scripts() -> str:
     """
     import vl_convert
 
-    parts = (version("vl-convert-python"), vega_lite_version(), EXPOSED)
+    parts = (version("vl-convert-python"), vega_lite.version(), EXPOSED)
     key = digest_of("\n".join(parts))
     place = f"scripts/{key}.js"
     found = read_entry(place)
     if found is None:
-        bundle = str(vl_convert.javascript_bundle(EXPOSED, vl_version=vega_lite_version()))
+        bundle = str(vl_convert.javascript_bundle(EXPOSED, vl_version=vega_lite.version()))
         # A closing tag within a text of the bundle would end the element.
         found = bundle.replace("</script", "<\\/script")
         write_entry(place, found)
