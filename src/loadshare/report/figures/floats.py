@@ -212,13 +212,11 @@ class _Panel(Panel):
         shaft = self._shaft()
         if shaft:
             size = math.hypot(*journey.hardest_rest.reaction)
-            labels.place(read_best(size, "N"), [shaft[1]])
-        found = labels.layers(self.x, self.y, WARNING)
+            labels.place(read_best(size, "N"), [shaft[1]], colour=WARNING)
         spots = self._spots() if len(self.places) > 1 else []
         for place, numbers in spots if len(spots) <= NUMBERED else spots[::5]:
             others = [other for other, _ in spots if other != place]
-            labels.place(places_text(numbers), [place], gap=7.0, others=others)
-        found += labels.layers(self.x, self.y, INK)
+            labels.place(places_text(numbers), [place], gap=7.0, others=others, colour=INK)
         for boundary in journey.region.boundaries if journey.region else ():
             path = self._here(boundary.path)
             # Anywhere along the boundary, its middle before its ends.
@@ -228,7 +226,7 @@ class _Panel(Panel):
         for name, radius in journey.circles.items():
             ring = self._here(circle((0.0, 0.0), radius, 12))
             labels.place(name.split(" beyond")[0].split(" used")[0], ring)
-        return [*found, *labels.layers(self.x, self.y)]
+        return labels.layers(self.x, self.y)
 
     def _within(self, point: Point) -> bool:
         return all(a <= v <= b for a, v, b in zip(self.low, point, self.high, strict=True))

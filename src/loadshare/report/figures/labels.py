@@ -14,7 +14,7 @@ import numpy as np
 from loadshare.report.figures.marks import path_rows, rimmed
 from loadshare.report.figures.paths import Point
 from loadshare.report.palette import SOFT
-from loadshare.report.vega_lite import Drawing, Row, channel, layer
+from loadshare.report.vega_lite import Channel, Drawing, Row, channel, layer
 from loadshare.train.gear import Vector
 
 SIZE = 10
@@ -53,7 +53,7 @@ class Labels:
     ----------
     pixels : float
     rows : list of dict
-        What was placed and not yet taken by `layers`: x, y of the middle, text.
+        What was placed: x, y of the middle, text, colour.
     """
 
     def __init__(self, low: Point, high: Point, pixels: float) -> None:
@@ -83,6 +83,7 @@ class Labels:
         towards: Point = (0.0, 0.0),
         gap: float = 5.0,
         others: Sequence[Point] = (),
+        colour: str = SOFT,
     ) -> None:
         """Put a label next to the best of some points.
 
@@ -97,6 +98,8 @@ class Labels:
             Between point and label [px].
         others : sequence of (float, float)
             Points that it shall not seem to name, by its place or by the line that leads to it.
+        colour : str
+            Of the letters.
         """
         half = np.array([BROAD * len(text), 1.0]) * SIZE / 2.0 / self.pixels
         best: tuple[float, Any, Any] | None = None
@@ -115,23 +118,19 @@ class Labels:
         _, box, leader = best
         rim = RIM / self.pixels
         self._taken = np.concatenate([self._taken, [np.add(box, [[-rim], [rim]])]])
-        self._leaders += path_rows(leader, label=len(self._taken))
+        self._leaders += path_rows(leader, label=len(self._taken), colour=colour)
         self.avoid(leader)
         x, y = box.mean(axis=0)
-        self.rows.append({"x": float(x), "y": float(y), "text": text})
+        self.rows.append({"x": float(x), "y": float(y), "text": text, "colour": colour})
 
-    def layers(self, x: Any, y: Any, colour: str = SOFT, **style: Any) -> list[Drawing]:
-        """Return what was placed as layers, or none, and start again with the same obstacles."""
-        rows, self.rows = self.rows, []
-        leaders, self._leaders = self._leaders, []
-        if not rows:
-            return []
+    def layers(self, x: Channel, y: Channel, **style: Any) -> list[Drawing]:
+        """Return what was placed as layers; none if nothing was."""
         where = {"x": x, "y": y}
-        texts = rimmed(rows, where, colour, fontSize=SIZE, baseline="middle", **style)
-        if not leaders:
-            return texts
-        where |= {"order": channel("order:Q"), "detail": channel("label:N")}
-        return [layer("line", leaders, where, color=colour, strokeWidth=0.6), *texts]
+        path = {"order": channel("order:Q"), "detail": channel("label:N")}
+        path["stroke"] = channel("colour:N", scale=None)
+        lines = [layer("line", self._leaders, where | path, strokeWidth=0.6)]
+        texts = rimmed(self.rows, where, fontSize=SIZE, baseline="middle", **style)
+        return [*(lines if self._leaders else []), *(texts if self.rows else [])]
 
     def _around(self, anchor: Vector, half: Vector, gap: float) -> Vector:
         """Places around a point: corners (further, ways, 2, 2), half the size being given."""

@@ -276,14 +276,11 @@ class _View(Panel):
             spots.setdefault(key, []).append(f"{name} ({body.role})" if body.role else name)
         for place, names in spots.items():
             others = [spot for spot in spots if spot != place]
-            self.labels.place(", ".join(names), [place], gap=7.0, others=others)
-        layers = list(self.labels.layers(self.x, self.y, INK, fontWeight="bold"))
-        if self.plan:
-            for pair in self.layout.pairs:
-                if not pair.fits:
-                    (place, *_) = self._flat(pair.pitch_point)
-                    apart = MILLIMETRE.of(pair.distance - pair.needed)
-                    more = "too far apart" if apart > 0.0 else "too close"
-                    self.labels.place(f"{significant(abs(apart), 3)} mm {more}", [place])
-            layers += self.labels.layers(self.x, self.y, WARNING, fontWeight="bold")
-        return layers
+            self.labels.place(", ".join(names), [place], gap=7.0, others=others, colour=INK)
+        for pair in self.layout.pairs if self.plan else ():
+            if not pair.fits:
+                apart = MILLIMETRE.of(pair.distance - pair.needed)
+                text = "too far apart" if apart > 0.0 else "too close"
+                text = f"{significant(abs(apart), 3)} mm {text}"
+                self.labels.place(text, self._flat(pair.pitch_point), colour=WARNING)
+        return self.labels.layers(self.x, self.y, fontWeight="bold")
