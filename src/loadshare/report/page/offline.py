@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from base64 import b64encode
 from functools import cache
 from hashlib import sha256
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 OWN_SCRIPTS = "OWN_SCRIPTS"
 """Placeholder in the policy of a page for the hashes of its scripts."""
+SCRIPT = re.compile("<script>(.*?)</script>", re.DOTALL)
 EXPOSED = "window.vegaEmbed = vegaEmbed;"
 """What the page's own script needs of the bundle."""
 
@@ -61,8 +63,7 @@ def templates() -> Environment:
 def render(template: str, **values: Any) -> str:
     """Fill in a template; its policy lets only its own scripts run."""
     page = templates().get_template(template).render(scripts=scripts(), **values)
-    own = (part.partition("</script>")[0] for part in page.split("<script>")[1:])
-    hashes = (sha256(script.encode()).digest() for script in own)
+    hashes = (sha256(script.encode()).digest() for script in SCRIPT.findall(page))
     allowed = " ".join(f"'sha256-{b64encode(found).decode()}'" for found in hashes)
     return page.replace(OWN_SCRIPTS, allowed, 1)
 
