@@ -12,6 +12,7 @@ from tests.support import CASES, EVERY_SHIPPED, shipped
 import loadshare as ls
 from loadshare.case.reader import load_draft
 from loadshare.report.figures.layout import FIXED, FLOATS, layout_of
+from loadshare.report.figures.paths import circle, corners
 from loadshare.report.figures.train import train
 from loadshare.report.flanks import carrying
 from loadshare.train import build_train
@@ -186,3 +187,13 @@ def test_views_are_to_scale(drawing, read):
             low, high = unit["encoding"][channel]["scale"]["domain"]
             factors.append(view[size] / (high - low))
     assert factors == pytest.approx([factors[0]] * 4, rel=1e-9)
+
+
+def test_a_path_keeps_its_corners_and_where_it_turns_back():
+    """A circle from the side goes there and back along one line; a circle has corners only."""
+    round_ = circle((3.0, -2.0), 40.0)
+    assert corners(round_) == round_
+    flat = [(x, 0.3 * x + 1.0) for x, _ in round_]
+    assert corners(flat) == [flat[0], flat[len(flat) // 2], flat[-1]]
+    square = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (2.0, 2.0)]
+    assert corners(square) == [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0)]

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 Point = tuple[float, float]
+
+STRAIGHT = 1e-9
+"""Area spanned by two steps of a path, over the square of its size, up to which they are in line."""
 
 
 def arrow(tail: Point, tip: Point, head: float) -> list[Point]:
@@ -18,6 +22,17 @@ def arrow(tail: Point, tip: Point, head: float) -> list[Point]:
     left = (tip[0] - head * ux - half * uy, tip[1] - head * uy + half * ux)
     right = (tip[0] - head * ux + half * uy, tip[1] - head * uy - half * ux)
     return [tail, tip, left, tip, right]
+
+
+def corners(path: list[Point]) -> list[Point]:
+    """Path without the points along its straight pieces: a circle from the side has three left."""
+    flat = STRAIGHT * math.dist(path[0], path[len(path) // 2]) ** 2
+    kept = path[:1]
+    for (x, y), (after_x, after_y) in pairwise(path[1:]):
+        ux, uy, vx, vy = x - kept[-1][0], y - kept[-1][1], after_x - x, after_y - y
+        if abs(ux * vy - uy * vx) > flat or ux * vx + uy * vy < 0.0:
+            kept.append((x, y))
+    return [*kept, path[-1]]
 
 
 def circle(centre: Point, radius: float, count: int = 120) -> list[Point]:

@@ -15,7 +15,7 @@ from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
 from loadshare.report.figures.layout import ELASTIC, FIXED, FLOATS, Body, Layout, Pair, layout_of
 from loadshare.report.figures.marks import Panel, heading, hover, path_rows
-from loadshare.report.figures.paths import Point, arrow
+from loadshare.report.figures.paths import Point, arrow, corners
 from loadshare.report.flanks import carrying
 from loadshare.report.numbers import significant
 from loadshare.report.palette import INK, SOFT, WARNING
@@ -163,7 +163,7 @@ class _View(Panel):
                 for what, radius in radii.items():
                     points = self._flat(body.circle(radius))
                     label = f"gear {body.name}, {what}: radius {MILLIMETRE.of(radius):.4f} mm"
-                    rows += path_rows(points, circle=label, colour=colour)
+                    rows += path_rows(corners(points), circle=label, colour=colour)
                     self.labels.avoid(points)
         (tip,) = hover("circle:N")
         return [
