@@ -145,13 +145,12 @@ def _panel(panel: Panel, columns: int) -> Drawing:
         ends = {"y": y, "y2": channel("y2")}
         layers.append(layer("rect", [{"y": low, "y2": high}], ends, color=FAINT))
     for level in panel.levels:
-        words = {"text": f"{PAPER}, {level.name}", "colour": INK}
-        line = [{"y": level.y, "name": level.name, **words}]
+        line = [{"y": level.y, "name": level.name, "text": f"{PAPER}, {level.name}"}]
         across = {"y": y, "color": colour}
         layers.append(layer("rule", line, across, strokeDash=[1, 3], strokeWidth=1.6))
         place = {"x": {"value": 4 + level.along * WIDTH}, "y": y}
         side = {"baseline": "top", "dy": 4} if level.below else {"baseline": "bottom", "dy": -2}
-        layers += rimmed(line, place, align="left", fontSize=10, **side)
+        layers += rimmed(line, place, INK, align="left", fontSize=10, **side)
     tooltip = hover(("name:N", panel.named), ("x:Q", panel.x_title), ("y:Q", panel.y_title, ".6~g"))
     order = channel("order:Q")
     layers += curves(rows, "name", panel.looks, panel.named, x=x, y=y, tooltip=tooltip, order=order)
@@ -199,12 +198,12 @@ def _printed(printed: Sequence[Printed], x: Channel, y: Channel) -> list[Drawing
     """Oblique crosses in ink, each with its words."""
     if not printed:
         return []
-    rows = [{"x": p.x, "y": p.y, "text": p.text, "side": p.side, "colour": INK} for p in printed]
+    rows = [{"x": p.x, "y": p.y, "text": p.text, "side": p.side} for p in printed]
     where = {"x": x, "y": y}
     cross = {"shape": CROSS, "size": 90, "filled": False, "color": INK, "strokeWidth": 2}
     layers = [layer("point", rows, where, opacity=1, **cross)]
     for side, style in SIDES.items():
         own = [row for row in rows if row["side"] == side]
         if own:
-            layers += rimmed(own, where, **style, fontSize=10)
+            layers += rimmed(own, where, INK, **style, fontSize=10)
     return layers

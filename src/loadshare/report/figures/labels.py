@@ -129,7 +129,8 @@ class Labels:
         path = {"order": channel("order:Q"), "detail": channel("label:N")}
         path["stroke"] = channel("colour:N", scale=None)
         lines = [layer("line", self._leaders, where | path, strokeWidth=0.6)]
-        texts = rimmed(self.rows, where, fontSize=SIZE, baseline="middle", **style)
+        spoken = where | {"description": channel("text:N")}
+        texts = rimmed(self.rows, spoken, fontSize=SIZE, baseline="middle", **style)
         return [*(lines if self._leaders else []), *(texts if self.rows else [])]
 
     def _around(self, anchor: Vector, half: Vector, gap: float) -> Vector:

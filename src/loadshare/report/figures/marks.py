@@ -103,22 +103,30 @@ def curves(
     return [*lines, layer("point", rows, shown, filled=True, size=size, opacity=1)]
 
 
-def rimmed(rows: Sequence[Row], channels: Mapping[str, Any], **style: Any) -> list[Drawing]:
+def rimmed(
+    rows: Sequence[Row], channels: Mapping[str, Any], colour: str = "", **style: Any
+) -> list[Drawing]:
     """Words with a white rim, which keeps them readable where they must cross a line.
 
     Parameters
     ----------
     rows : sequence of dict
-        Each with ``text`` and ``colour``.
+        Each with ``text``.
     channels : mapping
         Where the words are.
+    colour : str
+        Of the letters; without it each row has its own, ``colour``.
     **style
         Of the text mark.
     """
     words = {**channels, "text": channel("text:N")}
     rim = {"color": "white", "stroke": "white", "strokeWidth": 3, "opacity": 0.8}
-    inked = words | {"color": channel("colour:N", scale=None)}
-    return [layer("text", rows, words, **rim, **style), layer("text", rows, inked, **style)]
+    own = {} if colour else {"color": channel("colour:N", scale=None)}
+    ink = {"color": colour} if colour else {}
+    return [
+        layer("text", rows, words, **rim, **style),
+        layer("text", rows, words | own, **ink, **style),
+    ]
 
 
 def path_rows(points: Iterable[Point], **fields: Any) -> list[Row]:
@@ -276,9 +284,9 @@ def rules(
             layers.append(layer("rule", [row for row, _ in own], where, **look))
         groups = dict.fromkeys((side, row.get("top", TOP)) for row, side in own if side)
         for side, top in groups if words else ():
-            inked = {"colour": WARNING if warns else INK}
-            named = [row | inked for row, s in own if s == side and row.get("top", TOP) == top]
-            layers += rimmed(named, {**where, "y": {"value": top}}, **BESIDE[side])
+            named = [row for row, s in own if s == side and row.get("top", TOP) == top]
+            place = {**where, "y": {"value": top}}
+            layers += rimmed(named, place, WARNING if warns else INK, **BESIDE[side])
     return layers
 
 
