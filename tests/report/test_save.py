@@ -95,3 +95,22 @@ def test_a_notebook_is_shown_svg(picture):
     shown = figure._repr_mimebundle_()
     assert set(shown) == {"image/svg+xml"}
     assert figure.spec["config"] == CONFIG
+
+
+def test_a_picture_is_its_specification_and_an_altair_chart(picture):
+    figure = picture("limit_ring", "torque")
+    assert Figure("torque", figure.spec).to_svg() == figure.to_svg()
+    assert Figure("torque", figure.chart).to_svg() == figure.to_svg()
+
+
+def test_an_altair_chart_keeps_its_rows_and_its_selection_beside_a_picture(picture):
+    import altair as alt
+
+    chart = alt.Chart(alt.InlineData(values=[{"x": 1.0}])).mark_point().encode(x="x:Q")
+    figure = picture("limit_ring", "torque")
+    for drawn in (chart.interactive(), alt.layer(chart, chart).interactive()):
+        both = (figure | drawn).spec
+        assert [{"x": 1.0}] in both["datasets"].values()
+        params = both.get("params") or both["hconcat"][1]["params"]
+        assert params[0]["bind"] == "scales"
+        assert "<svg" in (figure | drawn).to_svg()

@@ -17,8 +17,6 @@ KINDS = {"Q": "quantitative", "N": "nominal"}
 PARTS = ("layer", "concat", "hconcat", "vconcat")
 """Keys of a view that hold others."""
 SIZES = ("width", "height")
-SHARED = ("datasets", "params")
-"""Keys that only a whole may have: rows and selections that its parts name."""
 OWN_LEGENDS = {"scale": {"color": "independent", "shape": "independent"}}
 
 Drawing = dict[str, Any]
@@ -59,10 +57,12 @@ def joined(how: str, views: Iterable[Drawing], **more: Any) -> Drawing:
     """Return views as one: as "concat", "hconcat" or "vconcat"."""
     whole: Drawing = {how: [], **more}
     for view in views:
-        whole[how].append({key: part for key, part in view.items() if key not in SHARED})
+        # The selections of a single layer stay with it; those of several name the views they are of.
+        shared = ("datasets",) if "mark" in view else ("datasets", "params")
+        whole[how].append({key: part for key, part in view.items() if key not in shared})
         if "datasets" in view:
             whole["datasets"] = whole.get("datasets", {}) | view["datasets"]
-        if "params" in view:
+        if "params" in view and "params" in shared:
             whole["params"] = [*whole.get("params", ()), *view["params"]]
     return whole
 
