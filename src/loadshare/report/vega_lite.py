@@ -57,7 +57,7 @@ def joined(how: str, views: Iterable[Drawing], **more: Any) -> Drawing:
     """Return views as one: as "concat", "hconcat" or "vconcat"."""
     whole: Drawing = {how: [], **more}
     for view in views:
-        # The selections of a single layer stay with it; those of several name the views they are of.
+        # Selections of a single layer stay with it; those of several name their views.
         shared = ("datasets",) if "mark" in view else ("datasets", "params")
         whole[how].append({key: part for key, part in view.items() if key not in shared})
         if "datasets" in view:
