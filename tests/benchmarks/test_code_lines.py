@@ -1,5 +1,6 @@
 """What `python -m benchmarks.code_lines` counts."""
 
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -54,6 +55,7 @@ def test_a_file_counts_for_its_package(file, name):
     assert package(Path(file)) == name
 
 
+@pytest.mark.skipif(find_spec("ruff") is None, reason="ruff is not installed")
 def test_long_and_branched_functions_are_listed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     body = "    x = 1\n"
