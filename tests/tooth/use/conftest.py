@@ -1,5 +1,31 @@
+from functools import wraps
+
 import pytest
 from tests.tooth.use.pairs import SPUR
+
+from loadshare.tooth.pair import sensitivity
+
+_known: dict[tuple[str, str], object] = {}
+
+
+@pytest.fixture(autouse=True)
+def known_effects(monkeypatch):
+    """What rims and sampling do to a pair goes with each of its laws: it is found once for all
+    tests, of which `test_sureness` asks for it without a law, and finds it anew.
+    """
+    for name in ("rim_effects", "sampled_deflection"):
+        monkeypatch.setattr(sensitivity, name, _found_once(getattr(sensitivity, name)))
+
+
+def _found_once(find):
+    @wraps(find)
+    def found(pair):
+        key = find.__name__, pair.hash
+        if key not in _known:
+            _known[key] = find(pair)
+        return _known[key]
+
+    return found
 
 
 @pytest.fixture(autouse=True)
