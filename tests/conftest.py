@@ -1,6 +1,7 @@
 """What holds for all tests."""
 
 import gc
+import json
 import os
 import random
 import zlib
@@ -17,6 +18,7 @@ from tests.reproducible import SAME
 from loadshare.job import engines, hot
 from loadshare.job.engines import engine_named
 from loadshare.outside import OUTSIDE
+from loadshare.report import beside
 
 # Mesh laws that tests compute stay out of the user's cache.
 os.environ["LOADSHARE_CACHE"] = str(Path(__file__).parent.parent / ".pytest_cache" / "laws")
@@ -87,6 +89,30 @@ def chrome(tmp_path_factory) -> Iterator[Any]:
     """The one browser of a worker; who uses it makes it as new first."""
     with chromium(tmp_path_factory.mktemp("profile")) as found:
         yield found
+
+
+@pytest.fixture(scope="session", autouse=True)
+def drawn_once() -> Iterator[Any]:
+    """A picture that was drawn is not drawn again: the same specification gives the same text."""
+    known: dict[str, Any] = {}
+    begin = beside.begin
+
+    def kept(conversion: str, what: object, **settings: Any) -> Any:
+        name = json.dumps([conversion, what, settings])
+        made = known.get(name)
+        if made is None or (made.done() and made.exception() is not None):
+            made = known[name] = begin(conversion, what, **settings)
+        return made
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(beside, "begin", kept)
+        yield begin
+
+
+@pytest.fixture
+def drawn_anew(drawn_once: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """For tests of that: each picture is drawn."""
+    monkeypatch.setattr(beside, "begin", drawn_once)
 
 
 @pytest.fixture(autouse=True)

@@ -65,7 +65,7 @@ def test_an_unknown_form_or_scale_is_reported(picture, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_nothing_is_left_of_a_picture_that_failed(picture, tmp_path, monkeypatch):
+def test_nothing_is_left_of_a_picture_that_failed(drawn_anew, picture, tmp_path, monkeypatch):
     import vl_convert
 
     def broken(*_, **__):
