@@ -62,13 +62,13 @@ def test_the_right_answers_pass(some):
 
 @pytest.fixture(scope="module")
 def found():
-    return list(attacks(SEED, 76, each=4))
+    return list(attacks(SEED, 56, each=4))
 
 
 def test_every_way_is_tried_and_most_are_wrong(found):
     assert {a.way for a in found} == set(WAYS)
-    assert sum(a.error > ALLOWED for a in found) > 25
-    assert len({a.train for a in found}) == 19
+    assert sum(a.error > ALLOWED for a in found) > 18
+    assert len({a.train for a in found}) == 14
 
 
 def test_no_wrong_torque_passes(found):
@@ -82,7 +82,7 @@ def test_no_wrong_torque_of_twice_as_many_passes():
 
 def test_every_bound_holds_of_wrong_answers_too(found):
     bounded = [a for a in found if a.margin < math.inf]
-    assert len(bounded) > 50
+    assert len(bounded) > 36
     assert [a for a in bounded if a.margin < -ROUNDING] == []
 
 
