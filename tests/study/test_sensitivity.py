@@ -323,8 +323,8 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
     [
         ("gears.planet.support", "is not in the case.*Copies have names of their own: .*planet1"),
         ("errors.planet1.pin.radial", "There is no errors.planet1"),
-        ("gears.*.teeth", "is no number with a unit"),
-        ("gears.sun.teeth", "= 18: is no number with a unit"),
+        ("gears.*.teeth", "is a count: it has no derivatives"),
+        ("gears.sun.teeth", "= 18: is a count: it has no derivatives"),
     ],
 )
 def test_what_was_meant_by_an_input_that_is_none_is_told(key, message):

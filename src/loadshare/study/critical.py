@@ -24,7 +24,15 @@ from loadshare.study.follow.active import switch_names
 from loadshare.study.follow.changes import Change
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
-from loadshare.study.parameter import RANGE, STUDY, Parameter, grid, named, read_parameter
+from loadshare.study.parameter import (
+    RANGE,
+    STUDY,
+    Parameter,
+    check_smooth,
+    grid,
+    named,
+    read_parameter,
+)
 from loadshare.study.positions import alike, loaded
 from loadshare.view import View, Viewed
 
@@ -321,7 +329,9 @@ def critical(
     if not low < high:
         message = f"start {low:g} {unit} is not below stop {high:g} {unit}"
         raise CaseError([Problem(STUDY, named(key), "", message, "start below stop")])
-    line = Line(case, read_parameter(case, key, unit), low, high)
+    parameter = read_parameter(case, key, unit)
+    check_smooth(parameter)
+    line = Line(case, parameter, low, high)
     events: list[Event] = []
     unproved: list[Unproved] = []
     chosen = wanted_positions(line.first, positions)

@@ -28,6 +28,7 @@ from loadshare.study.parameter import (
     Value,
     applied,
     check_apart,
+    check_smooth,
     grid,
     named,
     read_parameter,
@@ -241,7 +242,9 @@ class _Problem:
             if len(numbers) != 2 or not numbers[0] < numbers[1]:
                 given = ", ".join(map(str, ends))
                 raise CaseError([Problem(STUDY, named(key), given, "is no range", RANGE)])
-            self.parameters.append(read_parameter(case, key, unit))
+            parameter = read_parameter(case, key, unit)
+            check_smooth(parameter)
+            self.parameters.append(parameter)
             lows.append(numbers[0])
             highs.append(numbers[1])
         check_apart(self.parameters)

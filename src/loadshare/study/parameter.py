@@ -11,6 +11,7 @@ from typing import Any
 
 from loadshare.case import Case
 from loadshare.case.content import ABOUT
+from loadshare.case.counts import takes_count
 from loadshare.case.keys import Path, dotted, look_up, parse, with_unit
 from loadshare.case.quantity import NUMBER, Dimension, as_text
 from loadshare.case.units import si_factor
@@ -23,6 +24,10 @@ GRID = 'a grid "0 um:12 um:61" (first, last, how many), or a list of values with
 """Values of a sweep, as messages name what is allowed."""
 RANGE = 'lowest and highest value, as ("0 um", "100 um")'
 """Ends of an interval, likewise."""
+NO_COUNT = "an input that is no count"
+"""Keys of what has to vary smoothly, likewise."""
+OF_COUNTS = "A sweep takes counts, as in a list of values."
+"""What else there is for a count."""
 _QUANTITY = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*", re.DOTALL)
 
 
@@ -162,6 +167,20 @@ def check_apart(parameters: Iterable[Parameter]) -> None:
                 message = f"is set by {seen[key]} and by {parameter.name}"
                 raise _unusable(key, message, "one parameter for each key")
             seen[key] = parameter.name
+
+
+def check_smooth(parameter: Parameter) -> None:
+    """Refuse a parameter that sets a count: a study that needs the values between has none.
+
+    Raises
+    ------
+    CaseError
+        With the first such key.
+    """
+    for key in parameter.keys:
+        if takes_count(parse(key)):
+            message = "is a count: it has no values in between"
+            raise _unusable(key, message, NO_COUNT, OF_COUNTS)
 
 
 def applied(case: Case, parameters: Iterable[Parameter], numbers: Iterable[float]) -> Case:

@@ -188,6 +188,7 @@ def test_all_that_is_wrong_is_reported_at_once():
             "low": "499900 N*m/rad",
             "high": "500100 N*m/rad",
         },
+        "gears.1.teeth": {"distribution": "uniform", "low": 20, "high": 22},
     }
     with pytest.raises(ls.CaseError) as caught:
         ls.tolerance(case, inputs, samples=100, sampling="sobol")
@@ -204,6 +205,7 @@ def test_all_that_is_wrong_is_reported_at_once():
         "is not above low",
         "too far from its mean",
         "too close for its deviation",
+        "gears.1.teeth is a count",
         "does not share out among 16",
     ):
         assert part in message, part

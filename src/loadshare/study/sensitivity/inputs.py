@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from loadshare.case import Case
+from loadshare.case.counts import takes_count
 from loadshare.case.keys import Path, dotted, look_up, parse
 from loadshare.case.revise import nearest
 from loadshare.case.words import did_you_mean
@@ -43,7 +44,9 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
         found = [item for key in keys for item in _numbers_at(data, key)]
         if not found:
             there = [value for key in keys if (value := look_up(data, parse(key))) is not None]
+            counts = there and all(takes_count(parse(key)) for key in keys)
             what = "is no number with a unit" if there else "is not in the case"
+            what = "is a count: it has no derivatives" if counts else what
             shown = str(there[0]) if len(keys) == 1 and there else ""
             hint = did_you_mean(pattern, (item.key for item in _below(data, ())))
             if not there and "*" not in pattern:

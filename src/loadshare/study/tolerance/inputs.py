@@ -11,12 +11,13 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.case import Case, Study
+from loadshare.case.counts import takes_count
 from loadshare.case.iso1328 import tolerances_of
 from loadshare.case.keys import dotted, parse, with_unit
 from loadshare.case.study import CLASS, Group, Spread
 from loadshare.errors import CaseError, Problem
 from loadshare.settings import TOLERANCE
-from loadshare.study.parameter import matches, split_outside
+from loadshare.study.parameter import NO_COUNT, OF_COUNTS, matches, split_outside
 from loadshare.study.tolerance.distribution import (
     Copula,
     Distribution,
@@ -239,7 +240,13 @@ class _Reader:
         return self._read(path, spread.model_copy(update={"high": f"{1e6 * ends.pop()!r} um"}))
 
     def _fits(self, path: tuple[str | int, ...], one: Input) -> bool:
-        """Tell whether the case can be used with the far ends of an input."""
+        """Tell whether the case can be used with the far ends of an input, and between them."""
+        for key in one.keys:
+            if takes_count(parse(key)):
+                message = f"{key} is a count: it has no values in between"
+                self._wrong(path, message, NO_COUNT, OF_COUNTS)
+                self.bad.update(one.keys)
+                return False
         for end in one.distribution.ends(TOLERANCE.far):
             try:
                 self.case.replace(one.changes(end))

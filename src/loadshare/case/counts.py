@@ -1,0 +1,48 @@
+"""Which keys of a case take a count: between two whole numbers they have no value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from typing import Any, get_args, get_origin
+
+from loadshare.case.content import Content
+from loadshare.case.element import Element
+from loadshare.case.keys import Path
+
+
+@cache
+def takes_count(path: Path) -> bool:
+    """Tell whether what a key takes is a whole number, as of teeth, copies or positions.
+
+    Parameters
+    ----------
+    path : tuple of str or int
+        The key; it need not be in a case.
+    """
+    kinds: list[Any] = [Content]
+    for step in path:
+        kinds = [below for kind in kinds for below in _below(kind, step)]
+    return any(_is_whole(kind) for kind in kinds)
+
+
+def _below(kind: Any, step: str | int) -> Iterator[Any]:
+    """Yield the annotations of what is at a key, or a place of a list, of such a value."""
+    if isinstance(kind, type) and issubclass(kind, Element):
+        if step in kind.model_fields:
+            yield kind.model_fields[str(step)].annotation
+    elif get_origin(kind) is dict:
+        yield get_args(kind)[1]
+    elif get_origin(kind) is tuple:
+        if isinstance(step, int):
+            yield get_args(kind)[0]
+    else:
+        for inner in get_args(kind):
+            yield from _below(inner, step)
+
+
+def _is_whole(kind: Any) -> bool:
+    """Whether a value of an annotation may be a whole number alone, lists and tables apart."""
+    if kind is int:
+        return True
+    return get_origin(kind) not in (dict, tuple) and any(map(_is_whole, get_args(kind)))
