@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import zipfile
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from tests.cli.conftest import on_a_screen_of
 from tests.exchange.units import at, bearing, joint, planetary, rexsj, two_stages, xml
 
 import loadshare as ls
-from loadshare.exchange.rexs import export_rexs, import_rexs
+from loadshare.exchange.rexs import export_rexs, import_rexs, in_form_of
 from loadshare.exchange.rexs.reading import read_model
 
 FACTOR, PUSHED = "mesh_load_factor_iso_6336_2019", "force_acting_on_inner_component_v"
@@ -53,6 +55,41 @@ def test_results_are_those_of_the_first_load_case(written, form) -> None:
     assert text.count("custom_loadshare_normal_force") == 2, "one for each stage, in one place"
     assert import_rexs(copy).data["operating"] == import_rexs(unit).data["operating"]
     assert export_rexs(result, copy) == text
+
+
+@pytest.mark.parametrize("form", ["xml", "json"])
+def test_a_copy_of_an_archive_is_one(written, tmp_path, form) -> None:
+    """With all else that is in it, bit for bit the same each time."""
+    command = on_a_screen_of(80)
+    inside = f"unit.rexs{'j' if form == 'json' else ''}"
+    with zipfile.ZipFile(tmp_path / "unit.rexsz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(inside, with_cases(form))
+        archive.writestr("notes/read me.txt", b"\x00\xff")
+        archive.comment = b"as delivered"
+    unit, copy = tmp_path / "unit.rexsz", tmp_path / "copy.rexsz"
+    case = tmp_path / "unit.toml"
+    command("import", str(unit), "-o", str(case))
+    command("export", str(case), str(unit), "-o", str(copy))
+    result = ls.solve(import_rexs(unit).case())
+    text = export_rexs(result, unit)
+    assert text == export_rexs(result, written(with_cases(form), inside))
+    with zipfile.ZipFile(unit) as before, zipfile.ZipFile(copy) as after:
+        assert after.read(inside).decode() == text
+        assert after.read("notes/read me.txt") == b"\x00\xff"
+        assert after.comment == before.comment
+        for old, new in zip(before.infolist(), after.infolist(), strict=True):
+            assert (old.filename, old.date_time) == (new.filename, new.date_time)
+    assert copy.read_bytes() == in_form_of(unit, text) == in_form_of(copy, text)
+
+
+def test_an_archive_with_more_than_can_be_copied_is_refused(tmp_path, monkeypatch) -> None:
+    with zipfile.ZipFile(tmp_path / "unit.rexsz", "w") as archive:
+        archive.writestr("unit.rexs", "<model/>")
+        archive.writestr("film", b"0" * 2000)
+    room = SimpleNamespace(other_bytes=2000)
+    monkeypatch.setattr("loadshare.exchange.rexs.archive.ALLOWED", room)
+    with pytest.raises(ls.CaseError, match="is larger than"):
+        in_form_of(tmp_path / "unit.rexsz", "<model/>" * 100)
 
 
 def test_a_stage_of_several_meshes_has_the_largest_factor(written) -> None:

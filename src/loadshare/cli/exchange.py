@@ -10,12 +10,12 @@ import typer
 
 from loadshare.cli.cases import open_case
 from loadshare.cli.console import say
-from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems, writing
 from loadshare.cli.files import keep_inputs, save_text, tell_written
 from loadshare.cli.forms import check_case_file
 from loadshare.cli.options import CaseFile, Changes, Force, output
 from loadshare.input import real
-from loadshare.output import STANDARD
+from loadshare.output import STANDARD, write_whole
 from loadshare.report.numbers import counted
 
 
@@ -71,7 +71,7 @@ def export(
 ) -> None:
     """Solve a case and write what was found into a copy of its REXS file."""
     from loadshare.errors import Refused
-    from loadshare.exchange.rexs import export_rexs
+    from loadshare.exchange.rexs import export_rexs, in_form_of
     from loadshare.job import solve
 
     keep_inputs([unit])
@@ -81,8 +81,9 @@ def export(
     with reporting_problems():
         loaded = open_case(case, change)
         try:
-            text = export_rexs(solve(loaded), unit)
+            copy = in_form_of(unit, export_rexs(solve(loaded), unit))
         except Refused as refusal:
             fail([str(refusal)], REFUSED)
-    save_text(to, text)
+    with writing(to):
+        write_whole(to, copy)
     tell_written(to)

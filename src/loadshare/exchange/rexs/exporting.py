@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.errors import CaseError, Problem
+from loadshare.exchange.rexs.archive import repacked, unpacked
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.holding import borne_by
 from loadshare.exchange.rexs.model import Component
 from loadshare.exchange.rexs.reading import read_model, tables
-from loadshare.input import read_file
+from loadshare.input import Unreadable, read_file
 from loadshare.results import Result
 from loadshare.results.share import load_factors
 from loadshare.settings import ALLOWED
@@ -49,21 +50,20 @@ def export_rexs(result: Result, unit: str | Path) -> str:
     result : Result
         Of a case with the gears that `import_rexs` names.
     unit : str or pathlib.Path
-        The REXS file, XML or JSON; it is read only.
+        The REXS file, XML, JSON or an archive of either; it is read only. Of an archive, the text
+        of the file inside is returned.
 
     Raises
     ------
     CaseError
-        If the file cannot be read, is an archive, or has no mesh of the case.
+        If the file cannot be read, or has no mesh of the case.
     """
     unit = Path(unit)
     found = _found(result, Gearing(read_model(unit)))
     if not found:
         why = "has no mesh of this case: gears must be named as the import names them"
         raise CaseError([Problem(str(unit), "", "", why)])
-    content = read_file(unit, ALLOWED.other_bytes)
-    if content[:2] == b"PK":
-        raise CaseError([Problem(str(unit), "", "", "is an archive: unpack it first")])
+    content = unpacked(unit, read_file(unit, ALLOWED.other_bytes))
     if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":
         return into_json(json.loads(content.decode("utf-8-sig")), found)
     parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
@@ -73,6 +73,28 @@ def export_rexs(result: Result, unit: str | Path) -> str:
         # Prefixes without a namespace are read, as the import asks for none, but cannot be written.
         raise CaseError([Problem(str(unit), "", "", f"is not valid XML: {error}")]) from None
     return into_xml(root, found)
+
+
+def in_form_of(unit: str | Path, text: str) -> bytes:
+    """Return a REXS text as the unit holds its own: packed, if it is an archive, with all else.
+
+    Parameters
+    ----------
+    unit : str or pathlib.Path
+        The REXS file of which `text` is a copy.
+    text : str
+        As `export_rexs` returns it.
+
+    Raises
+    ------
+    CaseError
+        If the unit cannot be read.
+    """
+    unit = Path(unit)
+    try:
+        return repacked(unit, read_file(unit, ALLOWED.other_bytes), text)
+    except Unreadable as error:
+        raise CaseError([Problem(str(unit), "", "", str(error))]) from None
 
 
 def _found(result: Result, gearing: Gearing) -> Values:

@@ -5,20 +5,16 @@ from __future__ import annotations
 import base64
 import binascii
 import json
-import lzma
 import re
 import struct
-import zipfile
-import zlib
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from io import BytesIO
 from pathlib import Path
 from typing import Any, NoReturn
 from xml.etree import ElementTree
 from xml.parsers import expat
 
-from loadshare.errors import CaseError, Problem
+from loadshare.exchange.rexs.archive import refuse, unpacked
 from loadshare.exchange.rexs.model import Component, Model, Relation, Unread, Value
 from loadshare.exchange.rexs.quantities import QUANTITIES, in_si
 from loadshare.input import Unreadable, read_file
@@ -43,20 +39,8 @@ FIRST_NAMES = {
 }
 """Roles and attributes of couplings in version 1.0, and their later names."""
 
-DAMAGED = (
-    zipfile.BadZipFile,
-    zlib.error,
-    lzma.LZMAError,
-    NotImplementedError,
-    EOFError,
-    ValueError,
-)
-"""What reading an archive raises that is damaged, or packed in a way that Python does not know."""
-ENDINGS = (".rexs", ".rexsj")
 VERSIONS = re.compile(r"(1(\.[0-7])?|2(\.0)?)(\.0)?")
 """Of REXS, that are known."""
-ENCRYPTED = 1
-"""Flag of a file in an archive."""
 
 
 def read_model(path: Path) -> Model:
@@ -70,47 +54,26 @@ def read_model(path: Path) -> Model:
     try:
         content = read_file(path, ALLOWED.other_bytes)
         if path.suffix.lower() in OTHERS:
-            _refuse(path, OTHERS[path.suffix.lower()])
-        if content[:4] == b"PK\x03\x04":
-            content = _unpacked(path, content)
+            refuse(path, OTHERS[path.suffix.lower()])
+        content = unpacked(path, content)
     except OSError as error:
-        _refuse(path, (error.strerror or "cannot be read").lower())
+        refuse(path, (error.strerror or "cannot be read").lower())
     except Unreadable as error:
-        _refuse(path, str(error))
+        refuse(path, str(error))
     is_json = content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
     try:
         model = _from_json(content) if is_json else _from_xml(content)
     except _NoRexs as error:
-        _refuse(path, str(error))
+        refuse(path, str(error))
     except RecursionError:
-        _refuse(path, "is nested too deeply")
+        refuse(path, "is nested too deeply")
     if not model.components:
-        _refuse(path, "is no REXS: it has no components")
+        refuse(path, "is no REXS: it has no components")
     return model
 
 
 class _NoRexs(Exception):  # noqa: N818 -- reported as a problem, never raised to a user
     """Why a text is no REXS."""
-
-
-def _refuse(path: Path, why: str) -> NoReturn:
-    raise CaseError([Problem(str(path), "", "", why)])
-
-
-def _unpacked(path: Path, content: bytes) -> bytes:
-    try:
-        with zipfile.ZipFile(BytesIO(content)) as archive:
-            inside = [i for i in archive.infolist() if i.filename.lower().endswith(ENDINGS)]
-            if len(inside) != 1:
-                _refuse(path, f"is an archive with {len(inside)} REXS files, not 1")
-            if inside[0].flag_bits & ENCRYPTED:
-                _refuse(path, "is an encrypted archive")
-            if inside[0].file_size > ALLOWED.other_bytes:
-                raise Unreadable(f"is larger than {ALLOWED.other_bytes // 2**20} MiB")
-            with archive.open(inside[0]) as file:
-                return file.read(ALLOWED.other_bytes)
-    except DAMAGED:
-        _refuse(path, "is a damaged archive")
 
 
 def _from_xml(content: bytes) -> Model:

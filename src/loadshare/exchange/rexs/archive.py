@@ -1,0 +1,111 @@
+"""Archives of REXS files: what is inside, and a copy with another text of it."""
+
+from __future__ import annotations
+
+import lzma
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from copy import copy
+from io import BytesIO
+from pathlib import Path
+from typing import NoReturn
+
+from loadshare.errors import CaseError, Problem
+from loadshare.input import Unreadable
+from loadshare.settings import ALLOWED
+
+DAMAGED = (
+    zipfile.BadZipFile,
+    zlib.error,
+    lzma.LZMAError,
+    NotImplementedError,
+    EOFError,
+    ValueError,
+)
+"""What reading an archive raises that is damaged, or packed in a way that Python does not know."""
+ENDINGS = (".rexs", ".rexsj")
+ENCRYPTED = 1
+"""Flag of a file in an archive."""
+START = b"PK\x03\x04"
+"""Of an archive."""
+
+
+def refuse(path: Path, why: str) -> NoReturn:
+    """Refuse a file."""
+    raise CaseError([Problem(str(path), "", "", why)])
+
+
+def unpacked(path: Path, content: bytes) -> bytes:
+    """Return the one REXS file of an archive, or the content of what is none.
+
+    Raises
+    ------
+    CaseError
+        If the archive cannot be read or does not hold one such file.
+    Unreadable
+        If the file is too large.
+    """
+    if content[:4] != START:
+        return content
+    with _opened(path, content) as archive:
+        return _read(path, archive, _unit(path, archive))
+
+
+def repacked(path: Path, content: bytes, text: str) -> bytes:
+    """Return what `content` is with another text for its REXS file: an archive, or the text.
+
+    Everything else in the archive stays, with names and dates.
+
+    Raises
+    ------
+    CaseError
+        If the archive cannot be read.
+    Unreadable
+        If what it holds is too large.
+    """
+    if content[:4] != START:
+        return text.encode()
+    held = BytesIO()
+    with _opened(path, content) as archive, zipfile.ZipFile(held, "w") as made:
+        unit = _unit(path, archive)
+        if sum(info.file_size for info in archive.infolist()) > ALLOWED.other_bytes:
+            raise _too_large()
+        for info in archive.infolist():
+            inside = text.encode() if info is unit else _read(path, archive, info)
+            # What it says of sizes and places is that of the old archive.
+            made.writestr(copy(info), inside)
+        made.comment = archive.comment
+    return held.getvalue()
+
+
+@contextmanager
+def _opened(path: Path, content: bytes) -> Iterator[zipfile.ZipFile]:
+    """Open an archive; one that cannot be read is refused."""
+    try:
+        with zipfile.ZipFile(BytesIO(content)) as archive:
+            yield archive
+    except DAMAGED:
+        refuse(path, "is a damaged archive")
+
+
+def _unit(path: Path, archive: zipfile.ZipFile) -> zipfile.ZipInfo:
+    """Find the one REXS file."""
+    inside = [i for i in archive.infolist() if i.filename.lower().endswith(ENDINGS)]
+    if len(inside) != 1:
+        refuse(path, f"is an archive with {len(inside)} REXS files, not 1")
+    return inside[0]
+
+
+def _read(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
+    if info.flag_bits & ENCRYPTED:
+        refuse(path, "is an encrypted archive")
+    if info.file_size > ALLOWED.other_bytes:
+        raise _too_large()
+    with archive.open(info) as file:
+        return file.read(ALLOWED.other_bytes)
+
+
+def _too_large() -> Unreadable:
+    return Unreadable(f"is larger than {ALLOWED.other_bytes // 2**20} MiB")
