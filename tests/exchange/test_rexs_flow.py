@@ -325,3 +325,48 @@ def test_an_output_torque_that_the_others_contradict_is_reported(written) -> Non
     two = changed(two_stages(), _31={TORQUE: (240.0, "N m")})
     (line,) = [line for line in import_rexs(written(xml(*two))).assumed if "leave" in line]
     assert "gives -240 N·m in its sense of rotation, the others leave -600 N·m" in line
+
+
+# Speeds -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("middle", "running"), [(300.0, "clockwise"), (-300.0, "counter-clockwise")]
+)
+@pytest.mark.parametrize("output", [False, True])
+def test_the_running_sense_follows_from_the_speed_of_another_shaft(
+    written, middle, running, output
+) -> None:
+    """The teeth turn 300 rpm of the middle shaft into 600 of the input, the other way round."""
+    speeds = {"_11": {"rotational_speed": (middle, "1 / min")}}
+    if output:
+        speeds["_31"] = {TORQUE: (600.0, "N m")}
+    found = import_rexs(written(xml(*changed(two_stages(), **speeds))))
+    torque = {"clockwise": "100 N*m", "counter-clockwise": "-100 N*m"}[running]
+    assert found.data["operating"]["running"] == running
+    assert found.data["operating"]["torque"] == torque
+    said = [line for line in found.assumed if "gear_20: no speed is given" in line]
+    by = "by that of shaft 11 (middle) it runs"
+    assert said == [f"gear_20: no speed is given; {by} {running} at 600 rpm"]
+    if not output:
+        as_given = {"_10": {"rotational_speed": (-2.0 * middle, "1 / min")}}
+        plain = import_rexs(written(xml(*changed(two_stages(), **speeds, **as_given))))
+        assert found.data == plain.data
+    assert not any("teeth make it" in line for line in found.assumed)
+    both = speeds | {"_12": {"rotational_speed": (middle, "1 / min")}}
+    odd = import_rexs(written(xml(*changed(two_stages(), **both))))
+    assert any("shaft 12 (out) is given a speed of" in line for line in odd.assumed)
+
+
+def test_what_takes_power_is_no_input_while_another_torque_can_be(written) -> None:
+    """The output comes first in the file and has a speed; that of the input is not given."""
+    components, relations = changed(
+        two_stages(), _12={"rotational_speed": (100.0, "1 / min")}, _31={TORQUE: (600.0, "N m")}
+    )
+    swapped = {"_12": {"rotational_speed": (-100.0, "1 / min")}}
+    relations = [r for r in relations if r[1].get("part") != 30] + [
+        r for r in relations if r[1].get("part") == 30
+    ]
+    found = import_rexs(written(xml(*changed((components, relations), **swapped))))
+    assert found.data["operating"]["input"] == "gear_20"
+    assert found.data["operating"]["torque"] == "100 N*m"

@@ -263,3 +263,9 @@ def test_what_is_taken_for_the_width_of_a_mesh_is_listed(written) -> None:
         found = import_rexs(written(xml(*changed(two_stages(), _40=changes)))).assumed
         lines = [one for one in found if one.startswith("mesh gear_20-gear_21: carries")]
         assert [one.endswith(line or "") for one in lines] == ([True] if line else []), changes
+
+
+def test_a_negative_module_is_refused(written) -> None:
+    parts = changed(two_stages(), _21={"normal_module": (-2.0, "mm")})
+    with pytest.raises(CaseError, match="gear 21, normal_module = -2 mm: is negative"):
+        import_rexs(written(xml(*parts)))

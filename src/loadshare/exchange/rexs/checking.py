@@ -59,7 +59,7 @@ def unplaced(of: Gearing) -> list[str]:
 
 
 def contradictions(path: Path, of: Gearing) -> list[Problem]:
-    """Return a problem for every gear that is on several shafts or has part of a tooth."""
+    """Return problems: gears on several shafts, parts of teeth, negative modules."""
     problems = []
     for gear in of.gears:
         where = f"{gear.type} {gear.id}"
@@ -72,6 +72,12 @@ def contradictions(path: Path, of: Gearing) -> list[Problem]:
         if teeth is not None and abs(teeth - round(teeth)) > 1e-6:
             where = f"{where}, number_of_teeth"
             problems.append(Problem(str(path), where, f"{teeth:g}", "is no whole number"))
+        module = gear.number("normal_module")
+        if module is not None and module < 0.0:
+            where, given = f"{gear.type} {gear.id}, normal_module", f"{1e3 * module:g} mm"
+            hint = "An internal gear has negative teeth, or is a ring_gear."
+            why = "is negative"
+            problems.append(Problem(str(path), where, given, why, "the size of a tooth", hint))
     return problems
 
 

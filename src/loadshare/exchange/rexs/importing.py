@@ -135,7 +135,7 @@ class _Importer:
         if teeth is None or module is None or not round(abs(teeth)):
             self._lacks(gear, "has no number_of_teeth or normal_module")
             return {}
-        made: Data = {"teeth": round(abs(teeth)), "module": _mm(abs(module))}
+        made: Data = {"teeth": round(abs(teeth)), "module": _mm(module)}
         if gear.type == "ring_gear" or teeth < 0.0:
             made["type"] = "internal"
         flanks = self.of.flanks(gear)

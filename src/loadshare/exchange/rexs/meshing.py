@@ -160,4 +160,4 @@ def _base_radius(gear: Component, angle: float) -> float | None:
     if not teeth or not module or abs(helix) >= 0.5 * math.pi:
         return None
     transverse = math.atan(math.tan(angle) / math.cos(helix))
-    return abs(teeth) * abs(module) / (2.0 * math.cos(helix)) * math.cos(transverse)
+    return abs(teeth) * module / (2.0 * math.cos(helix)) * math.cos(transverse)
