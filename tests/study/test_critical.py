@@ -1,5 +1,6 @@
 """Critical values: against closed forms, independent solves, and scans of certified active sets."""
 
+import tomllib
 from dataclasses import asdict, replace
 from itertools import pairwise
 
@@ -13,6 +14,7 @@ from benchmarks.critical_paths.compare import compared
 from benchmarks.critical_paths.draw import random_path
 from benchmarks.critical_paths.judge import Outcome, followed, judged, shown
 from benchmarks.critical_paths.table import text
+from loadshare.case.starter import starter_case
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
 from loadshare.study.follow.zero import first_zero
@@ -433,6 +435,18 @@ def test_what_carries_nothing_does_not_change(support, ends) -> None:
         for torque, carries in ((opens - 0.01, True), (opens + 0.01, False)):
             at = ls.solve(case.replace({"operating.torque": f"{torque} N*m"})).positions[0]
             assert (abs(at.torque["s-i2"]) > 1e-9) == carries
+
+
+def test_a_torque_that_turns_round_changes_the_flanks_of_meshes_without_backlash() -> None:
+    """One flank of each carries on either side, so no contact opens; the change has a name."""
+    case = ls.Case(tomllib.loads(starter_case("box", "planetary")))
+    found = ls.critical(case, "operating.torque", "-300 N*m", "500 N*m")
+    assert {(e.value, e.kind, e.before, e.after) for e in found.events} == {
+        (0.0, "flank changes", "coast", "drive")
+    }
+    assert {e.element for e in found.events} == set(case.meshes)
+    assert not any(e.confirmed for e in found.events)
+    assert ls.critical(case, "operating.torque", "100 N*m", "500 N*m").events == ()
 
 
 def test_flanks_that_change_at_one_value_are_one_event() -> None:

@@ -21,7 +21,7 @@ from loadshare.job.positions import wanted_positions
 from loadshare.pictures import picture
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import switch_names
-from loadshare.study.follow.changes import Change
+from loadshare.study.follow.changes import Change, Gap, Point
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
 from loadshare.study.parameter import (
@@ -52,6 +52,7 @@ _STATES = {
     at.WALL: "on boundary",
 }
 
+_FLANKS = {True: "drive", False: "coast"}
 _SPLINE = {
     ("stick", "slip"): "slip starts",
     ("slip", "stick"): "slip ends",
@@ -81,7 +82,7 @@ class Event:
         The float concerned, for a ring or spline.
     kind : str
         "contact closes", "contact opens", "float reaches boundary", "float leaves boundary",
-        "slip starts", "slip ends", "clearance used up", "clearance opens".
+        "slip starts", "slip ends", "clearance used up", "clearance opens", "flank changes".
     before, after : str
         State below and above the value.
     together : int
@@ -278,6 +279,51 @@ class Critical(Viewed):
         return lines
 
 
+def flanks_changed(line: Line, position: int, gap: Gap) -> list[Event]:
+    """Tell of which meshes without backlash the load presses another flank behind a gap.
+
+    On either side a mesh of one flank has the one that is pressed, so no contact opens or closes.
+
+    Parameters
+    ----------
+    line : Line
+    position : int
+        1-based.
+    gap : Gap
+    """
+    first, last = gap.first, gap.last
+    if not (isinstance(first, Point) and isinstance(last, Point)):
+        return []
+    names = switch_names(line.structure)
+    carrying = {
+        name
+        for name, *states in zip(names, first.active.states, last.active.states, strict=True)
+        if all(state != at.OPEN for state in states)
+    }
+    before, after = (line.train(point.value).meshes for point in (first, last))
+    changed = sorted(n for n in carrying & before.keys() if before[n].turned != after[n].turned)
+    value = 0.0 if first.value <= 0.0 <= last.value else last.value
+    found = []
+    for name in changed:
+        here, then = (_FLANKS[m[name].is_drive(True)] for m in (before, after))
+        event = Event(
+            value=value,
+            unit=line.parameter.unit,
+            position=position,
+            element=name,
+            gear=None,
+            kind="flank changes",
+            before=here,
+            after=then,
+            together=len(changed),
+            confirmed=False,
+            worst=max(first.worst, last.worst),
+            apart=max(value - first.value, last.value - value),
+        )
+        found.append(event)
+    return found
+
+
 def critical(
     case: Case | str | FilePath,
     key: str | Sequence[str],
@@ -341,6 +387,8 @@ def critical(
         search = Search(here, group[0], low, high)
         search.run()
         found = [e for change in search.changes for e in events_of(here, group[0], change)]
+        if any(here.first.meshes[n].turned != m.turned for n, m in here.last.meshes.items()):
+            found += [e for gap in search.gaps for e in flanks_changed(here, group[0], gap)]
         for position in group:
             events += [replace(event, position=position) for event in found]
             unproved += [
