@@ -54,13 +54,17 @@ def test_nothing_is_searched_for_without_balance(monkeypatch):
         ls.solve(case)
 
 
+@pytest.mark.parametrize("given", ["1 N*m", "-7000 N*m"])
 @pytest.mark.parametrize("running", ["counter-clockwise", "clockwise"])
-def test_torques_that_do_not_cancel_are_told_what_would(running):
-    """A sun in, the carrier out: the ring of z teeth takes z/z_sun of the sun's torque."""
+def test_torques_that_do_not_cancel_are_told_what_would(running, given):
+    """A sun in, the carrier out: the ring of z teeth takes z/z_sun of the sun's torque.
+
+    A torque of the wrong sense presses flanks of meshes without backlash that cannot hold.
+    """
     case = shipped("planetary/four_planets").replace({"operating.running": running})
     sun, ring = (case.gears[g].teeth for g in ("sun", "ring"))
     torque = case.operating.input_torque[0]
-    free = {"gears.ring.held": False, "operating.external": {"ring": "1 N*m"}}
+    free = {"gears.ring.held": False, "operating.external": {"ring": given}}
     with pytest.raises(Refused, match=r'external\.ring = "([-\d.]+) N\*m"') as caught:
         ls.solve(case.replace(free), positions=[1])
     needed = re.search(r'external\.ring = "(.*) N', str(caught.value))

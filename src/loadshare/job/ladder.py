@@ -25,7 +25,7 @@ from loadshare.job.answer import Answer
 from loadshare.job.hot import hot_answers
 from loadshare.job.machine import Machine
 from loadshare.one_thread import one_thread
-from loadshare.scene.assemble import scene_of
+from loadshare.scene.assemble import assemble, scene_of
 from loadshare.scene.scene import Scene
 from loadshare.scene.structure import structure_of
 from loadshare.settings import JOB, PLACES
@@ -183,7 +183,8 @@ def _refuse_if_driven(scene: Scene) -> None:
         turning = [g for g in scene.rotation if f"gear {g} rotation" in moves]
         if len(turning) == len(moves) > 1:
             named = f"{', '.join(turning[:_NAMED])}{', …' if len(turning) > _NAMED else ''}"
-            hint = _balancing_torque(scene, moves) or "hold one (held = true) or give it a torque"
+            hint = _balancing_torque(scene, moves) or _balancing_with_backlash(scene)
+            hint = hint or "hold one (held = true) or give it a torque"
             also = f"; gears {named} turn together: {hint}"
         closing = _other_flanks(scene, moves)
         if closing:
@@ -229,6 +230,15 @@ def _balancing_torque(scene: Scene, moves: Mapping[str, float]) -> str:
                 f'"{sign * needed:.8g} N*m"'
             )
     return ""
+
+
+def _balancing_with_backlash(scene: Scene) -> str:
+    """Say the same of the train with both flanks: a torque of the wrong sense presses wrong ones."""
+    train = scene.train
+    meshes = {n: m if m.flanks[1:] else replace(m, backlash=0.0) for n, m in train.meshes.items()}
+    both = assemble(replace(train, meshes=meshes), scene.position) if train.external else None
+    moves = runaway(both) if both is not None else {}
+    return _balancing_torque(both, moves) if both is not None and moves else ""
 
 
 def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:
