@@ -16,6 +16,7 @@ from tests.support import answer, loaded, shipped
 import loadshare as ls
 from loadshare.certify import Judge, certify
 from loadshare.certify.validity import Measuring, validity
+from loadshare.report.words import advice
 from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
@@ -264,3 +265,49 @@ def test_a_warning_stands_in_the_result_and_outlives_a_file(tmp_path):
     result.to_json(tmp_path / "r.json")
     assert ls.load_result(tmp_path / "r.json") == result
     assert result.dataset.validity.sel(measure="compression").item() > CERTIFY.compressed
+
+
+def rig(clocking: str, **mesh: str) -> ls.Case:
+    """Two equal pairs back to back, the torque between them locked in by clocking a shaft."""
+    axis, wheels = ["0 mm", "0 mm"], ["150 mm", "0 mm"]
+    teeth = [{"teeth": n, "module": "4 mm"} for n in (25, 50)]
+    return ls.Case(
+        {
+            "operating": {"input": "t1", "output": "s2", "torque": "20 N*m"},
+            "gears": {
+                "t1": {"centre": axis, **teeth[0]},
+                "t2": {"centre": wheels, **teeth[1]},
+                "s1": {"centre": [*axis, "300 mm"], **teeth[0]},
+                "s2": {"centre": [*wheels, "300 mm"], **teeth[1]},
+            },
+            "meshes": {n: {"stiffness": "5e5 N*m/rad", **mesh} for n in ("t1-t2", "s1-s2")},
+            "shafts": {
+                "t1-s1": {"stiffness": "4e4 N*m/rad", "clocking": clocking},
+                "t2-s2": {"stiffness": "2e5 N*m/rad"},
+            },
+        }
+    )
+
+
+def test_a_mesh_without_backlash_that_is_wound_open_is_told() -> None:
+    """With backlash the loop is a torsion spring: springs in a row, reduced to the first shaft.
+
+    Of 20 N·m from outside a part goes either way, as the compliances share it.
+    """
+    mesh, thin, thick = 1 / 5e5, 1 / 4e4, 4 / 2e5
+    play = 100e-6 / 50e-3
+    found = ls.solve(rig("8 mrad", backlash="100 um"))
+    loop = 2 * mesh + thin + thick
+    expected = (8e-3 - play + 20 * (thin + mesh)) / loop
+    (position,) = found.positions
+    assert position.torque["t1-t2"] == pytest.approx(expected, rel=1e-9)
+    assert position.torque["s1-s2"] == pytest.approx(20 - expected, rel=1e-9)
+    assert "backlash" not in advice(found)
+    silent = ls.solve(rig("8 mrad"))
+    assert silent.positions[0].torque["s1-s2"] == 0.0
+    assert "mesh s1-s2 is open (position 1)" in advice(silent)
+    opening = (8e-3 - 20 * (mesh + thick)) * 50e-3 * math.cos(math.radians(20))
+    measure = silent.positions[0].validity.measures["apart"]
+    assert measure.value == pytest.approx(opening / (2.25 * 4e-3), rel=1e-9)
+    assert advice(ls.solve(rig("2 mrad"))) == ""
+    assert "apart" not in ls.solve(rig("8 mrad", gap="9 mrad")).positions[0].validity.measures

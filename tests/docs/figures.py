@@ -481,7 +481,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
     "exit codes": (r"^\| (?:0|1|2|130|143) \|", r"exit code (?:is )?\d(?: or \d)?"),
     "settings, each also a constant of the code": (
         r"^\| (?:line of action turned|approach neglected|mesh compression|arm of a ring).*$",
-        r"^\| open where either flank may carry.*$",
+        r"^\| open (?:where either flank may carry|without a backlash).*$",
         r"Mesh stiffnesses are known to about 1 %",
         r"κ [<≥] 1\b",
         r"some \$2/\\kappa - 1\$ times",

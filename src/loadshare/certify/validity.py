@@ -19,6 +19,9 @@ neglects is estimated here from the answer alone, and so are the bounds:
   press either one (`train.pressed`), and the mesh is open in the answer, the other flank would
   carry with a play of less than the opening. There is no refusal: with more play the answer holds.
   What a relief leaves between the other flanks is not counted, which is on the safe side.
+- **Apart.** Any other mesh of unknown backlash that is open by more than teeth usually have play,
+  by errors or by clockings that wind a loop up, would carry on its other flank too. This is told,
+  and bounds nothing.
 - **Ring.** Arcs hold exactly at any displacement, but a drum's stops keep their direction: they are
   off by the angle by which the arm from the neighbour turns.
 
@@ -48,6 +51,8 @@ from loadshare.train.train import Train
 
 NEITHER = "neither"
 """A mesh that is open where loads may press either flank."""
+APART = "apart"
+"""Any other mesh of unknown backlash that is open."""
 
 LABELS = {
     "centre": "centre displaced / base radius",
@@ -57,6 +62,7 @@ LABELS = {
     "line_of_action": "line of action turned [rad]",
     "approach": "approach neglected / deflection",
     NEITHER: "open where either flank may carry / deflection",
+    APART: "open without a backlash / tooth height",
     "ring": "arm of a ring turned [rad]",
 }
 """What is measured, each a pure number, in the order in which it is reported."""
@@ -150,6 +156,9 @@ class Measuring:
         self.vanishing = float(np.tan(0.5 * angle).min(initial=math.inf))
         held = {*train.held, *(g for s in train.shafts.values() for g in (s.first, s.second))}
         self.unsure = [e for e, (mesh, drive) in enumerate(of.flanks) if drive and mesh.unsure]
+        self.alone = [
+            e for e, (mesh, _) in enumerate(of.flanks) if not (mesh.flanks[1:] or mesh.unsure)
+        ]
         self.turnable = [k for g, k in order.items() if g not in held]
 
     @property
@@ -187,13 +196,8 @@ class Measuring:
         of = self.of
         if not of.flanks:
             return {}
-        # Samples lie next to one another: sums and largest values then run along them.
-        shifts = np.ascontiguousarray(
-            (answers.displacement + situations.offset).reshape(len(answers.rotation), -1).T
-        )
-        compression = of.turning @ answers.rotation.T
-        compression += of.pushing @ shifts
-        compression -= situations.gap.T
+        shifts = _shifts(situations, answers)
+        compression = self._compression(situations, answers, shifts)
         turned = np.abs((self.across / self.line) @ shifts)
         neglected = 0.5 * self.line * turned * turned
         room = np.maximum(-compression, 0.0) - neglected
@@ -206,12 +210,22 @@ class Measuring:
             "approach": np.maximum(-room, 0.0) / deflection,
         }
         if self.unsure:
-            # A gap opens the flank that is pressed, and not the other one.
-            apart = -(compression + situations.gap.T)[self.unsure]
-            found[NEITHER] = np.maximum(apart, 0.0) / deflection
+            found[NEITHER] = self._apart(situations, compression)[self.unsure] / deflection
         if len(of.drum):
             found["ring"] = self._arms(answers)
         return found
+
+    def _compression(self, situations: Situations, answers: Equilibria, shifts: Array) -> Array:
+        """How far all flanks are compressed [m], negative where they are open, (flanks, S)."""
+        compression = self.of.turning @ answers.rotation.T
+        compression += self.of.pushing @ shifts
+        compression -= situations.gap.T
+        return compression
+
+    def _apart(self, situations: Situations, compression: Array) -> Array:
+        """How far the other flanks would have to give way [m], (flanks, S)."""
+        # A gap opens the flank that is pressed, and not the other one.
+        return np.maximum(-(compression + situations.gap.T), 0.0)
 
     def _room_of_idle(
         self, situations: Situations, answers: Equilibria, room: Array, rows: Numbers
@@ -278,7 +292,7 @@ class Measuring:
             return f"gear {self.of.gears[element]}"
         if name == "ring":
             return f"ring {self.train.drums[element // 2].gear}"
-        flank = self.unsure[element] if name == NEITHER else element
+        flank = {NEITHER: self.unsure, APART: self.alone}.get(name, range(element + 1))[element]
         return f"mesh {self.of.flanks[flank][0].name}"
 
     def every(
@@ -306,10 +320,15 @@ class Measuring:
         self, situations: Situations, answers: Equilibria, deflection: Array
     ) -> list[dict[str, Measure]]:
         """Return all figures, answer by answer; parameters are those of `bounded`."""
+        every = self.every(situations, answers, deflection)
+        if self.alone:
+            compression = self._compression(situations, answers, _shifts(situations, answers))
+            every[APART] = (self._apart(situations, compression) / self.height)[self.alone]
         found: list[dict[str, Measure]] = [{} for _ in answers.rotation]
-        for name, values in self.every(situations, answers, deflection).items():
+        for name, values in every.items():
             for row, figures in enumerate(values.T):
-                found[row][name] = self._largest(name, figures)
+                if name != APART or figures.max() > CERTIFY.apart:
+                    found[row][name] = self._largest(name, figures)
         return found
 
 
@@ -331,6 +350,13 @@ def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
 def measuring(train: Train) -> Measuring:
     """Return what is measured on a train, kept for its other positions."""
     return Measuring(train)
+
+
+def _shifts(situations: Situations, answers: Equilibria) -> Array:
+    """Displacements and offsets [m], (3 gears, S)."""
+    # Samples lie next to one another: sums and largest values then run along them.
+    moved = answers.displacement + situations.offset
+    return np.ascontiguousarray(moved.reshape(len(answers.rotation), -1).T)
 
 
 def _axis(train: Train, mesh: Mesh) -> Array:

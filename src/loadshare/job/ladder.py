@@ -233,7 +233,7 @@ def _balancing_torque(scene: Scene, moves: Mapping[str, float]) -> str:
 
 
 def _balancing_with_backlash(scene: Scene) -> str:
-    """Say the same of the train with both flanks: a torque of the wrong sense presses wrong ones."""
+    """Say the same with both flanks: a torque of the wrong sense presses the wrong ones."""
     train = scene.train
     meshes = {n: m if m.flanks[1:] else replace(m, backlash=0.0) for n, m in train.meshes.items()}
     both = assemble(replace(train, meshes=meshes), scene.position) if train.external else None

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from loadshare.certify import FloatState
-from loadshare.certify.validity import LABELS, NEITHER
+from loadshare.certify.validity import APART, LABELS, NEITHER
 from loadshare.report.numbers import runs, significant
 from loadshare.report.units import engineering, read_best
 from loadshare.results import Position, Result
@@ -164,7 +164,10 @@ def advice(result: Result) -> str:
     """What to think of displacements above the bound of a warning; empty if there are none."""
     large: dict[int, list[str]] = {}
     neither: dict[str, list[int]] = {}
+    apart: dict[str, list[int]] = {}
     for p in result.positions:
+        if (open_ := p.validity.measures.get(APART)) is not None:
+            apart.setdefault(open_.where, []).append(p.position)
         for name, measure in p.validity.warned.items():
             if name == NEITHER:
                 neither.setdefault(measure.where, []).append(p.position)
@@ -176,6 +179,12 @@ def advice(result: Result) -> str:
         "either one, and without a backlash it has one only; shares of load may be wrong. Give the "
         'mesh its backlash, such as backlash = "0 um"'
         for mesh, where in neither.items()
+    ]
+    found += [
+        f"{mesh} is open ({noun} {', '.join(runs(where))}) by as much as teeth usually have play, "
+        "or more, and without a backlash its other flank is left out; torques may be wrong. Give "
+        'the mesh its backlash, such as backlash = "0.1 mm"'
+        for mesh, where in apart.items()
     ]
     if large:
         reasons = "; ".join(LABELS[n] for n in dict.fromkeys(n for s in large.values() for n in s))

@@ -54,6 +54,9 @@ class Certify(NamedTuple):
     compressed: float = 0.1
     """Share of a tooth's height by which it yields, from which on a warning is given: the square of
     it, 1 %, is what linear bending neglects."""
+    apart: float = 0.02
+    """Opening of a mesh without a given backlash, over the height of its teeth, from which on it is
+    told: 0.045 modules, about the play that teeth usually have."""
     height: float = 2.25
     """Height of a tooth in modules: addendum 1, dedendum 1.25."""
     fewest: int = 17
