@@ -15,6 +15,7 @@ from benchmarks.critical_paths.draw import random_path
 from benchmarks.critical_paths.judge import Outcome, followed, judged, shown
 from benchmarks.critical_paths.table import text
 from loadshare.case.starter import starter_case
+from loadshare.study.follow.active import switch_names
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
 from loadshare.study.follow.zero import first_zero
@@ -188,7 +189,8 @@ def sets_along(
         active = setting.active_set(answer.equilibrium)
         moved = active.changes(last or active, setting.structure)
         if moved:
-            changes.append((float(value), set(moved)))
+            names = switch_names(setting.structure)
+            changes.append((float(value), {names[k] for k in moved}))
         last = active
     return changes
 

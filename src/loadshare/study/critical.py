@@ -128,12 +128,12 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
     structure = line.structure
     rows, kinds = structure.rows, structure.kinds[structure.columns.contacts]
     names = switch_names(structure)
-    pairs = list(zip(change.before.states, change.after.states, strict=True))
-    changed = [k for k, (here, then) in enumerate(pairs) if here != then]
+    changed = change.before.changes(change.after, structure)
     found = []
-    for k in sorted(changed, key=lambda k: (k >= rows, names[k] if k < rows else "")):
+    for k in changed:
         ring = k >= rows and structure.radials[k - rows].kind == "ring"
-        before, after = (_state(states, k < rows, ring) for states in pairs[k])
+        sides = (change.before, change.after)
+        before, after = (_state(side.states[k], k < rows, ring) for side in sides)
         if before == after:
             continue
         gear = None

@@ -38,15 +38,11 @@ class WorkingSet:
     pieces: tuple[int, ...] = ()
     tied: frozenset[int] = frozenset()
 
-    def changes(self, other: WorkingSet, structure: Structure) -> tuple[str, ...]:
-        """Names of the elements whose state differs, contacts first."""
-        pairs = zip(self.states, other.states, strict=True)
-        changed = [k for k, (here, there) in enumerate(pairs) if here != there]
-        names, rows = switch_names(structure), structure.rows
-        return (
-            *sorted(names[k] for k in changed if k < rows),
-            *(names[k] for k in changed if k >= rows),
-        )
+    def changes(self, other: WorkingSet, structure: Structure) -> list[int]:
+        """Numbers of the elements whose state differs, contacts first, these by name."""
+        names, rows = structure.row_names, structure.rows
+        changed = np.flatnonzero(np.not_equal(self.states, other.states)).tolist()
+        return sorted(changed, key=lambda k: (k >= rows, names[k] if k < rows else ""))
 
 
 def switch_names(structure: Structure) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.settings import FOLLOW
-from loadshare.study.follow.equations import Equations, free_moves, scaling
+from loadshare.study.follow.equations import Equations, balanced, free_moves
 from loadshare.study.follow.numbers import Numbers
 
 
@@ -21,8 +21,8 @@ def centred(equations: Equations, z: Array, numbers: Numbers) -> Array:
     jacobian = np.nan_to_num(equations.jacobian(z, numbers))
     if not equations.leaves_free(jacobian):
         return z
-    factor = scaling(jacobian)
-    right, null = free_moves(jacobian * factor[:, :, None] * factor[:, None, :])
+    factor, scaled = balanced(jacobian)
+    right, null = free_moves(scaled)
     rows = np.flatnonzero(null.any(axis=1))
     if not len(rows):
         return z
@@ -131,10 +131,8 @@ def _rooms(equations: Equations, z: Array, numbers: Numbers, facets: Array) -> t
     """
     state = equations.state(z, numbers)
     count, n = len(z), equations.n
-    idle = np.flatnonzero(~equations.acts[equations.structure.springs :])
-    idle = (
-        idle[idle < equations.scalars - equations.structure.springs] + equations.structure.springs
-    )
+    # Springs always act.
+    idle = np.flatnonzero(~equations.acts)
     approach = state.approach[:, idle]
     room = [np.where(np.isfinite(approach), -approach, np.inf)]
     vectors = np.broadcast_to(numbers.vectors, (count, *numbers.vectors.shape[1:]))

@@ -398,9 +398,7 @@ class Equations:
     def leaves_free(self, jacobian: Array) -> bool:
         """Whether the set leaves moves free, found at the first points at which it is solved."""
         if self._free is None:
-            factor = scaling(jacobian)
-            scaled = jacobian * factor[:, :, None] * factor[:, None, :]
-            self._free = bool(free_moves(scaled)[1].any())
+            self._free = bool(free_moves(balanced(jacobian)[1])[1].any())
         return self._free
 
     def start(self, x: Array, numbers: Numbers) -> Array:
@@ -426,21 +424,27 @@ def pressed(b: Array, c: Array, approach: Array) -> tuple[Array, Array]:
     return np.copysign(root**3, approach), slope
 
 
-def scaling(jacobian: Array) -> Array:
-    """Factors (S, size) that bring the largest entry of every row of a Jacobian to about one."""
-    largest = np.abs(jacobian).max(axis=2)
-    factor = 1.0 / np.sqrt(np.where(largest > 0.0, largest, 1.0))
-    for _ in range(2):
-        scaled = np.abs(jacobian) * factor[:, :, None] * factor[:, None, :]
-        largest = scaled.max(axis=2)
+def balanced(jacobian: Array) -> tuple[Array, Array]:
+    """Scale the rows and columns of a Jacobian so that the largest entry of each is about one.
+
+    Returns
+    -------
+    ndarray, shape (S, size)
+        Factors of rows, and of columns.
+    ndarray, shape (S, size, size)
+        The scaled Jacobian.
+    """
+    factor, scaled = np.ones(jacobian.shape[:2]), jacobian
+    for _ in range(3):
+        largest = np.abs(scaled).max(axis=2)
         factor = factor / np.sqrt(np.where(largest > 0.0, largest, 1.0))
-    return np.asarray(factor)
+        scaled = jacobian * factor[:, :, None] * factor[:, None, :]
+    return factor, scaled
 
 
 def least_norm_step(jacobian: Array, off: Array, singular: bool = True) -> Array:
     """Solve J step = off, by the least step in scaled unknowns where J is singular."""
-    factor = scaling(jacobian)
-    scaled = jacobian * factor[:, :, None] * factor[:, None, :]
+    factor, scaled = balanced(jacobian)
     if not singular:
         try:
             return np.asarray(factor * np.linalg.solve(scaled, (factor * off)[:, :, None])[:, :, 0])
@@ -459,7 +463,7 @@ def free_moves(jacobian: Array) -> tuple[Array, Flags]:
     Returns
     -------
     ndarray, shape (S, size, size)
-        In unknowns scaled as by `scaling`, orthonormal, one a row.
+        In unknowns scaled as by `balanced`, orthonormal, one a row.
     ndarray of bool, shape (S, size)
         Which of the rows are such moves.
     """

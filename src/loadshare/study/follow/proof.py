@@ -26,7 +26,7 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
-from loadshare.study.follow.equations import free_moves, scaling
+from loadshare.study.follow.equations import balanced, free_moves
 from loadshare.study.follow.forces import forces
 from loadshare.study.follow.gauges import gauges
 from loadshare.study.follow.ranges import Flags, sampled
@@ -64,8 +64,7 @@ def _inverse(s: Stretches) -> tuple[Array, Flags]:
     """Inverse of the Jacobian in the middle, moves that nothing resists held fixed."""
     jacobian = s.equations.jacobian(s.flat[s.middle], s.at_middle)
     jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
-    factor = scaling(jacobian)
-    scaled = jacobian * factor[:, :, None] * factor[:, None, :]
+    factor, scaled = balanced(jacobian)
     right, null = free_moves(scaled)
     moves = np.where(null[:, :, None], right, 0.0)
     if null.any():

@@ -10,7 +10,7 @@ Nothing depends on where the range ends.
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import compress, pairwise
 
 import numpy as np
 
@@ -184,13 +184,9 @@ class Search:
         middle = np.array([0.5 * (first.value + last.value) for first, last in stretches])
         of = np.searchsorted(values, middle) - 1
         left = np.bincount(of, width, len(values) - 1)
-        hopeful = ~np.isclose(left, np.diff(values))[of]
-        self.gaps += [
-            Gap(*stretch, "no part of it was proved")
-            for stretch, some in zip(stretches, hopeful.tolist(), strict=True)
-            if not some
-        ]
-        return [s for s, some in zip(stretches, hopeful.tolist(), strict=True) if some]
+        hopeless = np.isclose(left, np.diff(values))[of]
+        self.gaps += [Gap(*s, "no part of it was proved") for s in compress(stretches, hopeless)]
+        return list(compress(stretches, ~hopeless))
 
     def _unconfirmed(self, gap: Gap) -> Change | None:
         """Return the change between the ends of what is not proved, if there is one."""
@@ -271,7 +267,7 @@ class Search:
         near = FOLLOW.resolved * max(abs(value), abs(value - point.value))
         values = [value - step for step in steps if abs(step) > near]
         two = np.array([value, values[-1] if values else value])
-        z, good = self._solved(equations, two, np.repeat(point.z[None], 2, axis=0))
+        z, good, _ = self._solved(equations, two, point.z)
         event = replace(point, value=value, z=z[0])
         whole = between([point.value, value], [point.z, z[0]])
         if good[0] and self.prover.proof(equations, whole).holds[0]:
@@ -281,8 +277,7 @@ class Search:
         last = self.prover.proof(equations, [(values[-1], values[-1], z[1], z[1])])
         if not good[1] or (last.enclosed[0] and not last.holds[0]):
             return None
-        start = np.repeat(point.z[None], len(values), axis=0)
-        z, good = self._solved(equations, np.array(values), start)
+        z, good, _ = self._solved(equations, np.array(values), point.z)
         if not good.all():
             return None
         left = self.prover.unproved(equations, between(values, z))
@@ -296,20 +291,13 @@ class Search:
         hidden = not beyond.enclosed[-1] and (beyond.holds == beyond.enclosed).all()
         return replace(point, value=values[proved], z=z[proved]) if hidden else None
 
-    def _solved(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
+    def _solved(
+        self, equations: Equations, values: Array, near: Array
+    ) -> tuple[Array, Flags, Numbers]:
         """Solve a set at values (S,), from unknowns near by; what nothing holds is centred."""
         numbers = self.line.numbers(self.position, values)
-        z, good = equations.solve(near, numbers)
-        return centred(equations, z, numbers), good
-
-    def _gauges(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
-        """Gauges (S, gauges) of a set at values, and whether it has a solution there."""
-        numbers = self.line.numbers(self.position, values)
-        z, good = equations.solve(near, numbers)
-        z = centred(equations, z, numbers)
-        with np.errstate(all="ignore"):
-            found = gauges_at(Stretches.at_points(equations, z, numbers))
-            return np.stack([gauge.first for gauge in found], axis=1), good
+        z, good = equations.solve(np.repeat(near[None], len(values), axis=0), numbers)
+        return centred(equations, z, numbers), good, numbers
 
     def exit(self, near: Point, far: Point) -> float | None:
         """Return the value at which a set is left on the way to another, None if it is not found.
@@ -348,8 +336,10 @@ class Search:
         self, equations: Equations, values: Array, near: Array
     ) -> tuple[Array, Array] | None:
         """Gauges of a set at values, up to the first at which it has no solution."""
-        start = np.repeat(near[None], len(values), axis=0)
-        gauges, good = self._gauges(equations, values, start)
+        z, good, numbers = self._solved(equations, values, near)
+        with np.errstate(all="ignore"):
+            found = gauges_at(Stretches.at_points(equations, z, numbers))
+            gauges = np.stack([gauge.first for gauge in found], axis=1)
         count = len(values) if good.all() else int(np.argmin(good))
         return (values[:count], gauges[:count]) if count else None
 

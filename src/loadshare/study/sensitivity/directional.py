@@ -148,7 +148,9 @@ class Neighbourhood:
             return None
         elements: tuple[str, ...] = ()
         if self.own is not None:
-            elements = self.own.branch.active.changes(branch.active, self._setting.structure)
+            structure = self._setting.structure
+            changed = self.own.branch.active.changes(branch.active, structure)
+            elements = tuple(switch_names(structure)[k] for k in changed)
         # What an input leaves where it is, on the verge or not, is so to the other side as well.
         one_sided = bool(elements) or len(still) < len(verge)
         beside = tuple(self._with(point, still, sign, varied))
