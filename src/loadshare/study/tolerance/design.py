@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,52 +11,10 @@ from loadshare.array_types import Array
 from loadshare.settings import JOB, TOLERANCE
 from loadshare.study.tolerance.inputs import Inputs
 
-Rows = NDArray[np.int64]
-
-
-class Design(Protocol):
-    """Samples in blocks of up to `JOB.block`."""
-
-    @property
-    def blocks(self) -> int:
-        """Number of blocks."""
-
-    def rows(self, block: int) -> Rows:
-        """Numbers of a block's samples, from 0."""
-
-    def values(self, block: int) -> Array:
-        """Inputs of a block's samples in their units, shape (rows, inputs)."""
-
 
 @dataclass(frozen=True)
 class Drawn:
-    """Samples that are drawn."""
-
-    inputs: Inputs
-    count: int
-    seed: int
-    sampling: str
-
-    @property
-    def blocks(self) -> int:
-        """See `Design`."""
-        return -(-self.count // JOB.block)
-
-    def rows(self, block: int) -> Rows:
-        """See `Design`."""
-        return np.arange(block * JOB.block, min((block + 1) * JOB.block, self.count))
-
-    def values(self, block: int) -> Array:
-        """See `Design`."""
-        points = uniforms(self.sampling, self.seed, (), block, len(self.inputs.every))
-        return self.inputs.values(points[: len(self.rows(block))])
-
-
-@dataclass(frozen=True)
-class PickFreeze:
-    """Saltelli's design: A, B, and A with one unit of inputs after another taken from B.
-
-    Row r of matrix m has the number m · count + r; the matrices are in this order.
+    """Samples that are drawn, in blocks of up to `JOB.block`.
 
     Attributes
     ----------
@@ -66,11 +23,6 @@ class PickFreeze:
         Rows of each matrix.
     seed : int
     sampling : str
-
-    Notes
-    -----
-    A. Saltelli et al., Variance based sensitivity analysis of model output, Computer Physics
-    Communications 181 (2010). Correlated inputs are exchanged together, as one unit.
     """
 
     inputs: Inputs
@@ -80,8 +32,8 @@ class PickFreeze:
 
     @property
     def matrices(self) -> int:
-        """A, B, and one for each unit."""
-        return 2 + len(self.inputs.units)
+        """How many matrices of samples there are."""
+        return 1
 
     @property
     def _each(self) -> int:
@@ -89,17 +41,39 @@ class PickFreeze:
 
     @property
     def blocks(self) -> int:
-        """See `Design`."""
-        return self.matrices * self._each if self.count else 0
+        """Number of blocks."""
+        return self.matrices * self._each
 
-    def rows(self, block: int) -> Rows:
-        """See `Design`."""
+    def rows(self, block: int) -> NDArray[np.int64]:
+        """Numbers of a block's samples, from 0."""
         matrix, part = divmod(block, self._each)
         start = matrix * self.count
         return np.arange(start + part * JOB.block, start + min((part + 1) * JOB.block, self.count))
 
     def values(self, block: int) -> Array:
-        """See `Design`."""
+        """Inputs of a block's samples in their units, shape (rows, inputs)."""
+        points = uniforms(self.sampling, self.seed, (), block, len(self.inputs.every))
+        return self.inputs.values(points[: len(self.rows(block))])
+
+
+class PickFreeze(Drawn):
+    """Saltelli's design: A, B, and A with one unit of inputs after another taken from B.
+
+    Row r of matrix m has the number m · count + r; the matrices are in this order.
+
+    Notes
+    -----
+    A. Saltelli et al., Variance based sensitivity analysis of model output, Computer Physics
+    Communications 181 (2010). Correlated inputs are exchanged together, as one unit.
+    """
+
+    @property
+    def matrices(self) -> int:
+        """A, B, and one for each unit."""
+        return 2 + len(self.inputs.units)
+
+    def values(self, block: int) -> Array:
+        """Inputs of a block's samples in their units, shape (rows, inputs)."""
         matrix, part = divmod(block, self._each)
         width = len(self.inputs.every)
         both = uniforms(self.sampling, self.seed, (1,), part, 2 * width)[: len(self.rows(block))]

@@ -14,7 +14,7 @@ import numpy as np
 
 from loadshare._version import __version__
 from loadshare.case import Case
-from loadshare.study.tolerance.design import Design, Drawn, PickFreeze
+from loadshare.study.tolerance.design import Drawn, PickFreeze
 from loadshare.study.tolerance.figures import Solver
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train import build_train
@@ -111,7 +111,7 @@ class Job:
         )
 
     @cached_property
-    def designs(self) -> dict[str, Design]:
+    def designs(self) -> dict[str, Drawn]:
         """Samples by what they serve."""
         seed, sampling = self.settings["seed"], self.settings["sampling"]
         return {
@@ -160,7 +160,7 @@ class Job:
             metadata={STAMP: self.stamp(part)},
         )
 
-    def _piece(self, design: Design, block: int) -> dict[str, Any]:
+    def _piece(self, design: Drawn, block: int) -> dict[str, Any]:
         """Solve one block; answers never depend on what else is in its part."""
         rows, values = design.rows(block), design.values(block)
         found = self.solver.solve(values)
