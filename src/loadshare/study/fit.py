@@ -25,7 +25,6 @@ from loadshare.study.parameter import (
     RANGE,
     STUDY,
     Parameter,
-    Value,
     applied,
     check_apart,
     check_smooth,
@@ -116,7 +115,7 @@ class Fit(Viewed):
     @property
     def values(self) -> dict[str, str | float]:
         """Fitted values by parameter, as a case file says them."""
-        return {u.parameter.name: Value(u.value, u.parameter.unit).text for u in self.unknowns}
+        return {u.parameter.name: u.parameter.text(u.value) for u in self.unknowns}
 
     def to_dataframe(self) -> pd.DataFrame:
         """The fitted inputs as a table, one row each, in the unit given next to them."""
@@ -235,7 +234,7 @@ class _Problem:
         if not unknowns:
             raise CaseError([Problem(STUDY, "fit", "", "has no unknown")])
         self.parameters: list[Parameter] = []
-        lows, highs = [], []
+        ranges = []
         for key, bounds in unknowns.items():
             ends = _ends(bounds)
             numbers, unit = grid(ends, named(key), RANGE)
@@ -245,10 +244,9 @@ class _Problem:
             parameter = read_parameter(case, key, unit)
             check_smooth(parameter)
             self.parameters.append(parameter)
-            lows.append(numbers[0])
-            highs.append(numbers[1])
+            ranges.append(numbers)
         check_apart(self.parameters)
-        self.low, self.high = np.array(lows), np.array(highs)
+        self.low, self.high = np.array(ranges).T
         self.spread = np.array([t.uncertainty for t in self.targets])
         self.measured = np.array([t.value for t in self.targets])
         self.evaluations = 0
@@ -262,8 +260,7 @@ class _Problem:
                 try:
                     applied(self.case, [parameter], [end])
                 except CaseError as error:
-                    tried = Value(end, parameter.unit).text
-                    hint = f"The bound {tried} of the fit makes no case."
+                    hint = f"The bound {parameter.text(end)} of the fit makes no case."
                     problems += [replace(p, hint=p.hint or hint) for p in error.problems]
         return CaseError(problems) if problems else None
 

@@ -9,6 +9,7 @@ from fnmatch import fnmatchcase
 from functools import cache
 from typing import Any
 
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.content import ABOUT
 from loadshare.case.counts import takes_count
@@ -147,9 +148,13 @@ class Parameter:
         """Its name with the unit in brackets."""
         return with_unit(self.name, self.unit)
 
+    def text(self, number: float) -> str | float:
+        """Return one of its values as a case file has it."""
+        return Value(float(number), self.unit).text
+
     def changes(self, number: float) -> dict[str, Any]:
         """Return the changes that `Case.replace` takes."""
-        return dict.fromkeys(self.keys, Value(float(number), self.unit).text)
+        return dict.fromkeys(self.keys, self.text(number))
 
 
 def check_apart(parameters: Iterable[Parameter]) -> None:
@@ -191,10 +196,19 @@ def applied(case: Case, parameters: Iterable[Parameter], numbers: Iterable[float
     CaseError
         If the case cannot be used with them.
     """
-    changes: dict[str, Any] = {}
-    for parameter, number in zip(parameters, numbers, strict=True):
-        changes |= parameter.changes(number)
-    return case.replace(changes)
+    return case.replace(changes_of(parameters, numbers))
+
+
+def changes_of(parameters: Iterable[Parameter], numbers: Iterable[float]) -> dict[str, Any]:
+    """Return the values of several parameters as the changes that `Case.replace` takes."""
+    pairs = zip(parameters, numbers, strict=True)
+    return {key: value for p, number in pairs for key, value in p.changes(number).items()}
+
+
+def table_of(parameters: Iterable[Parameter], values: Array) -> dict[str, Array]:
+    """Return values, shape (S, parameters), as `loadshare.solve_many` takes them."""
+    columns = zip(parameters, values.T, strict=True)
+    return {with_unit(key, p.unit): column for p, column in columns for key in p.keys}
 
 
 def read_parameter(case: Case, key: str | Sequence[str], unit: str) -> Parameter:

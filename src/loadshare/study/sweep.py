@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.case import Case
-from loadshare.case.keys import with_unit
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
@@ -33,6 +32,7 @@ from loadshare.study.parameter import (
     grid,
     named,
     read_parameter,
+    table_of,
     too_many,
 )
 from loadshare.study.positions import loaded
@@ -283,14 +283,14 @@ def sweep(
     refused: dict[int, CaseError] = {}
     try:
         _check_corners(case, chosen, points)
-        answered = answer_samples(case, _samples(chosen, points), positions, progress)
+        answered = answer_samples(case, table_of(chosen, points), positions, progress)
     except CaseError as error:
         refused = _unusable(case, chosen, points)
         if len(refused) in (0, total):
             # No point makes a case: the keys themselves are wrong.
             raise refused.get(0, error) from None
         some = np.delete(points, list(refused), axis=0)
-        answered = answer_samples(case, _samples(chosen, some), positions, progress)
+        answered = answer_samples(case, table_of(chosen, some), positions, progress)
     usable = tuple(k for k in range(total) if k not in refused)
     found = {k: _point(tuple(points[k].tolist()), answered, s) for s, k in enumerate(usable)}
     for k, why in refused.items():
@@ -305,15 +305,6 @@ def sweep(
         answered=answered,
         usable=usable,
     )
-
-
-def _samples(chosen: Sequence[Parameter], values: Array) -> dict[str, Array]:
-    """Return the points as `solve_many` takes them."""
-    return {
-        with_unit(key, parameter.unit): values[:, number]
-        for number, parameter in enumerate(chosen)
-        for key in parameter.keys
-    }
 
 
 def _check_corners(case: Case, chosen: Sequence[Parameter], values: Array) -> None:

@@ -10,6 +10,7 @@ from tests.support import shipped
 import loadshare as ls
 from loadshare.case.study import Spread
 from loadshare.settings import TOLERANCE
+from loadshare.study.parameter import table_of
 from loadshare.study.tolerance.design import uniforms
 from loadshare.study.tolerance.distribution import Distribution, read_distribution
 from loadshare.study.tolerance.inputs import Inputs, read_inputs
@@ -92,7 +93,7 @@ def test_a_star_draws_each_key_and_equal_signs_tie():
     )
     (one,) = read_inputs(tied, "errors").every
     assert one.keys == ("rings.4.float", "rings.5.float")
-    assert list(one.samples(np.ones(2))) == ["rings.4.float [um]", "rings.5.float [um]"]
+    assert list(table_of([one], np.ones((2, 1)))) == ["rings.4.float [um]", "rings.5.float [um]"]
     again = Inputs.from_plain(inputs.to_plain())
     assert again.every == inputs.every
 

@@ -10,6 +10,8 @@ from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
@@ -19,7 +21,7 @@ from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
 from loadshare.study.follow.active import States, coordinates, read_states
 from loadshare.study.follow.numbers import Numbers, structure_like
-from loadshare.study.parameter import Parameter, Value, applied
+from loadshare.study.parameter import Parameter, Value, applied, table_of
 from loadshare.study.positions import certified
 from loadshare.train import Train, build_train
 from loadshare.train.placed import standing
@@ -96,8 +98,7 @@ class Line:
 
     def _array_like(self, start: float, stop: float) -> Samples | None:
         """Samples that share one machine; None where the parameter changes the machine."""
-        unit = f" [{self.parameter.unit}]" if self.parameter.unit else ""
-        table = {f"{key}{unit}": [start, stop] for key in self.parameter.keys}
+        table = table_of([self.parameter], np.array([[start], [stop]]))
         groups = samples_of(self.case, table)
         samples = groups[0][1]
         alike = len(groups) == 1 and len(samples.values) == len(samples.columns)

@@ -70,10 +70,6 @@ class Distribution:
             high if np.isfinite(high) else float(inner[1]),
         )
 
-    def text(self, value: float) -> str | float:
-        """Return a value as a case file has it."""
-        return Value(float(value), self.unit).text
-
     def __str__(self) -> str:
         numbers = ", ".join(f"{k} {v:.6g}" for k, v in self.numbers.items())
         return f"{self.kind} {numbers} {self.unit}" if numbers else self.kind

@@ -13,11 +13,19 @@ from loadshare.array_types import Array
 from loadshare.case import Case, Study
 from loadshare.case.counts import takes_count
 from loadshare.case.iso1328 import tolerances_of
-from loadshare.case.keys import dotted, parse, with_unit
+from loadshare.case.keys import dotted, parse
 from loadshare.case.study import CLASS, Group, Spread
 from loadshare.errors import CaseError, Problem
 from loadshare.settings import TOLERANCE
-from loadshare.study.parameter import NO_COUNT, OF_COUNTS, matches, split_outside
+from loadshare.study.parameter import (
+    NO_COUNT,
+    OF_COUNTS,
+    Parameter,
+    changes_of,
+    matches,
+    split_outside,
+    table_of,
+)
 from loadshare.study.tolerance.distribution import (
     Copula,
     Distribution,
@@ -26,37 +34,27 @@ from loadshare.study.tolerance.distribution import (
 )
 
 
-@dataclass(frozen=True)
-class Input:
+@dataclass(frozen=True, slots=True)
+class Input(Parameter):
     """An input that scatters.
 
     Attributes
     ----------
+    name : str
+        Its keys, joined by ``=``.
     keys : tuple of str
         Dotted key paths, which take the same value.
+    unit : str
+        Unit of its values; empty for a plain number.
     distribution : Distribution
     """
 
-    keys: tuple[str, ...]
     distribution: Distribution
 
-    @property
-    def name(self) -> str:
-        """Its keys, joined by ``=``."""
-        return "=".join(self.keys)
-
-    @property
-    def column(self) -> str:
-        """Its name with the unit in brackets."""
-        return with_unit(self.name, self.distribution.unit)
-
-    def samples(self, values: Array) -> dict[str, Array]:
-        """Return values by key and unit, as `loadshare.solve_many` takes them."""
-        return {with_unit(key, self.distribution.unit): values for key in self.keys}
-
-    def changes(self, value: float) -> dict[str, Any]:
-        """Return the changes that `Case.replace` takes."""
-        return dict.fromkeys(self.keys, self.distribution.text(value))
+    @classmethod
+    def of(cls, keys: tuple[str, ...], distribution: Distribution) -> Input:
+        """Return keys that take one value, as a distribution gives it."""
+        return cls("=".join(keys), keys, distribution.unit, distribution)
 
 
 @dataclass(frozen=True)
@@ -81,17 +79,11 @@ class Inputs:
 
     def samples(self, values: Array) -> dict[str, Array]:
         """Return values, shape (S, inputs), as `loadshare.solve_many` takes them."""
-        found: dict[str, Array] = {}
-        for k, one in enumerate(self.every):
-            found |= one.samples(values[:, k])
-        return found
+        return table_of(self.every, values)
 
     def changes(self, values: Sequence[float]) -> dict[str, Any]:
         """Return one sample as the changes that `Case.replace` takes."""
-        found: dict[str, Any] = {}
-        for one, value in zip(self.every, values, strict=True):
-            found |= one.changes(value)
-        return found
+        return changes_of(self.every, values)
 
     @cached_property
     def units(self) -> tuple[tuple[int, ...], ...]:
@@ -125,7 +117,7 @@ class Inputs:
     def from_plain(cls, plain: Mapping[str, Any]) -> Inputs:
         """Return inputs from what `to_plain` gave."""
         every = tuple(
-            Input(
+            Input.of(
                 tuple(one["keys"]),
                 Distribution(one["distribution"], one["numbers"], one["unit"]),
             )
@@ -202,7 +194,7 @@ class _Reader:
                 seen |= dict.fromkeys(keys, text)
                 if found is None:
                     self.bad.update(keys)
-                elif not double and self._fits(path, one := Input(keys, found)):
+                elif not double and self._fits(path, one := Input.of(keys, found)):
                     yield one
 
     def _read(self, path: tuple[str | int, ...], spread: Spread) -> Distribution | None:
@@ -251,8 +243,7 @@ class _Reader:
             try:
                 self.case.replace(one.changes(end))
             except CaseError as error:
-                value = one.distribution.text(end)
-                hint = f"{one.name} was tried with {value}."
+                hint = f"{one.name} was tried with {one.text(end)}."
                 if one.distribution.kind == "normal":
                     hint += " A truncated normal distribution keeps within limits."
                 for problem in error.problems:
