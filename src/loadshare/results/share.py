@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -163,3 +163,21 @@ def shares(torques: MeshTorques, stages: Iterable[Stage], pairs: bool = False) -
             mean = np.where(carries(mean, torques.largest), mean, np.nan)
             found[:, columns] = of_group / mean[:, None]
     return found
+
+
+def largest_shares(
+    torques: MeshTorques, stages: Sequence[Stage], pairs: bool = False
+) -> dict[str, Array]:
+    """Return the largest Ω of each stage and of the system, shape (S,) each; NaN without one.
+
+    Parameters
+    ----------
+    torques, stages, pairs
+        As for `shares`.
+    """
+    found, order = shares(torques, stages, pairs), {m: k for k, m in enumerate(torques.meshes)}
+    columns = {stage.name: [order[m] for m in stage.meshes] for stage in stages}
+    every = {stage: np.fmax.reduce(found[:, own], axis=1) for stage, own in columns.items()}
+    # Without stages there are torques, but no shares.
+    none = np.full(len(torques.net), np.nan)
+    return {**every, "system": np.fmax.reduce([none, *every.values()])}

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from loadshare._version import __version__
+from loadshare.results import share
 from loadshare.results.dataset import VARIABLES
 from loadshare.results.figures import COMPONENTS
-from loadshare.results.share import mesh_torques, shares
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -49,12 +48,12 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
         "message": (dims, np.array([p.message for p in sweep.points]).reshape(shape)),
     }
     attributes = {"case": sweep.case, "loadshare_version": __version__}
-    filled = _filled(sweep, (*VARIABLES, *WORDS))
-    if not filled.positions:
+    positions, names, arrays = _filled(sweep, (*VARIABLES, *WORDS))
+    if not positions:
         return xr.Dataset(data, coords=coords, attrs=attributes)
     attributes["title"] = sweep.title
     for name, variable in VARIABLES.items():
-        values = filled.arrays[name].reshape(*shape, *filled.arrays[name].shape[1:])
+        values = arrays[name].reshape(*shape, *arrays[name].shape[1:])
         data[name] = variable.labelled(values, *dims, "position")
     omegas = sweep.shares
     for name, label in (("omega", "stage mean"), ("pair_omega", "group mean")):
@@ -62,24 +61,26 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
         attrs = {"units": "1", "long_name": f"largest load-sharing coefficient, {label}"}
         data[name] = ((*dims, "stage"), values.reshape(*shape, -1), attrs)
     for name, label in (("rest", "where the float rests"), ("spline", "stage of the spline")):
-        values = filled.arrays[name]
-        values = values.astype(str).reshape(*shape, *values.shape[1:])
+        values = arrays[name].astype(str).reshape(*shape, *arrays[name].shape[1:])
         data[name] = ((*dims, "position", "float"), values, {"long_name": label})
-    coords |= {"position": list(filled.positions), **filled.names, "stage": list(omegas["omega"])}
+    coords |= {"position": positions, **names, "stage": list(omegas["omega"])}
     return xr.Dataset(data, coords=coords, attrs=attributes)
 
 
-@dataclass(frozen=True, eq=False)
-class _Filled:
-    """Figures of all points: arrays over points, positions, and the names of what they describe."""
+def _filled(
+    sweep: Sweep, wanted: Sequence[str]
+) -> tuple[list[int], dict[str, list[str]], dict[str, np.ndarray]]:
+    """Put together figures of the parts of a sweep, at positions that have an answer anywhere.
 
-    positions: tuple[int, ...]
-    names: dict[str, list[str]]
-    arrays: dict[str, np.ndarray]
-
-
-def _filled(sweep: Sweep, wanted: Sequence[str]) -> _Filled:
-    """Put together figures of the parts of a sweep, at positions that have an answer anywhere."""
+    Returns
+    -------
+    list of int
+        These positions.
+    mapping of str to list of str
+        Names of what the figures describe, by dimension.
+    mapping of str to ndarray, shape (points, positions, ...)
+        The figures.
+    """
     parts = [part for part in sweep.answered.parts if len(part.there)]
     positions = sorted({k for part in parts for k in _answered(part)[1].tolist()})
     names = {**parts[0].figures.names} if parts else {}
@@ -98,7 +99,7 @@ def _filled(sweep: Sweep, wanted: Sequence[str]) -> _Filled:
                 none, kind = ("", object) if words else (np.nan, None)
                 arrays[name] = np.full(shape, none, dtype=kind)
             arrays[name][at] = values
-    return _Filled(tuple(positions), names, arrays)
+    return positions, names, arrays
 
 
 def _answered(part: Part) -> tuple[np.ndarray, np.ndarray]:
@@ -118,7 +119,6 @@ def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
 
     "omega" by the mean of the stage, "pair_omega" by that of the group; not a number without one.
     """
-    stages: dict[str, tuple[str, ...]] = {}
     found: dict[str, dict[str, np.ndarray]] = {}
     for part in sweep.answered.parts:
         answers, train = part.solved.found.equilibria, part.solved.machine.train
@@ -127,21 +127,13 @@ def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
         for number, answer in part.others.items():
             flanks = (m.flank_name(drive) for m in train.meshes.values() for drive in m.flanks)
             force[number] = [answer.flank_force[flank] for flank in flanks]
-        torques = mesh_torques(train, force)
-        stages = {s.name: s.meshes for s in train.stages}
+        torques = share.mesh_torques(train, force)
         points = np.array(sweep.usable)[part.rows]
         for name in ("omega", "pair_omega"):
-            share = shares(torques, train.stages, pairs=name == "pair_omega")
-            each = found.setdefault(
-                name, {s: np.full(len(sweep.points), np.nan) for s in (*stages, "system")}
-            )
-            for stage, own in (
-                *stages.items(),
-                ("system", [m for s in stages.values() for m in s]),
-            ):
-                columns = [torques.meshes.index(m) for m in own]
-                largest = np.fmax.reduce(share[:, columns], axis=1, initial=np.nan)
-                largest = np.fmax.reduce(largest.reshape(-1, len(points)), axis=0)
+            omegas = share.largest_shares(torques, train.stages, pairs=name == "pair_omega")
+            each = found.setdefault(name, {s: np.full(len(sweep.points), np.nan) for s in omegas})
+            for stage, values in omegas.items():
+                largest = np.fmax.reduce(values.reshape(-1, len(points)), axis=0)
                 each[stage][points] = np.fmax(each[stage][points], largest)
     return found
 
@@ -150,17 +142,17 @@ def sweep_frame(sweep: Sweep) -> pd.DataFrame:
     """Tabulate a sweep: point by position by mesh; a refused point has one row with its message."""
     import pandas as pd
 
-    filled = _filled(sweep, (*TABULATED, "residual"))
-    worst = filled.arrays.get("residual", np.full((len(sweep.points), 0, 1), np.nan)).max(axis=2)
+    positions, names, arrays = _filled(sweep, (*TABULATED, "residual"))
+    worst = arrays.get("residual", np.full((len(sweep.points), 0, 1), np.nan)).max(axis=2)
     point, position = np.nonzero(~np.isnan(worst))
-    meshes = filled.names.get("mesh", [])
+    meshes = names.get("mesh", [])
     columns: dict[str, Any] = {}
     number = np.repeat(point, len(meshes))
-    at = np.array(filled.positions, dtype=int)[position]
+    at = np.array(positions, dtype=int)[position]
     columns["position"] = np.repeat(at, len(meshes)).astype(object)
     columns["mesh"] = np.tile(np.array(meshes, dtype=object), len(point))
     for name in TABULATED:
-        columns[name] = filled.arrays[name][point, position].reshape(-1) if len(point) else []
+        columns[name] = arrays[name][point, position].reshape(-1) if len(point) else []
     columns["worst_residual"] = np.repeat(worst[point, position], len(meshes))
     table = pd.DataFrame(columns, index=number)
     empty = [k for k in range(len(sweep.points)) if k not in set(point.tolist())]

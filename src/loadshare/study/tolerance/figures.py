@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.job.block import Block
 from loadshare.job.many import solve_blocks
-from loadshare.results.share import mesh_torques, shares
+from loadshare.results.share import largest_shares, mesh_torques
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import DrumRing
@@ -22,6 +22,7 @@ from loadshare.train.train import Train
 
 KINDS = {"omega": "stage", "pair_omega": "group"}
 """Ω as columns name it, and over whose mean it is."""
+KIND_OVER = {over: kind for kind, over in KINDS.items()}
 SYSTEM = "system"
 
 
@@ -46,17 +47,6 @@ class Figures:
     message: Mapping[int, str]
 
 
-def column_names(train: Train) -> list[str]:
-    """Return the columns of a train in their order."""
-    stages = [*(s.name for s in train.stages), SYSTEM]
-    return [
-        *(f"{kind}.{stage}" for kind in KINDS for stage in stages),
-        *(f"torque.{mesh} [N*m]" for mesh in train.meshes),
-        *(f"float.{gear} [m]" for gear in train.floating),
-        *(f"boundary_force.{gear} [N]" for gear in train.limits),
-    ]
-
-
 @dataclass(frozen=True, eq=False)
 class Solver:
     """Solves samples of a case.
@@ -79,10 +69,18 @@ class Solver:
     positions: tuple[int, ...]
     tolerance: float
     engine: str
-    names: list[str] = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", column_names(self.train))
+    @cached_property
+    def names(self) -> list[str]:
+        """The columns of its figures, in their order."""
+        train = self.train
+        stages = [*(s.name for s in train.stages), SYSTEM]
+        return [
+            *(f"{kind}.{stage}" for kind in KINDS for stage in stages),
+            *(f"torque.{mesh} [N*m]" for mesh in train.meshes),
+            *(f"float.{gear} [m]" for gear in train.floating),
+            *(f"boundary_force.{gear} [N]" for gear in train.limits),
+        ]
 
     def solve(self, values: Array) -> Figures:
         """Solve samples with these inputs, shape (S, inputs)."""
@@ -142,16 +140,11 @@ def _figures(block: Block) -> dict[str, Array]:
 def _at_position(answers: Equilibria) -> dict[str, Array]:
     train = answers.names.train
     torques = mesh_torques(train, answers.flank_force)
-    order = {mesh: m for m, mesh in enumerate(torques.meshes)}
     found: dict[str, Array] = {}
     for kind in KINDS:
-        omega = shares(torques, train.stages, pairs=kind == "pair_omega")
-        of = {s.name: _largest(omega, [order[m] for m in s.meshes]) for s in train.stages}
-        found |= {f"{kind}.{stage}": values for stage, values in of.items()}
-        # Without stages there are torques, but no shares.
-        none = np.full(len(torques.net), np.nan)
-        found[f"{kind}.{SYSTEM}"] = np.fmax.reduce([none, *of.values()])
-    found |= {f"torque.{mesh} [N*m]": torques.net[:, m] for mesh, m in order.items()}
+        omegas = largest_shares(torques, train.stages, pairs=kind == "pair_omega")
+        found |= {f"{kind}.{stage}": values for stage, values in omegas.items()}
+    found |= {f"torque.{mesh} [N*m]": torques.net[:, m] for m, mesh in enumerate(torques.meshes)}
     gears = {gear: g for g, gear in enumerate(train.gears)}
     for gear in train.floating:
         way = np.linalg.norm(answers.displacement[:, gears[gear]], axis=1)
@@ -159,10 +152,6 @@ def _at_position(answers: Equilibria) -> dict[str, Array]:
     for gear in train.limits:
         found[f"boundary_force.{gear} [N]"] = _boundary_force(answers, gear)
     return found
-
-
-def _largest(values: NDArray[np.float64], columns: Sequence[int]) -> Array:
-    return np.asarray(np.fmax.reduce(values[:, list(columns)], axis=1))
 
 
 def _boundary_force(answers: Equilibria, gear: str) -> Array:
