@@ -46,12 +46,6 @@ def omega_statistics(
             yield OmegaStatistics(over, stage, found, above, ())
 
 
-def column_of(one: OmegaStatistics) -> str:
-    """Return the column of the figures that statistics are of."""
-    kind = next(kind for kind, over in KINDS.items() if over == one.over)
-    return f"{kind}.{one.stage}"
-
-
 def apart_kinds(column: Columns) -> list[str]:
     """Kinds of Ω that differ: where groups share alike, as without groups, both are one."""
     one, other = (column(f"{kind}.{SYSTEM}") for kind in KINDS)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -221,8 +220,3 @@ class Tolerance(Viewed):
         if not self.refused:
             return []
         return [f"{count(self.refused, 'sample')} of {self.samples} not certified."]
-
-
-def counted(messages: Sequence[str]) -> dict[str, int]:
-    """Count messages, the most frequent first."""
-    return dict(Counter(messages).most_common())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import weakref
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, replace
@@ -13,6 +14,7 @@ import numpy as np
 
 from loadshare.arguments import one_of, whole
 from loadshare.case import Case, Study
+from loadshare.case.keys import dotted
 from loadshare.case.reader import opened
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
@@ -21,17 +23,16 @@ from loadshare.job.positions import wanted_positions
 from loadshare.lock import alone_in
 from loadshare.settings import CERTIFY, JOB, TOLERANCE
 from loadshare.study.positions import loaded
-from loadshare.study.tolerance.figures import KINDS, SYSTEM
+from loadshare.study.tolerance.figures import KIND_OVER, KINDS, SYSTEM
 from loadshare.study.tolerance.folder import WORST as WORST_FILE
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.inputs import read_inputs
 from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
-from loadshare.study.tolerance.omegas import apart_kinds, column_of, omega_statistics
+from loadshare.study.tolerance.omegas import apart_kinds, omega_statistics
 from loadshare.study.tolerance.result import (
     FloatStatistics,
     OmegaStatistics,
     Tolerance,
-    counted,
 )
 from loadshare.study.tolerance.resume import check_part
 from loadshare.study.tolerance.statistics import Share, Summary, shares, summary
@@ -196,8 +197,6 @@ def _requested(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[
     elif name not in own:
         message = "is no tolerance study of the case"
         raise CaseError([Problem(case.name, f"study.{name}", "", message, ", ".join(own))])
-    from loadshare.case.keys import dotted
-
     changes = {dotted(("study", name, key)): value for key, value in settings.items()}
     return (case.replace(changes) if changes else case), name
 
@@ -300,7 +299,7 @@ class _Reader:
             limit=self.limit,
             samples=len(certified),
             refused=int((~certified).sum()),
-            messages=counted([str(text).splitlines()[0] for text in messages]),
+            messages=dict(Counter(str(m).splitlines()[0] for m in messages).most_common()),
             omega=tuple(self._omega()),
             torque={mesh: found for mesh, found in torque.items() if found is not None},
             floats=tuple(self._floats()),
@@ -317,7 +316,7 @@ class _Reader:
     def _omega(self) -> Iterator[OmegaStatistics]:
         column, stages = self.folder.column, [*(s.name for s in self.train.stages), SYSTEM]
         for one in omega_statistics(column, stages, self.levels, self.limit, self.replicated):
-            yield replace(one, shares=self._shares(column_of(one)))
+            yield replace(one, shares=self._shares(f"{KIND_OVER[one.over]}.{one.stage}"))
 
     def _shares(self, column: str) -> tuple[Share, ...]:
         rows = self.settings["indices"]

@@ -12,7 +12,7 @@ from loadshare.array_types import Array
 from loadshare.errors import CaseError, Problem, Refused, ResultError
 from loadshare.job import solve
 from loadshare.settings import JOB, TOLERANCE
-from loadshare.study.tolerance.figures import KINDS, SYSTEM, Solver
+from loadshare.study.tolerance.figures import KIND_OVER, KINDS, SYSTEM, Solver
 from loadshare.study.tolerance.inputs import Inputs
 
 
@@ -218,10 +218,9 @@ def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
     ResultError
         If its inputs do not give its Ω.
     """
-    kinds = {over: kind for kind, over in KINDS.items()}
     try:
         changes = solver.inputs.changes(list(known.inputs.values()))
-        found = _omega_with(solver, changes, kinds.get(known.over, "pair_omega"))
+        found = _omega_with(solver, changes, KIND_OVER.get(known.over, "pair_omega"))
     except (TypeError, ValueError):
         changes, found = {}, None
     if (
