@@ -70,7 +70,8 @@ def stepped(train: Train, index: int) -> Answer:
         answer = _held(train, index, gears, islice(rungs(BACKEND), 1), steps)
         if answer is not None:
             return answer
-    for other in (_followed, _all_but_free, _searched, _in_turn):
+    # Where friction follows the torque, given bounds lead to those of the torques.
+    for other in (_followed,) if follows else (_all_but_free, _searched, _in_turn):
         answer = other(train, index)
         if answer is not None:
             return answer
@@ -92,8 +93,6 @@ def _followed(train: Train, index: int) -> Answer | None:
     :math:`F = \tau \lvert T(F)\rvert/r` has a solution (Brouwer), which Broyden's method finds.
     """
     gears = [g for g, s in train.splines.items() if s.friction_force is None]
-    if not gears:
-        return None
     rate = np.array([train.splines[g].friction_per_torque for g in gears])
     drive = float(np.abs(situation_of(train, index).torque).max(initial=0.0))
     bounds, inverse, least = np.zeros(len(gears)), np.eye(len(gears)), math.inf
@@ -145,8 +144,6 @@ def _searched(train: Train, index: int) -> Answer | None:
 
     It knows friction with fixed bounds only, as elements of their own next to a shaft that bends.
     """
-    if any(spline.friction_force is None for spline in train.splines.values()):
-        return None
     structure, situation = structure_of(train), situation_of(train, index)
     scene, loading = scene_of(structure, situation), loading_of(structure, situation)
     iterate, found = search(structure, loading)
@@ -183,8 +180,8 @@ def _all_but_free(train: Train, index: int) -> Answer | None:
     That without it, to which friction is added along the way that each slip has gone.
     """
     load = assemble(train, index).force_unit()
-    bounds = {g: s.friction_force for g, s in train.splines.items()}
-    if any(b is None or not 0.0 < b <= MARCH.negligible * load for b in bounds.values()):
+    bounds = [s.bound(0.0) for s in train.splines.values()]
+    if not all(0.0 < b <= MARCH.negligible * load for b in bounds):
         return None
     free = {
         g: replace(s, friction_force=0.0, clearance=SlipStop(s).law(0.0).reach, stick_limit=None)
@@ -213,8 +210,6 @@ def _in_turn(train: Train, index: int) -> Answer | None:
     Each step lessens a convex energy. It settles fast where the slips have little room, which is
     where active sets fail: a slip turns about a centre that is nearer than a step.
     """
-    if any(spline.friction_force is None for spline in train.splines.values()):
-        return None
     gears, slips = tuple(train.splines), dict(_before(train))
     for _ in range(MARCH.turns):
         scene = _without_slip(assemble(train, index), gears, slips)
@@ -320,11 +315,14 @@ def _without_slip(scene: Scene, gears: tuple[str, ...], slips: Mapping[str, Vect
     """Return the scene with the slips of some splines held."""
     train = scene.train
     gone: dict[int, float] = {}
+    held: set[str] = set()
     for gear in gears:
+        held |= {train.splines[gear].name, train.splines[gear].stop_name}
         before = train.gears[gear].frame @ slips[gear]
         first = scene.coordinates.index(f"spline {gear} slip x")
         gone |= {first: float(before[0]), first + 1: float(before[1])}
     others = np.array([k for k in range(scene.size) if k not in gone])
+    kept = [r for r in scene.radials if r.name not in held]
     lost, values = np.array(list(gone)), np.array(list(gone.values()))
 
     def cut(array: Array) -> Array:
@@ -338,16 +336,8 @@ def _without_slip(scene: Scene, gears: tuple[str, ...], slips: Mapping[str, Vect
         springs=cut(scene.springs),
         rows=tuple(replace(r, vector=cut(r.vector)) for r in scene.rows),
         arcs=tuple(replace(a, relative=cut(a.relative)) for a in scene.arcs),
-        radials=tuple(
-            replace(r, matrix=cut(r.matrix))
-            for r in scene.radials
-            if not _holds(r.name, train, gears)
-        ),
+        radials=tuple(replace(r, matrix=cut(r.matrix)) for r in kept),
     )
-
-
-def _holds(name: str, train: Train, gears: tuple[str, ...]) -> bool:
-    return any(name in (train.splines[g].name, train.splines[g].stop_name) for g in gears)
 
 
 def _split(
