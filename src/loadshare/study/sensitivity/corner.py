@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loadshare.array_types import Array
-from loadshare.errors import CaseError, Problem, Refused
+from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
 from loadshare.results.share import carries, flank_torques, largest_of
 from loadshare.settings import SENSITIVITY
@@ -111,7 +111,7 @@ class Corner:
             step, kinked = change.step, change.kinked
             slope = change.to(sign)
             if isinstance(slope, CaseError):
-                self._remark(key, side, f"cannot be {_word(side)}: {_message(slope)}")
+                self._remark(key, side, f"cannot be {_word(side)}: {slope.problems[0].message}")
                 return self._nothing(), False
             if isinstance(slope, Slope) and self.neighbourhood.gives_way(slope, step):
                 try:
@@ -262,9 +262,3 @@ def _largest(changes: list[Array]) -> Array | float:
 
 def _word(side: str) -> str:
     return "raised" if side == "rising" else "lowered"
-
-
-def _message(error: Exception) -> str:
-    """Return the first problem of a case, or the message of an error."""
-    problems: list[Problem] = list(error.problems) if isinstance(error, CaseError) else []
-    return problems[0].message if problems else str(error)
