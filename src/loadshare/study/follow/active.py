@@ -110,10 +110,14 @@ def _parts(law: at.Graph) -> Iterator[Part]:
         yield Part(at.WALL if reach > 0.0 else at.PINNED, reach, reach, bound, np.inf, 0.0)
 
 
-def read_pieces(
-    structure: Structure, numbers: Numbers, states: tuple[int, ...], x: Array
-) -> tuple[int, ...]:
-    """Read on which piece of its table each closed tabulated contact is, at one value."""
+def set_of(
+    structure: Structure,
+    numbers: Numbers,
+    states: tuple[int, ...],
+    x: Array,
+    tied: frozenset[int] = frozenset(),
+) -> WorkingSet:
+    """Return the set of states at one value: reads on which pieces tabulated contacts stand."""
     found, tabulated = [], numbers.tabulated[0]
     for k in np.flatnonzero(tabulated >= 0).tolist():
         if states[k - structure.springs] == at.CLOSED:
@@ -121,4 +125,4 @@ def read_pieces(
             points = numbers.tables[0, tabulated[k], 1]
             last = int(np.isfinite(points).sum()) - 2
             found.append(int(np.clip(np.searchsorted(points, approach) - 1, 0, last)))
-    return tuple(found)
+    return WorkingSet(states, tuple(found), tied)

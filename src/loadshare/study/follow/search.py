@@ -18,7 +18,7 @@ from loadshare.array_types import Array
 from loadshare.errors import Refused
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
-from loadshare.study.follow.active import States, WorkingSet, read_pieces
+from loadshare.study.follow.active import States, WorkingSet, set_of
 from loadshare.study.follow.centre import centred
 from loadshare.study.follow.changes import Change, Gap, Point, Stretch, distinct, merged
 from loadshare.study.follow.equations import Equations
@@ -92,21 +92,20 @@ class Search:
 
     def points(self, values: Array) -> list[Point | Missing]:
         """Return certified points, solved to round-off on the set of what carries."""
-        found: list[Point | Missing] = []
-        solved: dict[int, Solved] = {}
-        for k, answer in enumerate(self.line.solved(self.position, values)):
-            if isinstance(answer, Solved):
-                solved[k] = answer
-            found.append(Missing(answer.value, UNREAD) if k in solved else answer)  # type: ignore[arg-type]
+        answers, structure = self.line.solved(self.position, values), self.line.structure
+        solved = {k: a for k, a in enumerate(answers) if isinstance(a, Solved)}
+        found: list[Point | Missing] = [
+            Missing(a.value, UNREAD) if isinstance(a, Solved) else a for a in answers
+        ]
         waiting = [(k, tuple(s.states.tolist()), s.x) for k, s in solved.items()]
         # Of contacts that idle one may be let go at a time.
-        for _ in range(self.line.structure.switches + 1):
+        for _ in range(structure.switches + 1):
             if not waiting:
                 break
             groups: dict[WorkingSet, list[tuple[int, Array]]] = {}
             for k, states, x in waiting:
                 numbers = self.line.numbers(self.position, values[[k]])
-                groups.setdefault(self._set(states, x, numbers), []).append((k, x))
+                groups.setdefault(set_of(structure, numbers, states, x), []).append((k, x))
             waiting = []
             for active, members in groups.items():
                 rows = [k for k, _ in members]
@@ -118,16 +117,11 @@ class Search:
                 z = centred(equations, z, numbers)
                 for i in np.flatnonzero(good).tolist():
                     k, x, states = rows[i], z[i, : equations.n], tuple(carries[i].tolist())
-                    if self._set(states, x, numbers.take(slice(i, i + 1))) == active:
+                    if set_of(structure, numbers.row(i), states, x) == active:
                         found[k] = Point(solved[k].value, active, z[i], solved[k].worst)
                     else:
                         waiting.append((k, states, x))
         return found
-
-    def _set(self, states: tuple[int, ...], x: Array, numbers: Numbers) -> WorkingSet:
-        """Active set of contact states at one value."""
-        pieces = read_pieces(self.line.structure, numbers, states, x)
-        return WorkingSet(states, pieces)
 
     def _carrying(self, equations: Equations, z: Array, numbers: Numbers) -> States:
         """Contact states (S, switches) of the elements that carry something at points z."""

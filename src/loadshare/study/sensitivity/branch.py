@@ -13,7 +13,7 @@ from loadshare.array_types import Array
 from loadshare.scene.structure import Structure, structure_of
 from loadshare.settings import EPS, SENSITIVITY
 from loadshare.solver.hot import contact_states as at
-from loadshare.study.follow.active import WorkingSet, coordinates, read_pieces, read_states
+from loadshare.study.follow.active import WorkingSet, coordinates, read_states, set_of
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
 from loadshare.study.follow.numbers import Numbers, structure_like
@@ -92,7 +92,7 @@ class Setting:
         structure, numbers = self.structure, self.numbers
         x = coordinates(structure, found)
         states = tuple(read_states(structure, numbers, found, x).tolist())
-        return WorkingSet(states, read_pieces(structure, numbers, states, x))
+        return set_of(structure, numbers, states, x)
 
 
 class Gauge(NamedTuple):

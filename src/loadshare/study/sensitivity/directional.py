@@ -17,7 +17,6 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 
@@ -25,26 +24,14 @@ from loadshare.array_types import Array
 from loadshare.errors import CaseError, Refused
 from loadshare.settings import EPS, SENSITIVITY
 from loadshare.solver.hot import contact_states as at
-from loadshare.study.follow.active import WorkingSet, read_pieces, switch_names
+from loadshare.study.follow.active import set_of, switch_names
 from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
-from loadshare.study.sensitivity.differences import Derivative, Slope
+from loadshare.study.sensitivity.differences import Slope
 from loadshare.study.sensitivity.motion import Gauges, Motion, Point
+from loadshare.study.sensitivity.variation import Variation
 from loadshare.train.equilibrium import Equilibrium
 
 _NOTHING = (CaseError, ValueError, BranchLost, Refused)
-
-
-class Varied(Protocol):
-    """An input at a position: the train and its equations as the input varies."""
-
-    def setting(self, amount: float) -> Setting:
-        """Return the train with the input moved by an amount [SI]."""
-
-    def answer(self, amount: float) -> Equilibrium:
-        """Return the certified equilibrium with the input moved by an amount [SI]."""
-
-    def change(self, branch: Branch, z: Array) -> Derivative:
-        """Return the derivative of a branch's residual, and of what else is wanted, at z."""
 
 
 class Neighbourhood:
@@ -80,7 +67,7 @@ class Neighbourhood:
         self.verge = tuple(dict.fromkeys(names[g.switch] for g in near if g.closing(loose) is None))
         self._points.append(self.own)
 
-    def motion(self, sign: float, varied: Varied) -> Motion | None:
+    def motion(self, sign: float, varied: Variation) -> Motion | None:
         """Return how the equilibrium moves as an input rises (sign 1) or falls (−1).
 
         Returns
@@ -122,7 +109,7 @@ class Neighbourhood:
         known = np.abs(unbalanced.T) @ error + SENSITIVITY.follows * size
         return bool((left > np.maximum(known, SENSITIVITY.round_off / step)).any()), left
 
-    def _followed(self, point: Point, sign: float, varied: Varied) -> Motion | None:
+    def _followed(self, point: Point, sign: float, varied: Variation) -> Motion | None:
         """Return the motion on a set, if the set holds to that side."""
         branch, z, tangent = point.branch, point.z, point.tangent
         try:
@@ -165,7 +152,7 @@ class Neighbourhood:
         return {key: g for key, g in gauges.items() if g.value <= 10.0 * SENSITIVITY.verge}
 
     def _with(
-        self, point: Point, still: tuple[tuple[int, int], ...], sign: float, varied: Varied
+        self, point: Point, still: tuple[tuple[int, int], ...], sign: float, varied: Variation
     ) -> Iterator[Motion]:
         """Yield motions with elements in their other states, together and alone, if these hold."""
         for changes in (still, *((one,) for one in still if len(still) > 1)) if still else ():
@@ -194,9 +181,8 @@ class Neighbourhood:
             setting, x = self._setting, point.z[: point.branch.n]
             other = None
             with suppress(BranchLost, ValueError):
-                pieces = read_pieces(setting.structure, setting.numbers, tuple(states), x)
-                tied = point.branch.active.tied
-                branch = Branch(setting, WorkingSet(tuple(states), pieces, tied))
+                known, tied = (setting.structure, setting.numbers), point.branch.active.tied
+                branch = Branch(setting, set_of(*known, tuple(states), x, tied))
                 other = Point(branch, branch.solve(x), point.idle)
             self._others[point, changes] = other
         return self._others[point, changes]
@@ -207,7 +193,7 @@ class Neighbourhood:
         sign: float,
         rate: Array,
         step: float,
-        varied: Varied,
+        varied: Variation,
         verge: Gauges,
         later: bool = False,
     ) -> tuple[tuple[int, int], ...] | None:
@@ -247,7 +233,7 @@ class Neighbourhood:
                 still.append(key)
         return tuple(still) if _has_room(tied) else None
 
-    def _near(self, sign: float, varied: Varied) -> Iterator[Point]:
+    def _near(self, sign: float, varied: Variation) -> Iterator[Point]:
         """Yield the sets of certified solves a little way to that side."""
         for amount in self._amounts(sign, varied):
             try:
@@ -263,7 +249,7 @@ class Neighbourhood:
                 except _NOTHING:
                     continue
 
-    def _amounts(self, sign: float, varied: Varied) -> Iterator[float]:
+    def _amounts(self, sign: float, varied: Variation) -> Iterator[float]:
         """Yield steps of the input [SI] by their effect on the equations and the verge."""
         if self.own is None:
             return
@@ -297,7 +283,7 @@ class Neighbourhood:
         soft: frozenset[int],
         tied: frozenset[int],
         amount: float,
-        varied: Varied,
+        varied: Variation,
     ) -> Point:
         """Follow a set back to the value: three points on its branch, and Newton's method."""
         idle = soft - tied
