@@ -65,15 +65,11 @@ class Setting:
     @cached_property
     def levers(self) -> Array:
         """Torques of the meshes [N·m] per unit of every flank's force, shape (meshes, scalars)."""
-        meshes, columns = self.train.meshes.values(), self.structure.columns
-        found = np.zeros((len(meshes), columns.flat.stop))
-        flanks = {
-            name: k
-            for k, name in enumerate(self.structure.names[columns.flanks], columns.flanks.start)
-        }
-        for row, mesh in zip(found, meshes, strict=True):
-            for drive in mesh.flanks:
-                row[flanks[mesh.flank_name(drive)]] = mesh.lever(drive) * self.structure.force
+        driving, structure = self.train.driving.values(), self.structure
+        found = np.zeros((len(driving), structure.columns.flat.stop))
+        for row, flanks in zip(found, driving, strict=True):
+            for flank, lever in flanks:
+                row[structure.names.index(flank)] = lever * structure.force
         return found
 
     def branch_of(self, found: Equilibrium) -> tuple[Branch, Array]:
