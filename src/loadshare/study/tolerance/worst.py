@@ -156,12 +156,8 @@ class _Search:
         up, down = gain[:, :width], gain[:, width:]
         sign = np.where(up >= down, 1.0, -1.0)
         each = np.maximum(up, down)
-        middle = np.array(
-            [
-                np.median(g[g > TOLERANCE.gain]) if (g > TOLERANCE.gain).any() else np.inf
-                for g in each
-            ]
-        )
+        gains = np.ma.masked_less_equal(each, TOLERANCE.gain)
+        middle = np.ma.median(gains, axis=1).filled(np.inf)  # type: ignore[no-untyped-call]
         together = np.stack(
             [
                 self.box.within(points + step[:, None] * sign * (each > least[:, None]))
