@@ -254,14 +254,13 @@ def march_dataset(found: March) -> xr.Dataset:
     steps = len(found.slips)
     on_spline = ("position", "spline")
 
-    def over(name: str, *tail: int) -> np.ndarray:
+    def over(name: str, *tail: int, kind: type = float) -> np.ndarray:
         rows = [[getattr(step[g], name) for g in gears] for step in found.slips]
-        return np.array(rows, dtype=float).reshape((steps, len(gears), *tail))
+        return np.array(rows, dtype=kind).reshape((steps, len(gears), *tail))
 
     def about(unit: str, text: str) -> dict[str, str]:
         return {"units": unit, "long_name": text}
 
-    stages = np.array([[step[g].stage for g in gears] for step in found.slips], dtype=str)
     turned = about("1", f"revolutions of gear {found.gear}") | {"gear": found.gear}
     slipped = about("m", "slip at the end of the step in the gear's transverse frame")
     return found.result.dataset.assign_coords(spline=gears).assign(
@@ -274,7 +273,7 @@ def march_dataset(found: March) -> xr.Dataset:
         friction=(on_spline, over("friction"), about("N", "largest friction force")),
         stage=(
             on_spline,
-            stages.reshape((steps, len(gears))),
+            over("stage", kind=str),
             {"long_name": "whether the spline sticks, slips or stops"},
         ),
         revolutions=("position", list(found.revolutions), turned),

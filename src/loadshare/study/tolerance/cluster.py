@@ -149,7 +149,9 @@ def _check_workers(client: Client, address: str) -> None:
         client.wait_for_workers(1, timeout=JOIN)
     except TimeoutError:
         raise LoadshareError(_without_workers(address)) from None
-    apart = _apart("Python", _python(sys.version), _pythons(client))
+    workers = client.get_versions()["workers"].items()
+    pythons = {worker: _python(one["host"]["python"]) for worker, one in workers}
+    apart = _apart("Python", _python(sys.version), pythons)
     # Code that is sent is of one Python, so the other version is queried only then.
     apart = apart or _apart("loadshare", __version__, client.run(_version(), on_error="return"))
     if apart:
@@ -171,11 +173,6 @@ def _without_workers(address: str) -> str:
         f"scheduler {address}: no worker is connected. Start one with "
         f"`dask worker {address}`, on a machine where loadshare is installed."
     )
-
-
-def _pythons(client: Client) -> dict[str, str]:
-    workers = client.get_versions()["workers"]
-    return {worker: _python(one["host"]["python"]) for worker, one in workers.items()}
 
 
 def _python(version: str) -> str:

@@ -81,11 +81,6 @@ class Job:
         """Return it as text."""
         return json.dumps({"name": self.name, "text": self.text, "settings": self.settings})
 
-    @classmethod
-    def from_json(cls, text: str) -> Job:
-        """Return the job that `to_json` wrote."""
-        return cls(**json.loads(text))
-
     @cached_property
     def hash(self) -> str:
         """SHA-256 of the settings."""
@@ -176,8 +171,8 @@ class Job:
 
 @lru_cache(maxsize=4)
 def known_job(text: str) -> Job:
-    """Return a job from its text; kept, with its train, for the next part."""
-    return Job.from_json(text)
+    """Return the job that `to_json` wrote; kept, with its train, for the next part."""
+    return Job(**json.loads(text))
 
 
 def equilibria(samples: int, indices: int, units: int, positions: int) -> int:
