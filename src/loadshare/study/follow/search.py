@@ -134,10 +134,7 @@ class Search:
         moved = np.abs(state.approach[:, columns])
         moved[:, np.isin(columns, equations.rigid)] = 0.0
         # A body that idles may touch: what its place is off by is no compression.
-        lengths = (
-            np.abs(numbers.gap)
-            + (np.abs(numbers.vectors) @ np.abs(z[:, : equations.n, None]))[:, :, 0]
-        )
+        lengths = equations.lengths(np.abs(z[:, : equations.n]), numbers)
         rounding = FOLLOW.rounded * np.finfo(float).eps * lengths[:, columns]
         light = np.maximum(band[:, None], state.slope[:, columns] * rounding)
         idle = np.abs(state.force[:, columns]) <= light

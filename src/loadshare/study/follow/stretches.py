@@ -84,13 +84,12 @@ class Stretches:
             self.state = e.state(self.flat, numbers)
             self.approach = self.sampled(self.state.approach)
             polars = self.state.polars
-            middles = {k: self.split(p.along)[:, FOLLOW.nodes // 2] for k, p in polars.items()}
-            self.frames = {k: _framed(along) for k, along in middles.items()}
+            self.frames = {k: _framed(p.along[self.middle]) for k, p in polars.items()}
             self.offsets = {
                 k: sampled(self.split(p.offset) @ self.frames[k].transpose(0, 2, 1))
                 for k, p in polars.items()
             }
-            self.radii = {k: self.split(p.radius)[:, FOLLOW.nodes // 2] for k, p in polars.items()}
+            self.radii = {k: p.radius[self.middle] for k, p in polars.items()}
         self.inputs = np.zeros((self.count, self.width, e.size))
         self.inputs[:, : e.scalars, : e.n] = self.vectors[:, : e.scalars]
         for k, columns in self.columns.items():
