@@ -184,9 +184,10 @@ class _Reader:
         seen: dict[str, str] = {}
         for text, spread in (self.block.inputs or {}).items():
             path = ("inputs", text)
-            one_for_all = None if spread.high == CLASS else self._read(path, spread)
+            by_class = spread.high == CLASS
+            one_for_all = None if by_class else self._read(path, spread)
             for keys in self._keys(path, text):
-                found = one_for_all or self._read_by_class(path, spread, keys)
+                found = self._read_by_class(path, spread, keys) if by_class else one_for_all
                 double = [key for key in keys if key in seen]
                 for key in double:
                     message = f"{key} is drawn by {seen[key]} already"
@@ -210,8 +211,6 @@ class _Reader:
         self, path: tuple[str | int, ...], spread: Spread, keys: tuple[str, ...]
     ) -> Distribution | None:
         """Return a distribution whose end follows from the tolerance class of a gear."""
-        if spread.high != CLASS:
-            return None  # reported already
         ends = set()
         for key in keys:
             match parse(key):
