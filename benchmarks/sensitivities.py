@@ -40,7 +40,7 @@ from loadshare.study.sensitivity import SIDES, Input, Sensitivity
 from loadshare.study.sensitivity.inputs import inputs_of, twin_of
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 
 CASES = Path(__file__).parents[1] / "cases"
 SHIPPED = sorted(p for p in CASES.rglob("*.toml") if p.parent.name != "pairs")
@@ -184,7 +184,7 @@ def _relative_error(error: Array, value: Array) -> float:
 
 def figures(train: Train, position: int, fine: bool) -> Array:
     """Torques on drivers, then displacements in the planes of the gears."""
-    train = standing(train, position)
+    train = train_at(train, position)
     found = answered(train, position)
     if fine:
         exact = reference(train, position, found)

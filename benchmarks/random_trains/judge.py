@@ -26,7 +26,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.results.result import Position
 from loadshare.train import Train, build_train
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.situations import situation_of
 
 AGREES = 1e-9
@@ -119,7 +119,7 @@ def judged(case: Case) -> dict[str, Any]:
             finding.outcome, finding.told = "crashed", crashed
         elif train is not None:
             why = _message_of(message, index)
-            _compare(case, standing(train, index), solved.get(index), why, finding)
+            _compare(case, train_at(train, index), solved.get(index), why, finding)
         findings.append(asdict(finding))
     return {"name": case.name, "seconds": seconds, "positions": findings}
 

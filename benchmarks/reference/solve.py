@@ -13,7 +13,7 @@ from benchmarks.reference.machine import Machine, machine
 from benchmarks.reference.settle import NoReference, Settled, loose_directions, settle
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
@@ -105,7 +105,7 @@ def settled_in_digits(
     """
     import mpmath
 
-    train = standing(train, index)
+    train = train_at(train, index)
     situation = situation_of(train, index)
     exact = mpmath.MPContext()
     exact.dps = DIGITS

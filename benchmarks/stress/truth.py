@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.ring import DrumRing, RoundRing
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
@@ -57,7 +57,7 @@ def truth_of(train: Train, index: int = 1) -> Truth:
     ValueError
         If it is a matter of round-off.
     """
-    train = standing(train, index)
+    train = train_at(train, index)
     situation = situation_of(train, index)
     imbalance, gears = _imbalance(train, situation)
     overlap, rings = _overlap(train, situation)

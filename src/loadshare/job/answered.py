@@ -25,7 +25,7 @@ from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.tooth import resolve
 from loadshare.train import Train, build_train
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.samples import Samples, samples_of
 
 Unanswered = Refused | CaseError
@@ -65,7 +65,7 @@ class Part:
         """Return the answers to a sample, given by its place in `rows` and its train."""
         every = dict(self.numbers(row))
         hot = [k for k in every if k not in self.refused and k not in self.others]
-        here, wanted = standing(train, self.positions[0]), [every[k] for k in hot]
+        here, wanted = train_at(train, self.positions[0]), [every[k] for k in hot]
         found = dict(zip(hot, self.solved.answers(hot, wanted, here), strict=True)) | self.others
         return [found[k] for k in every if k in found]
 
@@ -209,7 +209,7 @@ def _part(machine: Machine, rows: Numbers, samples: Samples, positions: tuple[in
     for k in np.flatnonzero(~(found.passed & solved.small)).tolist():
         p, row = divmod(k, len(rows))
         try:
-            train = standing(build_train(resolve(samples.one(row))), positions[p])
+            train = train_at(build_train(resolve(samples.one(row))), positions[p])
             if found.passed[k]:
                 (answer,) = solved.answers([k], [positions[p]], train)
             else:

@@ -35,7 +35,7 @@ from loadshare.solver.balancing import balancing
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.position import Known
 from loadshare.train.mesh import approach_of
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
@@ -128,7 +128,7 @@ def climb(
         If no rung gives a certified answer; the message says what failed at the first rung and
         carries its figures.
     """
-    train = standing(train, index)
+    train = train_at(train, index)
     structure = structure_of(train)
     scene = scene_of(structure, situation_of(train, index))
     _refuse_if_contradicted(scene, JOB.plainly)
@@ -200,7 +200,7 @@ def _refuse_if_driven(scene: Scene) -> None:
 
 def _other_flanks(scene: Scene, moves: Mapping[str, float]) -> list[str]:
     """Return the meshes whose other flank a move closes, where they have one flank only."""
-    train = standing(scene.train, scene.position)
+    train = train_at(scene.train, scene.position)
     move = np.array([moves.get(name, 0.0) for name in scene.coordinates])
     found = []
     for name, mesh in train.meshes.items():

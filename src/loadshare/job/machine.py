@@ -27,7 +27,7 @@ from loadshare.solver.hot.proximal import search
 from loadshare.solver.hot.rule import Rule, rule_of, samples_to_learn
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations, situation_of, situations_of, stack
 
@@ -155,7 +155,7 @@ class Machine:
     def at(self, index: int) -> Machine:
         """Return the machine of a position (1-based): itself, unless its train is placed again."""
         if index not in self._placed:
-            train = standing(self.train, index)
+            train = train_at(self.train, index)
             if train is self.train:
                 return self
             machine = self._placed[index] = Machine(train)

@@ -37,7 +37,7 @@ from loadshare.solver.position import coordinates_of, ranges_of
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import slip_of
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 
 AGAIN = "Solve the case again: loadshare run CASE.toml -o FILE.json."
 
@@ -261,7 +261,7 @@ def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
 
 def _positions(train: Train, given: Sequence[_Position], tolerance: float) -> list[Position]:
     """Certify what is claimed of positions, and return what it says of them."""
-    trains = [standing(p.claim.train(train), p.position) for p in given]
+    trains = [train_at(p.claim.train(train), p.position) for p in given]
     found = [p.claim.equilibrium(p.position, p.ranges) for p in given]
     positions = []
     for p, here, answer, certificate in zip(

@@ -16,14 +16,14 @@ from loadshare.scene.structure import ArcElement, RadialElement, Structure, stru
 from loadshare.settings import LAWS
 from loadshare.train.elements import Spline
 from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
 
 def assemble(train: Train, index: int) -> Scene:
     """Assemble the scene of position `index` (1-based) of a train."""
-    train = standing(train, index)
+    train = train_at(train, index)
     return scene_of(structure_of(train), situation_of(train, index))
 
 

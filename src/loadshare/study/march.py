@@ -32,7 +32,7 @@ from loadshare.train.build import with_laws
 from loadshare.train.elements import Spline
 from loadshare.train.gear import Vector
 from loadshare.train.memory import slip_of
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.view import View, Viewed, by_name
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) 
         return result_of(case, solved, train, answers, BACKEND, CERTIFY.tolerance, steps)
 
     for index in steps:
-        remembering = standing(train.remembering(before), index)
+        remembering = train_at(train.remembering(before), index)
         try:
             answer = stepped(remembering, index)
             refused = answer.refused()

@@ -20,7 +20,7 @@ from loadshare.train.train import Train
 from loadshare.train.willis import seen_from
 
 
-def standing(train: Train, index: int) -> Train:
+def train_at(train: Train, index: int) -> Train:
     """Return the train that the mechanics of position `index` (1-based) are those of.
 
     The train itself, or if its surroundings are uneven the train with its planets placed.

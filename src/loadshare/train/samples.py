@@ -27,7 +27,7 @@ from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of, with_laws
 from loadshare.train.columns import Column, columns_of
 from loadshare.train.geometry import Geometry, geometry_of
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.pressed import pressed_flanks
 from loadshare.train.situations import Situations, situations_of, stack
 from loadshare.train.train import Train
@@ -74,8 +74,8 @@ class Samples:
 
     def situations(self, index: int) -> Situations:
         """Return the situations at position `index` (1-based) of all samples."""
-        found = situations_of(standing(self._varied, index), index)
-        return replace(found, train=standing(self.train, index), count=self.count)
+        found = situations_of(train_at(self._varied, index), index)
+        return replace(found, train=train_at(self.train, index), count=self.count)
 
     def abreast(self, positions: Sequence[int]) -> Situations:
         """Return the situations of all samples at several positions, one after another.

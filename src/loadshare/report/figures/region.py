@@ -23,7 +23,7 @@ from loadshare.report.units import MICROMETRE
 from loadshare.report.words import boundary_name, rest_lines, spline_lines
 from loadshare.results import Position, Result
 from loadshare.train import Train
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.ring import DrumRing, RoundRing
 from loadshare.train.situations import situation_of
 
@@ -100,7 +100,7 @@ def region(
     window : float
         Half the side of the square in which the region is drawn [m].
     """
-    train = standing(train, position)
+    train = train_at(train, position)
     found = [
         _disc(train, limit)
         if isinstance(limit, RoundRing)

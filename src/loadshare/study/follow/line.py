@@ -24,7 +24,7 @@ from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.parameter import Parameter, Value, applied, table_of
 from loadshare.study.positions import certified
 from loadshare.train import Train, build_train
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.samples import Samples, samples_of
 from loadshare.train.situations import Situations, situation_of
 
@@ -84,7 +84,7 @@ class Line:
     def train(self, value: float) -> Train:
         """Build the train at a value."""
         train = build_train(applied(self.case, [self.parameter], [value]))
-        return train if self._placed is None else standing(train, self._placed)
+        return train if self._placed is None else train_at(train, self._placed)
 
     def at(self, position: int) -> Line:
         """Return the line as a position (1-based) has it: itself, unless each has its own train."""
@@ -92,7 +92,7 @@ class Line:
             return self
         line = copy(self)
         line._placed = position
-        line.first, line.last = (standing(train, position) for train in (self.first, self.last))
+        line.first, line.last = (train_at(train, position) for train in (self.first, self.last))
         line._known = {}
         return line
 

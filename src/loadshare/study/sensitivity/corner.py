@@ -21,7 +21,7 @@ from loadshare.study.sensitivity.motion import Motion
 from loadshare.study.sensitivity.result import SIDES, Rates, Remark
 from loadshare.study.sensitivity.variation import Trains, Variation, torques_of
 from loadshare.train import Train
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,7 +69,7 @@ class Corner:
 
     def __init__(self, train: Train, answer: Answer) -> None:
         self.position = answer.index
-        self.train = train = standing(train, self.position)
+        self.train = train = train_at(train, self.position)
         self._answer = answer.equilibrium
         setting = Setting.at(train, self.position)
         self.structure = setting.structure

@@ -24,7 +24,7 @@ from loadshare.train.alike import train_alike
 from loadshare.train.build import with_laws
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.geometry import Geometry
-from loadshare.train.placed import standing
+from loadshare.train.placed import train_at
 from loadshare.train.situations import situation_of, situations_of
 
 
@@ -112,7 +112,7 @@ class Variation:
         return self.value.number + amount / self.value.factor
 
     def _at(self, number: float) -> Setting:
-        train, structure = standing(self._trains.at(number), self.position), self._structure
+        train, structure = train_at(self._trains.at(number), self.position), self._structure
         if train.flank_positions(self.position) == self.cycle:
             return Setting(train, structure, self._trains.numbers(train, self.position, structure))
         return Setting.at(replace(train, held_at=self.cycle), self.position, structure)
