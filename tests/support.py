@@ -43,17 +43,6 @@ def mostly_slow(values: Iterable[object], quick: Container[object]) -> list[obje
 
 EVERY_SHIPPED = mostly_slow(SHIPPED, {*SHIPPED} - {"fgfbstts/from_geometry"})
 """The same as parameters: laws from teeth take long to compute, and are laws like others then."""
-OF_EVERY_KIND = mostly_slow(
-    SHIPPED,
-    {
-        "fgfbstts/all_elements",
-        "fgfbstts/limit_ring",
-        "fgfbstts/spline_clearance",
-        "two_path/clocking_error",
-        "planetary/four_planets",
-    },
-)
-"""The same, of which a few with every kind of element between them are run every time."""
 BACKLASHES = ("1-2", "1-3", "4-6", "4-7", "5-8", "5-9", "6-10", "7-10", "8-10", "9-10")
 """Meshes of the seed's transmission."""
 

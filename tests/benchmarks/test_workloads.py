@@ -11,5 +11,5 @@ CASES = Path(__file__).parents[2] / "cases"
 def test_samples_are_certified():
     """In one test: as parameters they would be made by every worker."""
     for workload in (*workloads(CASES, quick=True), *branches(quick=True)[:2]):
-        found = ls.solve_many(workload.case, workload.some(4), positions=[1], engine="vectorised")
+        found = ls.solve_many(workload.case, workload.some(20), positions=[1], engine="vectorised")
         assert found.certified.all(), workload.name

@@ -45,7 +45,7 @@ def places(data, above=()):
             yield from places(value, (*above, step))
 
 
-@settings(max_examples=examples(25, 100), suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(50, 100), suppress_health_check=list(HealthCheck))
 @given(st.data())
 def test_no_damage_ends_in_anything_but_problems(data):
     everything = shipped("fgfbstts/all_elements").to_dict()

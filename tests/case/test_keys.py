@@ -30,7 +30,7 @@ paths = st.tuples(names, names, st.lists(st.integers(0, 99), max_size=2)).map(
 )
 
 
-@settings(max_examples=examples(20, 100))
+@settings(max_examples=examples(40, 100))
 @given(paths)
 def test_every_path_survives_its_text(path):
     assert parse(dotted(path)) == path

@@ -67,7 +67,7 @@ MEASURED = (
 RESULTS = {
     "run": (("--position", 1), (*FILES, "toml")),
     "sweep": (("--over", "rings.4.float=0 um, 4 um", "--position", 1), FILES),
-    "critical": (("--over", "rings.4.float=8.3 um:8.4 um", "--position", 1), FILES),
+    "critical": (("--over", "rings.4.float=7 um:9 um", "--position", 1), FILES),
     "sensitivity": (("rings.*.float", "--position", 1), FILES),
     "compare": (MEASURED, FILES),
     "fit": ((*MEASURED, "--over", "rings.4.float=1 um:9 um"), (*FILES, "toml")),

@@ -67,6 +67,14 @@ def test_a_pipe_gets_plain_text(process, cases):
     assert "Ω stage" in done.stdout
 
 
+def test_a_stream_that_knows_no_omega_goes_on(process, cases):
+    settings = {"PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii"}
+    done = process("run", cases / "fgfbstts/base.toml", **settings)
+    assert done.returncode == 0
+    assert "? stage" in done.stdout
+    assert "PASSED" in done.stdout
+
+
 @pytest.mark.parametrize(
     ("words", "code"),
     [(("run", "none.toml"), 2), (("run",), 2), ((), 2), (("--version",), 0)],

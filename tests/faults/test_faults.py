@@ -14,7 +14,7 @@ from loadshare.report.page.report import report_page
 
 pytestmark = pytest.mark.skipif(bool(why_not()), reason=why_not())
 SMALL = {scene.name: scene for scene in (*batch_scenes(2), *study_scenes(64, 1, 0), *file_scenes())}
-TRIED = 4
+TRIED = 6
 """Faults of a scene in `make test`."""
 QUICK = ("batch over others", "sweep.csv", "refused.json")
 

@@ -459,7 +459,7 @@ def test_workers_run_ahead_by_a_block_each_and_no_more(monkeypatch):
 
 def test_memory_does_not_grow_with_the_blocks(monkeypatch):
     """Twenty-four blocks take no more room at once than four, except the input's own columns."""
-    small_blocks(monkeypatch, 50)
+    small_blocks(monkeypatch, 100)
     case = shipped(LIMIT_RING)
 
     def peak(count: int) -> int:
@@ -473,10 +473,10 @@ def test_memory_does_not_grow_with_the_blocks(monkeypatch):
             tracemalloc.stop()
 
     # What is known of the sets that act is kept, of up to `STATICS.sets` of them.
-    peak(1200)
+    peak(2400)
     # A sample's answer is some 70 numbers; its columns, in and out of SI, are 4 and their copies.
-    few, more = peak(200), peak(1200)
-    assert more - few < 1000 * 16 * 8
+    few, more = peak(400), peak(2400)
+    assert more - few < 2000 * 16 * 8
 
 
 def test_progress_is_reported_after_every_block(monkeypatch):

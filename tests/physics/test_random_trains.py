@@ -226,7 +226,7 @@ def is_solved_and_agreed(case: ls.Case) -> None:
     "family", mostly_slow((stars, split_torques), (stars,)), ids=["star", "split torque"]
 )
 def test_a_random_train_is_solved(family):
-    @settings(TRAINS, max_examples=examples(6, 20))
+    @settings(TRAINS, max_examples=examples(10, 20))
     @given(family())
     def run(case: ls.Case) -> None:
         is_solved_and_agreed(case)

@@ -79,7 +79,7 @@ def test_a_narrow_drum_is_a_line_across_the_neighbours():
     assert {b.name for b in found.boundaries} == {"upper stop", "lower stop", "arc 6", "arc 7"}
 
 
-@settings(max_examples=examples(10, 40))
+@settings(max_examples=examples(20, 40))
 @given(
     st.floats(2.0, 60.0),
     st.tuples(st.floats(2.0, 40.0), st.floats(2.0, 40.0)),

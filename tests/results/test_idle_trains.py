@@ -7,7 +7,6 @@ same set with other last digits: they agree if they are those of the set, and no
 import random
 
 import pytest
-from tests.reproducible import examples
 from tests.support import SHIPPED, mostly_slow, shipped
 
 import loadshare as ls
@@ -44,7 +43,7 @@ def drawn(chance: random.Random) -> ls.Case:
 @pytest.mark.parametrize("part", mostly_slow(range(40), {12}))
 def test_what_is_open_survives_its_file(part, tmp_path):
     chance, file, loose = random.Random(part), tmp_path / "result.json", 0
-    for _ in range(examples(8, 15)):
+    for _ in range(15):
         try:
             result = ls.solve(drawn(chance), positions=[1])
         except ls.LoadshareError:
@@ -54,4 +53,4 @@ def test_what_is_open_survives_its_file(part, tmp_path):
         again = ls.load_result(file).positions[0]
         assert again.undetermined.keys() == result.positions[0].undetermined.keys()
         loose += bool(again.undetermined)
-    assert loose > 1
+    assert loose > 2

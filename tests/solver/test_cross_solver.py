@@ -9,7 +9,7 @@ between back-ends and methods and 1e-10 with and without reduction are required.
 from functools import cache
 
 import pytest
-from tests.support import EVERY_SHIPPED, OF_EVERY_KIND, answer, disagreement, shipped
+from tests.support import EVERY_SHIPPED, answer, disagreement, shipped
 
 from loadshare.certify import certify
 from loadshare.errors import Refused
@@ -77,19 +77,22 @@ def test_the_first_order_method_agrees_or_declines(case, reduce):
             agrees(case, index, AGREE, solver="osqp", reduce=reduce)
 
 
-@pytest.mark.parametrize("case", OF_EVERY_KIND)
+@pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.quick(12)
 def test_reduction_does_not_change_the_answer(case):
     for index in ends(case):
         agrees(case, index, REDUCED, reduce=False)
 
 
-@pytest.mark.parametrize("case", OF_EVERY_KIND)
+@pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.quick(12)
 def test_the_polished_power_cone_agrees(case):
     for index in ends(case):
         agrees(case, index, AGREE, method="power")
 
 
-@pytest.mark.parametrize("case", [p for p in OF_EVERY_KIND if p.values != ("fgfbstts/tolerance",)])
+@pytest.mark.parametrize("case", [p for p in EVERY_SHIPPED if p.values != ("fgfbstts/tolerance",)])
+@pytest.mark.quick(12)
 def test_the_bare_power_cone_is_near(case):
     """One programme, no loop, no exact solve: an independent check of laws and assembly.
 

@@ -35,7 +35,7 @@ def test_a_sensitivity_is_that_of_the_cases() -> None:
 
 def test_samples_scatter_as_the_cases_do() -> None:
     spread = {"distribution": "uniform", "low": "50 mm", "high": "60 mm"}
-    found = ls.tolerance(CASE, {WIDTH: spread}, samples=32, indices=0, worst=False, positions=[1])
+    found = ls.tolerance(CASE, {WIDTH: spread}, samples=64, indices=0, worst=False, positions=[1])
     summary = found.of("system").summary
     ends = sorted((omega(50.0), omega(60.0)))
     assert ends[0] <= summary.lowest < summary.highest <= ends[1]

@@ -66,7 +66,7 @@ def test_the_first_step_is_the_holonomic_law():
 
 
 def test_what_is_dissipated_is_friction_times_the_path_of_the_slip():
-    found = ls.march(floating(), revolutions=2.0, steps=12)
+    found = ls.march(floating(), revolutions=2.0, steps=24)
     before = {g: np.zeros(2) for g in "45"}
     for step in found.slips:
         for gear, s in step.items():

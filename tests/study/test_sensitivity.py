@@ -108,7 +108,7 @@ def disagreeing(verdicts_by_key: dict[str, Verdict]) -> dict[str, Verdict]:
         pytest.param("two_path/clocking_error", None, marks=pytest.mark.slow),
     ],
 )
-@pytest.mark.quick(1)
+@pytest.mark.quick(2)
 def test_differences_of_full_solves(name, keys):
     case = shipped(name)
     found = sensitivity(case, keys, positions=[1])

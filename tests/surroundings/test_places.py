@@ -83,7 +83,7 @@ def test_an_output_folder_that_cannot_be_written_is_reported(read_only, tmp_path
     commands = {
         f"{home}/a.json": ("run", RING, "-o", f"{home}/a.json"),
         f"{home}/own.toml": ("new", "own", "-o", f"{home}/own.toml"),
-        f"{home}/out": ("batch", CASES / "star", "-o", f"{home}/out", "-j", 1),
+        f"{home}/out": ("batch", CASES / "star", "-o", f"{home}/out"),
         f"{home}/new/a.csv": (*SWEEP, "-o", f"{home}/new/a.csv"),
     }
     script = f"""

@@ -269,8 +269,9 @@ def test_a_study_that_was_killed_before_it_began_begins_anew(tmp_path):
 
 
 def test_a_worst_case_that_is_none_is_refused_by_name(tmp_path):
-    options = {"samples": 16, "chunk": 1, "worst": True}
+    options = {"samples": 64, "chunk": 1, "worst": True}
     found = run(tmp_path / "study", **options)
+    assert run(tmp_path / "study", **options).worst == found.worst
     file = tmp_path / "study" / "worst.json"
     good = json.loads(file.read_text(encoding="utf-8"))
     omega = good["worst"][0]["omega"]
