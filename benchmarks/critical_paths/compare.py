@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.critical_paths.scan import StatesByName
-from loadshare.study.critical import Critical, Event
+from loadshare.study.critical import Critical
+from loadshare.study.events import Event
 
 Array = NDArray[np.float64]
 NEAR = 2e-9

@@ -25,8 +25,10 @@ from benchmarks.reproduction.stiffness import ALIKE
 from loadshare.case import Case
 from loadshare.report.figure import Figure
 from loadshare.results import Position
-from loadshare.study.critical import Event, critical
-from loadshare.study.fit import Fit, fit
+from loadshare.study.critical import critical
+from loadshare.study.events import Event
+from loadshare.study.fit import fit
+from loadshare.study.fitted import Fit
 
 CLEARANCES = tuple(0.5 * k for k in range(25))
 """Ring clearances of the picture [µm]."""

@@ -24,7 +24,8 @@ from benchmarks.reproduction.seed import (
 from loadshare.case import Case
 from loadshare.report.figure import Figure
 from loadshare.results import Position, Result
-from loadshare.study.critical import Event, critical
+from loadshare.study.critical import critical
+from loadshare.study.events import Event
 
 BOTH = ("splines.4.clearance", "splines.5.clearance")
 CLEARANCES = tuple(0.5 * k for k in range(31))

@@ -12,7 +12,7 @@ from loadshare.explore.questions import Along, Slopes
 from loadshare.report.numbers import NONE, omega, significant
 from loadshare.report.units import MICROMETRE
 from loadshare.report.words import boundary_name
-from loadshare.study.critical import Event
+from loadshare.study.events import Event
 
 Plain = dict[str, Any]
 Item = TypeVar("Item")

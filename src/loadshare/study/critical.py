@@ -19,9 +19,7 @@ from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
 from loadshare.pictures import picture
-from loadshare.solver.hot import contact_states as at
-from loadshare.study.follow.active import switch_names
-from loadshare.study.follow.changes import Change, Gap, Point
+from loadshare.study.events import Event, events_of, flanks_changed
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
 from loadshare.study.parameter import (
@@ -40,138 +38,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from loadshare.report.figure import Figure
-
-
-_STATES = {
-    at.OPEN: "slip",
-    at.STICK: "stick",
-    at.CORNER: "about to slip",
-    at.PINNED: "about to slip",
-    at.SLIP: "slip",
-    at.STOP: "stop",
-    at.WALL: "on boundary",
-}
-
-_FLANKS = {True: "drive", False: "coast"}
-_SPLINE = {
-    ("stick", "slip"): "slip starts",
-    ("slip", "stick"): "slip ends",
-    ("slip", "stop"): "clearance used up",
-    ("stick", "stop"): "clearance used up",
-    ("stop", "slip"): "clearance opens",
-    ("stop", "stick"): "clearance opens",
-    ("inside", "on boundary"): "float reaches boundary",
-    ("on boundary", "inside"): "float leaves boundary",
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Event:
-    """A change of the active set.
-
-    Attributes
-    ----------
-    value : float
-        Of the parameter, in its unit.
-    unit : str
-    position : int
-        1-based meshing position.
-    element : str
-        What changes its state: a flank, a ring's contact, a spline.
-    gear : str or None
-        The float concerned, for a ring or spline.
-    kind : str
-        "contact closes", "contact opens", "float reaches boundary", "float leaves boundary",
-        "slip starts", "slip ends", "clearance used up", "clearance opens", "flank changes".
-    before, after : str
-        State below and above the value.
-    together : int
-        How many elements change at this very value; 1 for all but symmetric cases.
-    confirmed : bool
-        Whether it is proved that these elements change here and, between the certified solves on
-        both sides, nothing else does.
-    worst : float
-        Larger one of the two certificates' worst scaled residuals.
-    apart : float
-        Distance of the two certified solves from the event, in the unit; where it is not confirmed,
-        of the ends of what is not proved.
-    """
-
-    value: float
-    unit: str
-    position: int
-    element: str
-    gear: str | None
-    kind: str
-    before: str
-    after: str
-    together: int
-    confirmed: bool
-    worst: float
-    apart: float
-
-    def __str__(self) -> str:
-        at = f"{self.value:.6g} {self.unit}".strip()
-        return f"{at}: {self.element}: {self.kind}"
-
-
-def events_of(line: Line, position: int, change: Change) -> list[Event]:
-    """Tell a change of the set element by element.
-
-    Parameters
-    ----------
-    line : Line
-    position : int
-        1-based.
-    change : Change
-    """
-    structure = line.structure
-    rows, kinds = structure.rows, structure.kinds[structure.columns.contacts]
-    names = switch_names(structure)
-    changed = change.before.changes(change.after, structure)
-    found = []
-    for k in changed:
-        ring = k >= rows and structure.radials[k - rows].kind == "ring"
-        sides = (change.before, change.after)
-        before, after = (_state(side.states[k], k < rows, ring) for side in sides)
-        if before == after:
-            continue
-        gear = None
-        if k >= rows:
-            gear = structure.radials[k - rows].gear
-            kind = _SPLINE.get((before, after), f"{before} becomes {after}")
-        elif kinds[k] in ("stop", "arc"):
-            gear = next(g for g in structure.train.rings if names[k].startswith(f"ring {g}:"))
-            kind = f"float {'reaches' if after == 'closed' else 'leaves'} boundary"
-        else:
-            kind = f"contact {'closes' if after == 'closed' else 'opens'}"
-        found.append(
-            Event(
-                value=change.value,
-                unit=line.parameter.unit,
-                position=position,
-                element=names[k],
-                gear=gear,
-                kind=kind,
-                before=before,
-                after=after,
-                together=len(changed),
-                confirmed=change.confirmed,
-                worst=change.worst,
-                apart=change.apart,
-            )
-        )
-    return found
-
-
-def _state(states: int, is_row: bool, is_ring: bool) -> str:
-    """Words for the state that a code names."""
-    if is_row:
-        return "open" if states == at.OPEN else "closed"
-    if is_ring:
-        return "inside" if states == at.OPEN else "on boundary"
-    return _STATES[states]
-
 
 SHOWN = 5
 """Intervals that are named one by one where they are not proved."""
@@ -277,51 +143,6 @@ class Critical(Viewed):
         if len(gaps) > SHOWN:
             lines.append(f"{count(len(gaps) - SHOWN, 'further interval')} not proved.")
         return lines
-
-
-def flanks_changed(line: Line, position: int, gap: Gap) -> list[Event]:
-    """Tell of which meshes without backlash the load presses another flank behind a gap.
-
-    On either side a mesh of one flank has the one that is pressed, so no contact opens or closes.
-
-    Parameters
-    ----------
-    line : Line
-    position : int
-        1-based.
-    gap : Gap
-    """
-    first, last = gap.first, gap.last
-    if not (isinstance(first, Point) and isinstance(last, Point)):
-        return []
-    names = switch_names(line.structure)
-    carrying = {
-        name
-        for name, *states in zip(names, first.active.states, last.active.states, strict=True)
-        if all(state != at.OPEN for state in states)
-    }
-    before, after = (line.train(point.value).meshes for point in (first, last))
-    changed = sorted(n for n in carrying & before.keys() if before[n].turned != after[n].turned)
-    value = 0.0 if first.value <= 0.0 <= last.value else last.value
-    found = []
-    for name in changed:
-        here, then = (_FLANKS[m[name].is_drive(True)] for m in (before, after))
-        event = Event(
-            value=value,
-            unit=line.parameter.unit,
-            position=position,
-            element=name,
-            gear=None,
-            kind="flank changes",
-            before=here,
-            after=then,
-            together=len(changed),
-            confirmed=False,
-            worst=max(first.worst, last.worst),
-            apart=max(value - first.value, last.value - value),
-        )
-        found.append(event)
-    return found
 
 
 def critical(
