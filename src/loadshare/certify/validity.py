@@ -20,8 +20,8 @@ neglects is estimated here from the answer alone, and so are the bounds:
   carry with a play of less than the opening. There is no refusal: with more play the answer holds.
   What a relief leaves between the other flanks is not counted, which is on the safe side.
 - **Apart.** Any other mesh of unknown backlash that is open by more than teeth usually have play,
-  by errors or by clockings that wind a loop up, would carry on its other flank too. This is told,
-  and bounds nothing.
+  by errors or by clockings that wind a loop up, would carry on its other flank too. There is no
+  refusal here either.
 - **Ring.** Arcs hold exactly at any displacement, but a drum's stops keep their direction: they are
   off by the angle by which the arm from the neighbour turns.
 
@@ -171,12 +171,14 @@ class Measuring:
         }
         if self.unsure:
             bounds[NEITHER] = (CERTIFY.neglected, math.inf)
+        if self.alone:
+            bounds[APART] = (CERTIFY.apart, math.inf)
         if len(self.of.drum):
             bounds["ring"] = (CERTIFY.turned, self.vanishing)
         return bounds if self.of.flanks else {}
 
     def bounded(
-        self, situations: Situations, answers: Equilibria, deflection: Array
+        self, situations: Situations, answers: Equilibria, deflection: Array, apart: bool = False
     ) -> dict[str, Array]:
         """Return what has bounds, element by element.
 
@@ -187,6 +189,9 @@ class Measuring:
             S of them.
         deflection : ndarray, shape (S,)
             Of each case [m].
+        apart : bool
+            Whether meshes of unknown backlash that are open are among it, which compiled code
+            does not measure.
 
         Returns
         -------
@@ -196,8 +201,13 @@ class Measuring:
         of = self.of
         if not of.flanks:
             return {}
-        shifts = _shifts(situations, answers)
-        compression = self._compression(situations, answers, shifts)
+        # Samples lie next to one another: sums and largest values then run along them.
+        shifts = np.ascontiguousarray(
+            (answers.displacement + situations.offset).reshape(len(answers.rotation), -1).T
+        )
+        compression = of.turning @ answers.rotation.T
+        compression += of.pushing @ shifts
+        compression -= situations.gap.T
         turned = np.abs((self.across / self.line) @ shifts)
         neglected = 0.5 * self.line * turned * turned
         room = np.maximum(-compression, 0.0) - neglected
@@ -209,23 +219,15 @@ class Measuring:
             "line_of_action": turned,
             "approach": np.maximum(-room, 0.0) / deflection,
         }
-        if self.unsure:
-            found[NEITHER] = self._apart(situations, compression)[self.unsure] / deflection
+        # A gap opens the flank that is pressed, and not the other one.
+        openings = {NEITHER: self.unsure, APART: self.alone if apart else []}
+        for name, flanks in openings.items():
+            if flanks:
+                opening = np.maximum(-(compression + situations.gap.T)[flanks], 0.0)
+                found[name] = opening / (deflection if name == NEITHER else self.height[flanks])
         if len(of.drum):
             found["ring"] = self._arms(answers)
         return found
-
-    def _compression(self, situations: Situations, answers: Equilibria, shifts: Array) -> Array:
-        """How far all flanks are compressed [m], negative where they are open, (flanks, S)."""
-        compression = self.of.turning @ answers.rotation.T
-        compression += self.of.pushing @ shifts
-        compression -= situations.gap.T
-        return compression
-
-    def _apart(self, situations: Situations, compression: Array) -> Array:
-        """How far the other flanks would have to give way [m], (flanks, S)."""
-        # A gap opens the flank that is pressed, and not the other one.
-        return np.maximum(-(compression + situations.gap.T), 0.0)
 
     def _room_of_idle(
         self, situations: Situations, answers: Equilibria, room: Array, rows: Numbers
@@ -296,7 +298,7 @@ class Measuring:
         return f"mesh {self.of.flanks[flank][0].name}"
 
     def every(
-        self, situations: Situations, answers: Equilibria, deflection: Array
+        self, situations: Situations, answers: Equilibria, deflection: Array, apart: bool = False
     ) -> dict[str, Array]:
         """Return all that is measured on S answers, element by element, each (elements, S).
 
@@ -313,20 +315,17 @@ class Measuring:
         if some.any():
             size = np.hypot(of.pushing @ shifts, self.across @ shifts)
             found["backlash"] = np.where(some, size / np.where(some, backlash, 1.0), -1.0)
-        found |= self.bounded(situations, answers, deflection)
+        found |= self.bounded(situations, answers, deflection, apart)
         return {name: found[name] for name in LABELS if name in found}
 
     def each(
         self, situations: Situations, answers: Equilibria, deflection: Array
     ) -> list[dict[str, Measure]]:
         """Return all figures, answer by answer; parameters are those of `bounded`."""
-        every = self.every(situations, answers, deflection)
-        if self.alone:
-            compression = self._compression(situations, answers, _shifts(situations, answers))
-            every[APART] = (self._apart(situations, compression) / self.height)[self.alone]
         found: list[dict[str, Measure]] = [{} for _ in answers.rotation]
-        for name, values in every.items():
+        for name, values in self.every(situations, answers, deflection, apart=True).items():
             for row, figures in enumerate(values.T):
+                # That a mesh carries on one flank only is told where it matters.
                 if name != APART or figures.max() > CERTIFY.apart:
                     found[row][name] = self._largest(name, figures)
         return found
@@ -350,13 +349,6 @@ def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
 def measuring(train: Train) -> Measuring:
     """Return what is measured on a train, kept for its other positions."""
     return Measuring(train)
-
-
-def _shifts(situations: Situations, answers: Equilibria) -> Array:
-    """Displacements and offsets [m], (3 gears, S)."""
-    # Samples lie next to one another: sums and largest values then run along them.
-    moved = answers.displacement + situations.offset
-    return np.ascontiguousarray(moved.reshape(len(answers.rotation), -1).T)
 
 
 def _axis(train: Train, mesh: Mesh) -> Array:
