@@ -20,8 +20,8 @@ neglects is estimated here from the answer alone, and so are the bounds:
   carry with a play of less than the opening. There is no refusal: with more play the answer holds.
   What a relief leaves between the other flanks is not counted, which is on the safe side.
 - **Apart.** Any other mesh of unknown backlash that is open by more than teeth usually have play,
-  by errors or by clockings that wind a loop up, would carry on its other flank too. There is no
-  refusal here either.
+  by errors or by clockings that wind a loop up, would carry on its other flank too. This is told,
+  and bounds nothing.
 - **Ring.** Arcs hold exactly at any displacement, but a drum's stops keep their direction: they are
   off by the angle by which the arm from the neighbour turns.
 
@@ -171,8 +171,6 @@ class Measuring:
         }
         if self.unsure:
             bounds[NEITHER] = (CERTIFY.neglected, math.inf)
-        if self.alone:
-            bounds[APART] = (CERTIFY.apart, math.inf)
         if len(self.of.drum):
             bounds["ring"] = (CERTIFY.turned, self.vanishing)
         return bounds if self.of.flanks else {}

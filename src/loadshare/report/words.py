@@ -166,10 +166,11 @@ def advice(result: Result) -> str:
     neither: dict[str, list[int]] = {}
     apart: dict[str, list[int]] = {}
     for p in result.positions:
+        if (open_ := p.validity.measures.get(APART)) is not None:
+            apart.setdefault(open_.where, []).append(p.position)
         for name, measure in p.validity.warned.items():
-            if name in (NEITHER, APART):
-                opened = neither if name == NEITHER else apart
-                opened.setdefault(measure.where, []).append(p.position)
+            if name == NEITHER:
+                neither.setdefault(measure.where, []).append(p.position)
             else:
                 large.setdefault(p.position, []).append(name)
     noun = "positions" if len(result.positions) > 1 else "position"
