@@ -47,6 +47,8 @@ class Offset:
         fixed = self.installation
         if gear.carrier is None and np.any(frame):
             fixed = turned_about(gear, fixed, -frame)
+        if not (np.ndim(rotation) or self.eccentricity.any()):
+            return fixed
         turning = turned(self.eccentricity, gear.sense * rotation - frame)
         return np.asarray(fixed + turning @ transverse_frame(gear.axis))
 
