@@ -163,6 +163,10 @@ def test_numbers_and_arrays_of_numpy_are_plain_data(drive):
         ("gears.aa.support", "does not exist. Did you mean gears.a?"),
         ("gear.a.support", "does not exist. Did you mean gears?"),
         ("march.steps.x", "does not exist. There is no march.steps."),
+        (
+            "operating.input.x",
+            'does not exist. operating.input = "a" has no parts: change operating.input itself.',
+        ),
         ('meshes."c-d".stiffness[7]', 'does not exist. There is no meshes."c-d".stiffness[7].'),
         ("a..b", "is not a key path."),
     ],

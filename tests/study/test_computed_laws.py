@@ -48,6 +48,22 @@ def test_a_fit_finds_the_width_back() -> None:
     assert found.unknowns[0].value == pytest.approx(50.0, rel=1e-6)
 
 
+def test_a_fitted_case_keeps_the_laws_of_its_teeth() -> None:
+    """So that they follow the next change; but a number that was fitted is not the teeth's."""
+    measured = {"share": {"sun-planet1": 1.01}, "position": 1, "uncertainty": 1e-3}
+    case = CASE.replace({"measured.bench": measured})
+    found = ls.fit(case, {"errors.planet1.pin.tangential": ("-90 um", "90 um")})
+    assert {mesh.law for mesh in found.case.meshes.values()} == {"iso"}
+    found = ls.fit(case, {LAW: ("1e-7 rad/(N*m)", "2e-6 rad/(N*m)")})
+    laws = {name: mesh.law for name, mesh in found.case.meshes.items()}
+    fitted = laws.pop("sun-planet1")
+    assert fitted.b.si == found.unknowns[0].value
+    assert not fitted.basis
+    assert not fitted.teeth
+    assert set(laws.values()) == {"iso"}
+    assert ls.compare(found.case).chi_square == pytest.approx(found.chi_square, abs=1e-12)
+
+
 def test_a_number_of_the_law_itself_is_varied_as_it_stands() -> None:
     """Beside a width that other meshes follow."""
     found = ls.sensitivity(CASE, [LAW, WIDTH], positions=[1])

@@ -213,4 +213,7 @@ def nearest(data: Mapping[str, Any], path: Path) -> str:
                 there = [key for key in whole if look_up(data, parse(key)) is not None][:1]
                 near = f"Did you mean {there[0]}?" if there else ""
             return near or f"There is no {wrong}."
+        if isinstance(above, str):
+            at = dotted(path[:length])
+            return f'{at} = "{above}" has no parts: change {at} itself.'
     return f"There is no {dotted(path)}."

@@ -15,6 +15,7 @@ import numpy as np
 from loadshare.arguments import whole
 from loadshare.array_types import Array
 from loadshare.case import Case
+from loadshare.case.reader import opened
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import solve
 from loadshare.results import Result
@@ -33,7 +34,7 @@ from loadshare.study.parameter import (
     read_parameter,
     read_value,
 )
-from loadshare.study.positions import loaded
+from loadshare.study.positions import loaded, with_own_laws
 from loadshare.study.sensitivity import Sensitivity, sensitivity
 from loadshare.study.sensitivity.inputs import twin_of
 
@@ -87,8 +88,8 @@ def fit(
     >>> f"{found.unknowns[0].value:.2f} ± {found.unknowns[0].deviation:.2f} um"
     '40.57 ± 1.98 um'
     """
-    case, starts = loaded(case, map(named, unknowns)), whole("starts", starts)
-    problem = _Problem(case, unknowns)
+    starts = whole("starts", starts)
+    problem = _Problem(opened(case), unknowns)
     reached: list[tuple[float, Array]] = []
     chis: list[float] = []
     refusal: Exception | None = None
@@ -114,7 +115,9 @@ class _Problem:
     """The least-squares problem, its unknowns scaled to [0, 1] between their bounds."""
 
     def __init__(self, case: Case, unknowns: Mapping[Any, Sequence[object] | str]) -> None:
-        self.case = case
+        names = list(map(named, unknowns))
+        # Laws that no unknown touches are computed once, but stay the teeth's in what is found.
+        self.written, self.case = with_own_laws(case, names), loaded(case, names)
         self.targets: list[Target] = targets(case)
         self.positions = needed(self.targets)
         if not unknowns:
@@ -234,7 +237,7 @@ class _Problem:
 
     def fitted(self, u: Array, chis: tuple[float, ...]) -> Fit:
         """Return the fit at a point."""
-        case, result = self.solved(u)
+        _, result = self.solved(u)
         values = computed(self.case, self.targets, result)
         comparison = Comparison(tuple(map(Deviation, self.targets, values)), result)
         too_far = _too_far(comparison, len(self.parameters))
@@ -270,7 +273,7 @@ class _Problem:
         warnings += [f"{u.parameter.name} is at its bound." for u in unknowns if u.at_bound]
         warnings += too_far
         return Fit(
-            case=case,
+            case=applied(self.written, self.parameters, self.numbers(u)),
             unknowns=tuple(unknowns),
             covariance=covariance,
             correlation=correlation,

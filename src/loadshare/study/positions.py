@@ -34,21 +34,40 @@ def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
     varied : iterable of str
         Key paths and patterns of what varies; several may be joined by ``=``.
     """
-    case = opened(case)
+    varied = list(varied)
+    own = with_own_laws(opened(case), varied)
+    return own if any(map(bears_on_laws, _paths(varied))) else resolve(own)
+
+
+def with_own_laws(case: Case, varied: Iterable[str]) -> Case:
+    """Return a case in which laws of which a number varies are numbers, and no longer the teeth's.
+
+    Parameters
+    ----------
+    case : Case
+    varied : iterable of str
+        As for `loaded`.
+    """
+    numbers = [path[:3] for path in _paths(varied) if len(path) > 3]
+    own = {m for m in case.meshes if any(covers(p, ("meshes", m, "law")) for p in numbers)}
+    solved = resolve(case, leave=case.meshes.keys() - own)
+    laws = {name: solved.meshes[name].power_law for name in own}
+    origin = {
+        dotted(("meshes", name, "law", key)): None
+        for name, law in laws.items()
+        for key in ("basis", "teeth")
+        if law and getattr(law, key)
+    }
+    return solved.replace(origin) if origin else solved
+
+
+def _paths(varied: Iterable[str]) -> list[Key]:
     paths: list[Key] = []
     for part in (part for key in varied for part in split_outside(key, "=")):
         # What is no key path is reported where it is used.
         with suppress(ValueError):
             paths.append(parse(part))
-    if not any(map(bears_on_laws, paths)):
-        return resolve(case)
-    numbers = [path[:3] for path in paths if len(path) > 3]
-    own = {m for m in case.meshes if any(covers(p, ("meshes", m, "law")) for p in numbers)}
-    solved = resolve(case, leave=case.meshes.keys() - own)
-    # A law of which a number varies is no longer that of the teeth.
-    laws = {name: solved.meshes[name].power_law for name in own}
-    given = [("meshes", name, "law", "teeth") for name, law in laws.items() if law and law.teeth]
-    return solved.replace({dotted(path): None for path in given}) if given else solved
+    return paths
 
 
 def alike(trains: Iterable[Train], positions: Iterable[int]) -> list[list[int]]:
