@@ -172,6 +172,17 @@ def test_the_command_runs_what_is_requested(case, tmp_path):
     assert "contradicts --no-studies" in done.stderr
 
 
+def test_a_folder_without_samples_is_reported_before_anything_is_solved(tmp_path):
+    """A slip in its name began the whole study, in a folder of that name."""
+    file = tmp_path / "case.toml"
+    file.write_text("", encoding="utf-8")
+    folder = tmp_path / "samlpes"
+    done = CliRunner().invoke(app, ["report", str(file), "--study", f"pins={folder}"])
+    assert done.exit_code == 2
+    assert "holds no samples of a tolerance study" in " ".join(done.stderr.split())
+    assert not folder.exists()
+
+
 def test_samples_that_are_kept_are_not_solved_again(case, tmp_path):
     found = ls.tolerance(case, study="scatter", workers=1, worst=False, out=tmp_path / "kept")
     part = run_part(case, "scatter", kept=tmp_path / "kept")

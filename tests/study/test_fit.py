@@ -77,6 +77,18 @@ def test_inputs_are_found_again():
     assert found.values["errors.8.installation.amount"].endswith(" mm")
 
 
+def test_a_fit_is_the_same_as_none_but_itself():
+    """A comparison of arrays has no one answer: two fits could not be told apart in a list."""
+    case = shipped("fgfbstts/installation_error").replace(
+        {"measured.bench": {"position": 1, "pair_share": {"6-10": 0.8}, "uncertainty": 0.01}}
+    )
+    bounds = {f"errors.6.installation[{k}]": ("-90 um", "100 um") for k in (0, 1)}
+    one, other = ls.fit(case, bounds), ls.fit(case, bounds)
+    assert one != other
+    assert [other, one].index(one) == 1
+    assert len({one, other}) == 2
+
+
 def test_the_covariance_is_that_of_the_linear_problem():
     """One input, four shares: σ² = 1/Σ(slope/uncertainty)², slopes from full solves."""
     base = shipped("fgfbstts/installation_error")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -76,6 +77,12 @@ def _named(text: str) -> tuple[str, Path | None]:
     name, equals, folder = text.partition("=")
     if not name or (equals and not folder):
         raise typer.BadParameter(f"{text!r} is neither NAME nor NAME=FOLDER", param_hint="--study")
+    from loadshare.study.tolerance.folder import STUDY
+
+    if equals and not (Path(folder) / STUDY).is_file():
+        writes = f"loadshare tolerance CASE {quote(name)} -o {quote(folder)}"
+        message = f"{folder}: holds no samples of a tolerance study. `{writes}` writes them."
+        raise typer.BadParameter(message, param_hint="--study")
     return name, Path(folder) if equals else None
 
 

@@ -41,7 +41,7 @@ class Unknown:
     at_bound: bool
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Fit(Viewed):
     """Inputs fitted to measured figures.
 

@@ -185,12 +185,13 @@ def march(
     True
     """
     case = opened(case)
-    given = {"gear": gear, "revolutions": revolutions, "steps": steps}
-    given = {key: value for key, value in given.items() if value is not None}
+    asked = {"gear": gear, "revolutions": revolutions, "steps": steps}
+    given = {key: value for key, value in asked.items() if value is not None}
     if case.march is None and len(given) < 3:
-        message = "is missing"
+        lacking = " and ".join(key for key in asked if key not in given)
+        hint = f"Beside what was asked for, {lacking} would do." if given else ""
         allowed = "a march with gear, revolutions and steps"
-        raise CaseError([case.problem("march", message, allowed)])
+        raise CaseError([case.problem("march", "is missing", allowed, hint)])
     if given:
         case = case.replace({f"march.{key}": value for key, value in given.items()})
     solved = with_laws(case)

@@ -287,7 +287,7 @@ def march(
     case: CaseFile,
     gear: Gear = None,
     revolutions: Annotated[
-        float | None, typer.Option(metavar="X", min=0.0, help="Revolutions to march.")
+        float | None, typer.Option(metavar="X", help="Revolutions to march, above 0.")
     ] = None,
     steps: Annotated[int | None, typer.Option(metavar="N", min=1, help="Number of steps.")] = None,
     file: Files = None,

@@ -92,7 +92,7 @@ class Remark:
     message: str
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sensitivity(Viewed):
     """Derivatives of the certified equilibria of a case.
 
