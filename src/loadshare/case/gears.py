@@ -376,6 +376,8 @@ class Gear(Element):
         for key, kind in (("bore", "external"), ("outside_diameter", "internal")):
             if getattr(self, key) is not None and self.type != kind:
                 yield Rule(f"is for {kind} gears only", (key,))
+        if self.web is not None and self.rim is None:
+            yield Rule("is missing", ("rim",), LENGTH.allowed, "It goes with web.")
         tooth = self.tooth
         if tooth is None:
             return
