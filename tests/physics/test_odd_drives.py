@@ -122,8 +122,47 @@ def simpson(backlash: float | None) -> Built:
     return drive, "r1", "c1"
 
 
+def behind_double(backlash: float | None) -> Built:
+    """Two branches behind a set whose ring turns one way, and the other way on the carrier."""
+    drive = Drive(backlash)
+    double_set(drive, "1")
+    drive.gears["s1"]["held"] = True
+    drive.gear("out", 30)
+    apart = -drive.teeth["r1"] - 30
+    for name, way in (("a", 1.0), ("b", -1.0)):
+        at = (0.0, way * 0.5 * MODULE * apart)
+        drive.gear(f"{name}1", 30, at)
+        drive.gear(f"{name}2", apart - 30, at)
+        drive.mesh("r1", f"{name}1")
+        drive.mesh(f"{name}2", "out")
+        drive.shaft(f"{name}1", f"{name}2")
+    return drive, "c1", "out"
+
+
+def sun_with_layshaft(backlash: float | None) -> Built:
+    """A sun that meshes with its planets and, in the housing, with the layshaft of the ring."""
+    drive = Drive(backlash)
+    simple_set(drive, "1", 24, 24)
+    drive.gear("lay1", 80, (0.5 * MODULE * 104, 0.0))
+    drive.gear("lay2", 30, (0.5 * MODULE * 104, 0.0))
+    drive.gear("outer", 74)
+    drive.mesh("s1", "lay1")
+    drive.mesh("lay2", "outer")
+    drive.shaft("lay1", "lay2")
+    drive.shaft("outer", "r1")
+    return drive, "s1", "c1"
+
+
 LOOPS: dict[str, Callable[[float | None], Built]] = {
-    f.__name__: f for f in (simple_beside_double, layshaft, recirculating, simpson)
+    f.__name__: f
+    for f in (
+        simple_beside_double,
+        layshaft,
+        recirculating,
+        simpson,
+        behind_double,
+        sun_with_layshaft,
+    )
 }
 
 
@@ -174,6 +213,19 @@ def test_a_loop_over_sets_is_that_of_rigid_bodies(
     assert power == pytest.approx(0.0, abs=1e-8 * abs(torque))
 
 
+def test_gears_outside_a_set_count_as_they_turn_in_the_housing() -> None:
+    drive, driving, output = behind_double(None)
+    case = drive.case(driving, output, 500.0)
+    even = ls.solve(case).positions[0]
+    assert all(even.rotation[gear] > 0.0 for gear in ("c1", "r1", "a1", "a2"))
+    assert all(even.torque[mesh] > 0.0 for mesh in ("r1-a1", "a2-out", "r1-b1"))
+    # The end of a shaft that lags has to catch up: the other branch carries more meanwhile.
+    late = ls.solve(case.replace({"shafts.a1-a2.clocking": "10 urad"})).positions[0]
+    change = late.torque["r1-b1"] - even.torque["r1-b1"]
+    assert change > 0.02 * even.torque["r1-b1"]
+    assert late.torque["r1-a1"] == pytest.approx(even.torque["r1-a1"] - change)
+
+
 def test_what_cannot_turn_is_refused_with_what_holds_it() -> None:
     drive, _, _ = simple_beside_double(None)
     drive.gears["c1"]["held"] = True
@@ -186,7 +238,9 @@ def test_what_cannot_turn_is_refused_with_what_holds_it() -> None:
         build_train(drive.case(driving, "r1", 100.0))
 
 
-@pytest.mark.parametrize("name", ["simple_beside_double", "layshaft", "recirculating"])
+@pytest.mark.parametrize(
+    "name", ["simple_beside_double", "layshaft", "recirculating", "sun_with_layshaft"]
+)
 def test_meshes_of_a_loop_go_through_their_cycles_as_a_march_does(name: str) -> None:
     drive, driving, output = LOOPS[name](None)
     for gear, teeth in drive.teeth.items():

@@ -68,7 +68,7 @@ class Gear:
         r_b [m]; the acting radius of a face gear, the distance of a carrier's outermost pin.
     sense : int
         In which its rotation is counted: +1 if counter-clockwise seen against its axis, −1
-        otherwise. It is the running sense; in a planetary set the one seen from the carrier.
+        otherwise. It is the running sense, of a planet as seen from its carrier.
     teeth : float or None
         Given, or what follows from those of gears that it meshes with; None where nothing tells.
     support : ndarray, shape (2,), or None

@@ -209,11 +209,11 @@ def _pairs(case: spec.Case, gears: Mapping[str, Gear], period: Period | None) ->
             raise ValueError(f"no line of action: {name}")
         driver, driven = gears[mesh.driver], gears[mesh.driven]
         turned, unsure = (bool(flag) for flag in every[name])
-        contact, counted = running_contact(driver, driven)
+        contact, counted = running_contact(gears, mesh.driver, mesh.driven)
         if turned:
             # The other flank of the same two gears, whichever senses they are counted in.
             driver, driven = driven, driver
-            contact, counted = running_contact(driver, driven, counted[1])
+            contact, counted = running_contact(gears, mesh.driven, mesh.driver, counted[1])
         normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
         pair = Pair(
             driver, driven, (normals[0], normals[1]), turned, line, counted=counted, unsure=unsure

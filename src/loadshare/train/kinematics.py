@@ -1,7 +1,7 @@
 """Running senses and speed ratios, found by walking from the input gear over meshes and shafts.
 
 Planets and what meshes with them are walked as seen from their carrier; where no mesh or shaft
-leads, the walk begins again, and the senses that it found are turned to those of the true speeds.
+leads, the walk begins again. All senses that it found are turned to those of the true speeds.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from loadshare.train.gear import Gear
 from loadshare.train.mesh import MeshGeometryError, contact_of
-from loadshare.train.planetary import members
+from loadshare.train.planetary import members, on_one_shaft
 
 RATIO_TOLERANCE = 1e-3
 """Largest relative difference between two paths' speed ratios that rounding of radii explains."""
@@ -62,7 +62,6 @@ def settle(
     """
     planetary = any(gear.kind == "carrier" or gear.held for gear in gears.values())
     settled = {first: gears[first]}
-    walks = {first: first}
     conflicts: list[Conflict] = []
 
     def mesh_partner(name: str, here: str) -> Iterator[Gear]:
@@ -98,7 +97,7 @@ def settle(
     while queue or (planetary and len(settled) < len(gears)):
         if not queue:
             seed = next(name for name in gears if name not in settled)
-            settled[seed], walks[seed] = gears[seed], seed
+            settled[seed] = gears[seed]
             queue.append(seed)
         here = queue.popleft()
         for name, ends, key, partner in links:
@@ -109,12 +108,11 @@ def settle(
                 known = settled.get(found.name)
                 if known is None:
                     settled[found.name] = found
-                    walks[found.name] = walks[here]
                     queue.append(found.name)
                 elif not planetary:
                     conflicts += _compare(key, known, found)
     if planetary and not conflicts:
-        return _of_sets(_as_shafts_turn(settled, shafts), meshes, shafts, walks, first)
+        return _of_sets(_as_shafts_turn(settled, shafts), meshes, shafts, first)
     return Kinematics(settled, tuple(conflicts))
 
 
@@ -122,12 +120,11 @@ def _of_sets(
     gears: Mapping[str, Gear],
     meshes: Mapping[str, tuple[str, str]],
     shafts: Mapping[str, tuple[str, str]],
-    walks: Mapping[str, str],
     first: str,
 ) -> Kinematics:
     """Settle a train with planetary sets, whose senses were walked."""
     try:
-        found, determined = members(gears, meshes, shafts, walks, first)
+        found, determined = members(gears, meshes, shafts, first)
     except ValueError as error:
         return Kinematics(gears, (Conflict("operating.input", str(error)),))
     return Kinematics(found, (), determined)
@@ -142,15 +139,10 @@ def _as_shafts_turn(
     a rotation in: the meshes tell (see `Mesh.along`), shafts need not.
     """
     found = dict(gears)
-    together: dict[str, set[str]] = {}
-    for ends in shafts.values():
-        joined = set().union(*(together.get(end, {end}) for end in ends))
-        together |= dict.fromkeys(joined, joined)
-    for name, gear in gears.items():
-        for other in together.pop(name, ()):
-            together.pop(other, None)
-            along = 1 if found[other].axis @ gear.axis > 0.0 else -1
-            found[other] = replace(found[other], sense=along * gear.sense)
+    for first, *others in on_one_shaft(gears, shafts):
+        for other in others:
+            along = 1 if gears[other].axis @ gears[first].axis > 0.0 else -1
+            found[other] = replace(gears[other], sense=along * gears[first].sense)
     return found
 
 

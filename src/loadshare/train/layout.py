@@ -204,7 +204,8 @@ def _spacing_hint(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str
         if first is None or about(planet.name, last.name):
             continue
         teeth = [round(g.teeth or 0) for g in (first, last)]
-        alike = first.sense * last.sense * float(first.axis @ last.axis) > 0.0
+        ways = [g.sense * g.relative * g.axis for g in (first, last)]
+        alike = float(ways[0] @ ways[1]) > 0.0
         whole = abs(teeth[0] - teeth[1]) if alike else sum(teeth)
         if whole:
             return (

@@ -13,6 +13,7 @@ from loadshare.contact.law import Law
 from loadshare.train.gear import Gear, Vector, cross
 from loadshare.train.rim import bent
 from loadshare.train.ring import transverse
+from loadshare.train.seen import speed_in_mesh
 
 
 class MeshGeometryError(ValueError):
@@ -81,8 +82,8 @@ class Mesh:
         from their position on.
     counted : (int, int)
         1 where a rotation of driver and of driven gear is counted in the sense in which the drive
-        flank goes with the driver and pushes the driven gear, −1 where against it: in planetary
-        sets senses follow from shafts, and in a loop over several sets they may contradict.
+        flank goes with the driver and pushes the driven gear, −1 where against it: suns and rings
+        are counted as they turn in the housing, their meshes as they turn on the carrier.
     """
 
     name: str
@@ -206,19 +207,20 @@ def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
 
 
 def running_contact(
-    driver: Gear, driven: Gear, way: int | None = None
+    gears: Mapping[str, Gear], driver: str, driven: str, way: int | None = None
 ) -> tuple[Contact, tuple[int, int]]:
     """Contact of two gears as they run, seen from their carrier, and how they are counted in it.
 
     Parameters
     ----------
-    driver, driven : Gear
+    gears : mapping of str to Gear
+    driver, driven : str
     way : int, optional
         Which way the driver runs, over the sense in which it is counted (see `Mesh.counted`).
     """
-    way = way or (-1 if driver.relative < 0.0 else 1)
-    contact = contact_of(replace(driver, sense=way * driver.sense), driven)
-    return contact, (way, contact.driven_sense * driven.sense)
+    way = way or (-1 if speed_in_mesh(gears, driver, driven) < 0.0 else 1)
+    contact = contact_of(replace(gears[driver], sense=way * gears[driver].sense), gears[driven])
+    return contact, (way, contact.driven_sense * gears[driven].sense)
 
 
 def contact_of(driver: Gear, driven: Gear) -> Contact:

@@ -18,7 +18,8 @@ from functools import reduce
 from math import gcd, lcm
 
 from loadshare.train.gear import Gear
-from loadshare.train.willis import Ends, Links, along, seen_from
+from loadshare.train.seen import along, seen_from
+from loadshare.train.willis import Ends, Links
 
 Row = dict[str, Fraction]
 

@@ -16,8 +16,8 @@ from loadshare.train.gear import Gear, Vector
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import turned_about
 from loadshare.train.ring import RoundRing
+from loadshare.train.seen import seen_from
 from loadshare.train.train import Train
-from loadshare.train.willis import seen_from
 
 
 def train_at(train: Train, index: int) -> Train:

@@ -2,33 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from loadshare.train.gear import Gear, cross
 from loadshare.train.ring import transverse
-from loadshare.train.willis import NOISE, Links, along, seen_from
+from loadshare.train.seen import seen_from, speed_on
+from loadshare.train.willis import Links
 
 
 def members(
     gears: Mapping[str, Gear],
     meshes: Mapping[str, tuple[str, str]],
     shafts: Mapping[str, tuple[str, str]],
-    walks: Mapping[str, str],
     first: str,
 ) -> tuple[dict[str, Gear], bool]:
     """Return the members of planetary sets with speeds, frames, pins, and senses that fit these.
 
+    Planets count along their sense on the carrier, all others along that in the housing: users give
+    torques and clockings by these, and gears outside a set know of no carrier.
+
     Parameters
     ----------
     gears : mapping of str to Gear
-        Their senses walked, in a set those of the relative motion.
+        Their senses walked, the same at both ends of a shaft.
     meshes, shafts : mapping of str to (str, str)
-    walks : mapping of str to str
-        Gear from which the walk to each began: of all walks but that of the input the way round is
-        anybody's guess.
     first : str
         The input gear.
 
@@ -48,23 +48,22 @@ def members(
     relative = dict(speeds)
     for name, frame in frames.items():
         if gears[name].kind != "carrier":
-            apart = speeds[name] - along(gears[name], gears[frame]) * speeds[frame]
-            # What goes round with its carrier as one piece does not turn on it.
-            relative[name] = apart if abs(apart) > NOISE * abs(speeds[frame]) else 0.0
-    turned = {}
-    for seed in dict.fromkeys(walks.values()):
-        moving = (relative[name] for name, walk in walks.items() if walk == seed and relative[name])
-        turned[seed] = -1 if seed != first and next(moving, 1.0) < 0.0 else 1
-    found = {}
-    for name, gear in gears.items():
-        way = turned[walks[name]]
-        found[name] = replace(
-            gear,
-            sense=way * gear.sense,
-            ratio=way * speeds[name],
-            relative=way * relative[name],
-            frame_of=frames.get(name),
-        )
+            both = speeds[name], speeds[frame]
+            relative[name] = speed_on(gears[name], gears[frame], both)
+    found = dict(gears)
+    for group in on_one_shaft(gears, shafts):
+        # What stands still in the housing has no sense there.
+        seen = [(relative if gears[name].carrier else speeds)[name] for name in group]
+        seen += [relative[name] for name in group]
+        way = -1 if next(filter(None, seen), 1.0) < 0.0 else 1
+        for name in group:
+            found[name] = replace(
+                gears[name],
+                sense=way * gears[name].sense,
+                ratio=way * speeds[name],
+                relative=way * relative[name],
+                frame_of=frames.get(name),
+            )
     found |= {name: _on_pin(gear, found) for name, gear in found.items() if gear.carrier}
     radii = [gear.base_radius for gear in gears.values() if gear.kind != "carrier"]
     for name, gear in found.items():
@@ -72,6 +71,17 @@ def members(
             pins = [float(np.linalg.norm(g.seat)) for g in found.values() if g.carrier == name]
             found[name] = replace(gear, base_radius=max(pins or radii))
     return found, determined
+
+
+def on_one_shaft(
+    gears: Iterable[str], shafts: Mapping[str, tuple[str, str]]
+) -> Iterator[tuple[str, ...]]:
+    """Yield the gears that shafts join, in their order, and each of the others by itself."""
+    together: dict[str, set[str]] = {name: {name} for name in gears}
+    for one, other in shafts.values():
+        joined = together[one] | together[other]
+        together |= dict.fromkeys(joined, joined)
+    yield from dict.fromkeys(tuple(n for n in together if n in together[g]) for g in together)
 
 
 def _on_pin(planet: Gear, gears: Mapping[str, Gear]) -> Gear:

@@ -17,6 +17,7 @@ from loadshare.train.mesh import Approach, Mesh, approach_of
 from loadshare.train.offset import Angle, Offset, turned_about
 from loadshare.train.period import Period
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
+from loadshare.train.seen import speed_in_mesh
 from loadshare.train.turning import March, Turning, cycle_gear, turning_of
 
 At = TypeVar("At", int, Numbers)
@@ -311,7 +312,7 @@ class Train:
         driver = self.gears[mesh.driver]
         if self.march is None or driver.teeth is None:
             return step % self.positions / self.positions
-        turned = rotation[self.input] * abs(driver.relative)
+        turned = rotation[self.input] * abs(speed_in_mesh(self.gears, mesh.driver, mesh.driven))
         return turned * driver.teeth / (2.0 * math.pi) % 1.0
 
     def levers(self, gear: str) -> dict[str, float]:

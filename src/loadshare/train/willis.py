@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike
 from loadshare.array_types import Array, Flags, Numbers
 from loadshare.train.gear import Gear
 from loadshare.train.mesh import running_contact
+from loadshare.train.seen import along, seen_from
 
 Ends = tuple[str, str]
 
@@ -60,7 +61,7 @@ class Links:
         rows = []
         for driver, driven in meshes.values():
             row = np.zeros(len(order))
-            _, counted = running_contact(gears[driver], gears[driven])
+            _, counted = running_contact(gears, driver, driven)
             for name, sign in ((driver, counted[0]), (driven, -counted[1])):
                 row[order[name]] += sign * gears[name].base_radius
             carrier = seen_from(gears, driver, driven)
@@ -170,13 +171,3 @@ def _idle(balance: Array, response: Array) -> Flags:
     """Whether forces in balance without a load may run through links: statics leaves those open."""
     left = np.abs(np.eye(len(response)) - response @ balance)
     return np.asarray(left.max(axis=1, initial=0.0) > NOISE)
-
-
-def seen_from(gears: Mapping[str, Gear], driver: str, driven: str) -> str | None:
-    """Return the carrier whose planets are in a mesh, if any."""
-    return gears[driver].carrier or gears[driven].carrier
-
-
-def along(gear: Gear, carrier: Gear) -> float:
-    """Speed along a gear's sense of what turns with a carrier, over that of the carrier: ±1."""
-    return gear.sense * carrier.sense * (1.0 if gear.axis @ carrier.axis > 0.0 else -1.0)
