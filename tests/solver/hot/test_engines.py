@@ -19,9 +19,12 @@ import loadshare as ls
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Answers, Machine
 from loadshare.job.table import KEPT
+from loadshare.scene.loading import loading_of
 from loadshare.settings import ABREAST, CERTIFY, JOB
 from loadshare.solver.hot import compiled, radials, vectorised
 from loadshare.solver.hot import contact_states as at
+from loadshare.solver.hot.exchange import exchange
+from loadshare.solver.hot.iterate import at_rest
 from loadshare.solver.hot.kernel.signs import misplaced
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
@@ -166,6 +169,57 @@ def test_radial_elements_move_alike_from_place_to_place(data):
     wrong, moved = radials.misplaced(place, graph, offset, force, *bands)
     other = misplaced.py_func(place, law, *offset[0], *force[0], 1e-12, 1e-12, 1e-12)
     assert other == (moved[0] if wrong[0] else place)
+
+
+def test_planets_come_to_rest_in_their_roller_bearings_one_after_another():
+    """Where a drift ends is told once the walls before it are pressed in."""
+    at_origin = {"centre": ["0 mm", "0 mm"]}
+    rollers = {"rollers": 14, "length": "12 mm"}
+    case = ls.Case(
+        {
+            "operating": {
+                "input": "sun",
+                "output": "carrier",
+                "torque": "1 kN*m",
+                "positions": 3,
+            },
+            "gears": {
+                "sun": {"teeth": 18, "module": "5 mm", **at_origin},
+                "ring": {
+                    "type": "internal",
+                    "teeth": 90,
+                    "module": "5 mm",
+                    "held": True,
+                    **at_origin,
+                },
+                "carrier": {"type": "carrier", **at_origin},
+                "planet": {
+                    "copies": 3,
+                    "carrier": "carrier",
+                    "teeth": 36,
+                    "module": "5 mm",
+                    "centre": {"angle": "90 deg"},
+                },
+            },
+            "meshes": {
+                "sun-planet": {"stiffness": "2e6 N*m/rad", "backlash": "100 um"},
+                "planet-ring": {"stiffness": "2e6 N*m/rad", "backlash": "110 um"},
+            },
+            "errors": {
+                "planet2": {
+                    "pin": {"tangential": "30 um", "radial": "5 um"},
+                    "eccentricity": {"amount": "8 um", "direction": "0 deg"},
+                }
+            },
+            "rings": {"sun": {"radius": "40 um", "stiffness": "5e8 N/m"}},
+            "bearings": {"planet": {"clearance": "15 um", "diameter": "50 mm", "rolling": rollers}},
+        }
+    )
+    machine = Machine(build_train(case))
+    loading = loading_of(machine.structure, machine.situations([1, 2, 3]))
+    start = at_rest(machine.structure, loading)
+    assert exchange(machine.structure, loading, start, compiled.settle).solved.all()
+    agree(machine, machine.situations([1, 2, 3]))
 
 
 def test_solve_many_with_either_engine():

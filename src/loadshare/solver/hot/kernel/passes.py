@@ -142,8 +142,11 @@ def _judge(s, work, law_misfit, number, one_only, width):  # type: ignore[no-unt
         work.each[at.PREVIOUS, m] = misfit[m]
         # A set that is clearly wrong need not be settled.
         pulled = law_misfit[m] <= HOT.nearly and not one_only[work.samples[m]]
-        wrong = work.each[at.DRIFTS, m] > 0.0 or work.weakest[m] < -HOT.gross * work.strongest[m]
-        pulled = pulled and wrong
+        if work.each[at.DRIFTS, m] > 0.0:
+            # What is first in the way of a drift depends on how deep walls are pressed in.
+            pulled = pulled and misfit[m] <= HOT.nearly * (HOT.settled / HOT.law)
+        else:
+            pulled = pulled and work.weakest[m] < -HOT.gross * work.strongest[m]
         # Forces without bound and what is not a number are left undecided.
         burst = not work.strongest[m] <= HOT.burst * (work.push[m] if work.push[m] > 0.0 else 1.0)
         outside = False
