@@ -237,7 +237,7 @@ class Gear(Element):
 
     rim: Radius | None = None
     """Thickness of the rim below the teeth [length]: on a thin web for `law = "iso"`; for
-    `law = "ltca"` of the body that yields, by default 1.5 tooth heights."""
+    `law = "ltca"` of the body that yields, by default 1.5 tooth heights or half the root radius."""
 
     ovalisation: (
         Annotated[

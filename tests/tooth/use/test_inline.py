@@ -203,6 +203,16 @@ def test_the_rated_torque_does_not_hang_on_the_load(case):
     assert coefficients(other) == coefficients(case)
 
 
+def test_what_is_assumed_of_a_pinion_of_few_teeth_is_reported(tmp_path):
+    text = CASE.replace("bore =", "# bore =").replace("teeth = 25", "teeth = 9")
+    text = text.replace("profile_shift = 0.2", "profile_shift = 0.6\ntip_alteration = '-0.3 mm'")
+    text = text.replace("113 mm", "90.5 mm").replace(
+        '[meshes."a-b"]', '[meshes."a-b"]\nlaw = "ltca"'
+    )
+    basis = resolve(load_case(written(tmp_path, text, "case.toml"))).meshes["a-b"].law.basis
+    assert "rim of driver half the root radius, rim of driven gear 1.5 tooth heights" in basis
+
+
 def test_what_is_assumed_is_reported(case):
     basis = resolve(case).meshes["a-b"].law.basis
     assert basis.endswith("assumed: tip radius of the rack 0.38, steel, unmodified flanks")

@@ -170,6 +170,64 @@ def test_points_follow_the_model_where_the_file_does_not_tell_them(tmp_path):
     assert revised.analysis.points == 8
 
 
+FEW = """
+kind = "helicoid"
+torque = "20 N*m"
+
+[driver]
+module = "2 mm"
+teeth = 8
+profile_shift = 0.6
+addendum = 0.8
+tip_radius = 0.25
+pressure_angle = "20 deg"
+helix_angle = "30 deg"
+face_width = "50 mm"
+
+[driven]
+teeth = 40
+addendum = 0.8
+face_width = "50 mm"
+
+[analysis]
+positions = 1
+"""
+
+
+def test_a_pinion_of_few_teeth_has_room_in_its_elements(tmp_path):
+    """Its contact ratio of 4.9 asks for a model of nine teeth, more than it has."""
+    text = FEW + "points = 4\nlayers = 2\n"
+    found = [
+        load_pair(written(tmp_path, text + more)).analyse().elastic[0, -1]
+        for more in ("", "teeth = 7\n")
+    ]
+    # Without the word the driven gear has nine.
+    assert found[0] == pytest.approx(found[1], rel=1e-2)
+
+
+@pytest.mark.parametrize(("text", "few"), [(SPUR, 25), (FACE, 25), (FEW, 8)])
+def test_a_model_has_fewer_teeth_than_its_gears(text, few, tmp_path):
+    text = text.replace('"slices"', '"finite elements"')
+    asked = few + 1 - few % 2
+    problem = problems_in(written(tmp_path, f"{text}teeth = {asked}\n"))["analysis.teeth"]
+    assert problem.message == f"is too many for a gear of {few} teeth"
+    assert problem.allowed == f"odd numbers below {few}, or left out"
+    load_pair(written(tmp_path, f"{text}teeth = {asked - 2}\n"))
+
+
+def test_a_pinion_of_few_teeth_keeps_a_body(tmp_path):
+    """1.5 tooth heights would leave a bore that hardly holds what winds up about it."""
+    pair = load_pair(written(tmp_path, FEW)).revised(compliance="slices")
+    gear = pair.geometry.driver_gear
+    assert gear.root - 1.5 * (gear.tip - gear.root) < 0.25 * gear.root
+    assert gear.rim_radius == 0.5 * gear.root
+    lines = law_of(pair, pair.analyse()).findings
+    assert "(assumed, half the root radius)" in next(one for one in lines if "driver" in one)
+    assert "(assumed, 1.5 tooth heights)" in next(one for one in lines if "driven" in one)
+    said = load_pair(written(tmp_path, FEW.replace("[driven]", 'rim = "1 mm"\n[driven]')))
+    assert said.geometry.driver_gear.rim_radius == 1e-3
+
+
 def test_options_of_the_finite_elements_reach_them(tmp_path):
     text = SPUR.replace('"slices"', '"finite elements"\nteeth = 1\nlayers = 2')
     coarse = load_pair(written(tmp_path, text)).revised(positions=1).analyse()

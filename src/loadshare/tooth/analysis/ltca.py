@@ -65,7 +65,8 @@ def pair_compliance(
     pair : GearPair
     model : {"finite elements", "slices"}
     teeth : int, optional
-        Teeth in the finite-element model, odd; by default as many as feel one another.
+        Teeth in the finite-element model, odd; by default as many as feel one another, or as the
+        gear has.
     layers : int, optional
         Finite elements over the face width; by default the shape of the tooth decides.
 
@@ -76,15 +77,20 @@ def pair_compliance(
     """
     driver, driven = (pair.driver, 1), (pair.driven, pair.driven_side)
     if model == "finite elements":
-        from loadshare.tooth.compliance.finite import FiniteElements, default_divisions
+        from loadshare.tooth.compliance.finite import (
+            FiniteElements,
+            default_divisions,
+            most_teeth,
+        )
 
         # Pairs in contact at once are no more than the contact ratio rounded up.
-        count = teeth or 2 * max(1, ceil(pair.contact_ratio + pair.overlap_ratio) - 1) + 1
+        count = 2 * max(1, ceil(pair.contact_ratio + pair.overlap_ratio) - 1) + 1
         first, second = (
             FiniteElements(
                 body,
                 side,
-                teeth=count,
+                # On a pinion of few teeth they may be more than there are.
+                teeth=teeth or min(count, most_teeth(body.teeth)),
                 divisions=replace(default_divisions(body), width=layers) if layers else None,
             )
             for body, side in (driver, driven)

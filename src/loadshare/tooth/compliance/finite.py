@@ -56,7 +56,7 @@ class FiniteElements(Compliance):
         divisions: Divisions | None = None,
     ) -> None:
         n = divisions or default_divisions(body)
-        if teeth % 2 == 0 or teeth < 1 or teeth >= body.teeth:
+        if teeth % 2 == 0 or not 1 <= teeth <= most_teeth(body.teeth):
             raise ValueError(
                 f"teeth = {teeth}: the model has tooth 0 in its middle; allowed: odd numbers below "
                 f"the {body.teeth} teeth of the gear"
@@ -116,6 +116,11 @@ class FiniteElements(Compliance):
             normals = turned(self._feet.inward, 2.0 * np.pi * k / body.teeth)
             influence[k] = np.einsum("nij,ni->nj", at_feet, normals)
         return influence
+
+
+def most_teeth(teeth: int) -> int:
+    """Most teeth in the model of a gear: an odd number, with a space left where the rim is cut."""
+    return teeth - 1 - teeth % 2
 
 
 def _bare_rim(body: ToothBody, teeth: int) -> list[int]:

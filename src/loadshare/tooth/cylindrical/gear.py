@@ -8,7 +8,10 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 from loadshare.involute import InvoluteTooth
-from loadshare.tooth.geometry.body import Gear, PitchDeviations
+from loadshare.tooth.geometry.body import HALVED, RIM, Gear, PitchDeviations
+
+HALF = 0.5
+"""Least radius, over the root radius, at which the body of an external gear is assumed to end."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +99,7 @@ class HelicoidGear(InvoluteTooth, Gear):
         Gap between the two halves of a herringbone gear [m].
     rim : float, optional
         Inner radius of the gear's body, outer radius if internal [m]; by default 1.5 tooth
-        heights of material below the root.
+        heights of material below the root, of an external gear down to half the root radius.
     youngs_modulus, poisson : float
         Elasticity, [Pa] and 1.
     pitch : PitchDeviations, optional
@@ -190,6 +193,16 @@ class HelicoidGear(InvoluteTooth, Gear):
     @property
     def rim_radius(self) -> float:
         """Radius at which the gear's body ends [m]."""
-        if self.rim is not None:
-            return self.rim
-        return self.root - self.kind * 1.5 * abs(self.tip - self.root)
+        return self._assumed_radius if self.rim is None else self.rim
+
+    @property
+    def _assumed_radius(self) -> float:
+        """Radius at which the gear's body ends where nobody says [m]."""
+        # A hub held at next to no radius would wind up without end.
+        least = 0.0 if self.internal else HALF * self.root
+        return max(self.root - self.kind * 1.5 * abs(self.tip - self.root), least)
+
+    @property
+    def assumed_rim(self) -> str:
+        """How deep the body below the teeth is where nobody says, in words."""
+        return HALVED if self._assumed_radius == HALF * self.root else RIM

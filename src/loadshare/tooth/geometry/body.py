@@ -14,6 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 Array: TypeAlias = NDArray[np.float64]
 
 
+RIM = "1.5 tooth heights"
+"""How deep the body below the teeth is where nobody says."""
+HALVED = "half the root radius"
+"""The same of an external gear that 1.5 tooth heights would leave next to no bore."""
+
+
 @dataclass(frozen=True)
 class PitchDeviations:
     """Where the loaded flanks of a gear's teeth are, compared with even pitches.
@@ -42,6 +48,11 @@ class Gear:
     """Poisson's ratio."""
     pitch: PitchDeviations | None = None
     """Pitch deviations, if any."""
+
+    @property
+    def assumed_rim(self) -> str:
+        """How deep the body below the teeth is where nobody says, in words."""
+        return RIM
 
     @property
     def pitch_radius(self) -> float:

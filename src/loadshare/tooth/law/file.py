@@ -24,6 +24,7 @@ from loadshare.errors import CaseError, Refused
 from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import Ltca
+from loadshare.tooth.geometry.body import HALVED, RIM
 from loadshare.tooth.pair.file import PairFile
 from loadshare.tooth.pair.gears import PairGears, gears_of
 from loadshare.tooth.pair.model import Load, Number, Positions
@@ -46,13 +47,13 @@ class Rim(Element):
     """Mean stiffness of the mesh at the rated torque, over that on the gear's own rim [-]."""
 
     assumed: bool
-    """Whether the gear's own is 1.5 tooth heights because the pair does not say."""
+    """Whether the gear's own is assumed because the pair does not say."""
 
-    def text(self, gear: str) -> str:
-        """Return what it says in a line."""
+    def text(self, gear: str, depth: str) -> str:
+        """Return what it says in a line; `depth` is what the gear's own is where it is assumed."""
         low, own, high = (f"{1e3 * value.si:.4g} mm" for value in self.thickness)
         softer, stiffer = (f"{100.0 * (self.stiffness[k] - 1.0):+.1f} %" for k in (0, 2))
-        source = " (assumed, 1.5 tooth heights)" if self.assumed else ""
+        source = f" (assumed, {depth})" if self.assumed else ""
         return (
             f"The rim of the {gear} is {own} thick{source}. With {low} the mean stiffness would "
             f"change by {softer}, with {high} by {stiffer}."
@@ -151,7 +152,7 @@ class MeshLaw(Element):
     @property
     def findings(self) -> tuple[str, ...]:
         """How far the law hangs on rims and positions, a line each."""
-        lines = [rim.text(_GEARS[name]) for name, rim in self.rim.items()]
+        lines = [rim.text(_GEARS[name], self._assumed(name)) for name, rim in self.rim.items()]
         missed = 0.0 if self.sampled is None else self.sampled - 1.0
         if abs(missed) > MISSED:
             lines.append(
@@ -170,6 +171,14 @@ class MeshLaw(Element):
                 "much for linear elasticity to follow."
             )
         return (*lines, *self._most_loaded())
+
+    def _assumed(self, name: Literal["driver", "driven"]) -> str:
+        """How deep the body of a gear is whose rim the pair does not say, in words."""
+        gear = getattr(self.computed.gears, name, None)
+        if gear is None or None in (gear.module, gear.addendum, gear.dedendum):
+            return RIM
+        heights = self.rim[name].thickness[1].si / gear.module.si
+        return RIM if heights > 1.499 * (gear.addendum + gear.dedendum) else HALVED
 
     @property
     def yielding(self) -> float:

@@ -62,12 +62,16 @@ def inline_pair(case: Case, name: str) -> PairFile:
         raise CaseError([_in_case(case, name, problem) for problem in error.problems]) from None
 
 
-def assumed_of(case: Case, name: str) -> tuple[str, ...]:
+def assumed_of(case: Case, name: str, pair: PairFile) -> tuple[str, ...]:
     """What the pair of a mesh takes for granted, because the case does not say."""
     mesh = case.meshes[name]
     gears = dict(zip(("driver", "driven gear"), (case.gears[n] for n in mesh.ends), strict=True))
-    bare = [which for which, gear in gears.items() if _rim(gear) is None]
-    found = [f"rim of {' and '.join(bare)} 1.5 tooth heights"] if bare else []
+    bodies = pair.geometry.driver.gear, pair.geometry.driven.gear
+    rims: dict[str, list[str]] = {}
+    for (which, gear), body in zip(gears.items(), bodies, strict=True):
+        if _rim(gear) is None:
+            rims.setdefault(body.assumed_rim, []).append(which)
+    found = [f"rim of {' and '.join(which)} {depth}" for depth, which in rims.items()]
     if mesh.rated_torque is None:
         found.append(f"rated for {LOAD * 1e-6:g} N per mm of face width and module")
     if facing(mesh, case.gears, case.centres())[0] is not gears["driver"]:

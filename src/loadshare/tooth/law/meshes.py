@@ -156,7 +156,8 @@ def _inline(
             pairs[name] = inline_pair(case, name)
         except CaseError as error:
             problems |= dict.fromkeys(error.problems)
-    return pairs, {name: assumed_of(case, name) for name in names}, list(problems)
+    taken = {n: assumed_of(case, n, pairs[n]) if n in pairs else () for n in names}
+    return pairs, taken, list(problems)
 
 
 def _read(

@@ -282,6 +282,14 @@ class PairContent(Element):
                 yield Rule("is missing", ("driver", key), allowed)
 
 
+def _model_beyond_gears(content: HelicoidContent | FaceGearContent) -> Iterator[Rule]:
+    """Yield a finite-element model with more teeth than a gear of the pair has to give."""
+    few, asked = min(content.driver.teeth, content.driven.teeth), content.analysis.teeth
+    if asked is not None and asked >= few:
+        message = f"is too many for a gear of {few} teeth"
+        yield Rule(message, ("analysis", "teeth"), f"odd numbers below {few}, or left out")
+
+
 class HelicoidContent(PairContent):
     """Two cylindrical gears: spur, helical or herringbone, one of them internal or none."""
 
@@ -303,6 +311,11 @@ class HelicoidContent(PairContent):
     misalignment: Parallel = Parallel()
     """How far the axes are off."""
 
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not fit between the gears and their model."""
+        yield from super().rules()
+        yield from _model_beyond_gears(self)
+
 
 class FaceGearContent(PairContent):
     """A spur pinion that drives a face gear."""
@@ -315,6 +328,11 @@ class FaceGearContent(PairContent):
 
     misalignment: Crossed = Crossed()
     """How far the pair is off."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not fit between the gears and their model."""
+        yield from super().rules()
+        yield from _model_beyond_gears(self)
 
 
 CONTENTS: dict[str, type[HelicoidContent] | type[FaceGearContent]] = {
