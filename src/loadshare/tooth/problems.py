@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from typing import TypeAlias
 
 from loadshare.errors import CaseError, Problem
@@ -22,14 +23,30 @@ Check: TypeAlias = tuple[str, float | str, bool, str]
 """Name of a dimension, its value, whether that will do, and what would."""
 
 
-def millimetres(length: float) -> str:
-    """A length [m] as text in mm."""
-    return f"{digits(length * 1e3)} mm"
+def up(number: float) -> float:
+    """Return the least number of six figures that is not below one: what "at least" allows."""
+    return _with_six_figures(number, ROUND_CEILING)
 
 
-def degrees(angle: float) -> str:
-    """An angle [rad] as text in degrees."""
-    return f"{digits(math.degrees(angle))} deg"
+def down(number: float) -> float:
+    """Return the greatest number of six figures that is not above one: what "at most" allows."""
+    return _with_six_figures(number, ROUND_FLOOR)
+
+
+def _with_six_figures(number: float, rounding: str) -> float:
+    # What is beyond fifteen figures is round-off, of which a limit of 0.3 mm is not to be 0.300001.
+    exact = Decimal(f"{number:.15g}")
+    return float(exact.quantize(Decimal(1).scaleb(exact.adjusted() - 5), rounding))
+
+
+def millimetres(length: float, to: Callable[[float], float] = float) -> str:
+    """A length [m] as text in mm; a limit is rounded `up` or `down`."""
+    return f"{digits(to(length * 1e3))} mm"
+
+
+def degrees(angle: float, to: Callable[[float], float] = float) -> str:
+    """An angle [rad] as text in degrees; a limit is rounded `up` or `down`."""
+    return f"{digits(to(math.degrees(angle)))} deg"
 
 
 def digits(number: float) -> str:

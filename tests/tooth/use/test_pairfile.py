@@ -1,6 +1,7 @@
 """Pair files: what they give, and how their mistakes are reported."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -120,6 +121,51 @@ def test_problems_of_the_geometry_stand_where_they_were_written(tmp_path):
     problem = problems_in(written(tmp_path, text))["driver.profile_shift"]
     assert problem.given == "-0.1"
     assert "undercuts" in problem.message
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "line"),
+    [
+        *((SPUR.replace("teeth = 25", f"teeth = {z}"), "driver.profile_shift", "[driven]")
+          for z in range(7, 17)),
+        *((SPUR.replace("teeth = 25", f"teeth = {z}\naddendum = 1.75"), "driver.addendum", None)
+          for z in range(18, 26)),
+        *((FACE.replace("teeth = 120", f"teeth = {z}"), "driven.inner", None)
+          for z in (130, 131, 132)),
+        *((FACE.replace("teeth = 120", f"teeth = {z}"), "driven.outer", None)
+          for z in (100, 101, 102)),
+        *((FACE.replace("outer =", f"addendum = {a}\nouter =").replace("25 deg", "20 deg"),
+           "driven.addendum", None) for a in (1.25, 1.24)),
+    ],
+)  # fmt: skip
+def test_a_limit_that_is_told_may_be_written(text, key, line, tmp_path):
+    """With its six figures: a limit is rounded to the side on which the value is allowed."""
+    gear, name = key.split(".")
+    problem = problems_in(written(tmp_path, text))[key]
+    limit = re.search(r"(-?\d[\d.]*( mm)?)( |$)", problem.allowed.removeprefix("at least L1 = "))
+    told = f'"{limit[1]}"' if limit[2] else limit[1]
+    if line:
+        again = text.replace(line, f"{name} = {told}\n{line}")
+    else:
+        again = re.sub(rf"(\[{gear}\](\n.*)*?\n{name} = ).*", rf"\g<1>{told}", text)
+    assert again != text
+    left = []
+    try:
+        load_pair(written(tmp_path, again))
+    except CaseError as error:
+        left = [found.message for found in error.problems]
+    assert problem.message not in left
+
+
+def test_a_misaligned_centre_distance_is_named_where_it_is_written(tmp_path):
+    text = SPUR + '[misalignment]\ncentre_distance = "-8 mm"\n'
+    problem = problems_in(written(tmp_path, text))["misalignment.centre_distance"]
+    # 112.5 (cos 20° − 1) = −6.78458
+    assert problem.allowed == "more than -6.78458 mm"
+    text = SPUR.replace("title", 'centre_distance = "100 mm"\ntitle')
+    text += '[misalignment]\ncentre_distance = "1 mm"\n'
+    problem = problems_in(written(tmp_path, text))["centre_distance"]
+    assert (problem.given, problem.allowed) == ('"100 mm"', "more than 104.716 mm")
 
 
 def test_a_default_that_does_not_fit_is_reported_with_its_value(tmp_path):
@@ -316,8 +362,8 @@ def test_every_key_of_a_pair_file_is_described():
 @pytest.mark.parametrize(
     ("angle", "allowed"),
     [
-        ("44 deg", "0, with a dedendum of at most 0.813304"),
-        ("25 deg", "at most 0.317883 with this dedendum"),
+        ("44 deg", "0, with a dedendum of at most 0.813303"),
+        ("25 deg", "at most 0.317882 with this dedendum"),
     ],
 )
 def test_a_rack_without_room_for_a_tip_is_told_what_has(tmp_path, angle, allowed):

@@ -24,11 +24,13 @@ from loadshare.tooth.problems import (
     Check,
     degrees,
     digits,
+    down,
     failed,
     millimetres,
     problem,
     refuse,
     same,
+    up,
 )
 from loadshare.tooth.unloaded.positions import meeting_problems
 
@@ -71,9 +73,7 @@ def helicoid_pair(
             raise CaseError([_no_working_angle(driver, driven)]) from error
     pair = HelicoidPair(driver, driven, centre_distance, misalignment)
     if pair.actual_distance <= base:
-        none = "at this centre distance the gears have no line of action"
-        allowed = f"more than {millimetres(base)}"
-        raise CaseError([problem("centre_distance", pair.actual_distance, none, allowed)])
+        raise CaseError([_no_line_of_action(pair, base)])
     refuse(_mesh_problems(pair))
     refuse(meeting_problems(pair))
     return pair
@@ -114,15 +114,25 @@ def _ring_first(
     return ("driver", driver, driven) if driver.internal else ("driven", driven, driver)
 
 
+def _no_line_of_action(pair: HelicoidPair, base: float) -> Problem:
+    """Too small a centre distance, or a misalignment that makes it so."""
+    key, value, rest = "centre_distance", pair.centre_distance, pair.misalignment.centre_distance
+    if value > base:
+        key, value, rest = f"misalignment.{key}", rest, value
+    none = "at this centre distance the gears have no line of action"
+    return problem(key, value, none, f"more than {millimetres(base - rest, up)}")
+
+
 def _no_working_angle(driver: HelicoidGear, driven: HelicoidGear) -> Problem:
     teeth = driver.kind * driver.teeth + driven.kind * driven.teeth
     least = -driver.profile_shift
     least -= 0.5 * teeth * inv(driver.transverse_angle) / math.tan(driver.pressure_angle)
+    more = f"more than {digits(up(least))}" if teeth > 0 else f"less than {digits(down(least))}"
     return problem(
         "driven.profile_shift",
         driven.profile_shift,
         "the base circles would have to overlap for the gears to mesh without backlash",
-        f"{'more' if teeth > 0 else 'less'} than {digits(least)} with the driver's profile shift",
+        f"{more} with the driver's profile shift",
         "Or give the centre distance.",
     )
 
@@ -140,7 +150,7 @@ def _mesh_problems(pair: HelicoidPair) -> Iterator[Problem]:
     if low >= high:
         reach = 0.5 * (driver.face_width + driven.face_width)
         shift, apart = pair.misalignment.axial_shift, "the face widths no longer overlap"
-        allowed = f"less than {millimetres(reach)}"
+        allowed = f"less than {millimetres(reach, down)}"
         yield problem("misalignment.axial_shift", millimetres(shift), apart, allowed)
     elif not found and (total < 1.0 or pair.contact_ratio <= 0.0):
         what = f"the contact ratio is {total:.3f}: at some positions no teeth are in contact"
@@ -160,10 +170,10 @@ def _tip_problems(
     if other.kind * (other.tip_roll - limit) > TEETH.fits:
         largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
         cuts = f"the tip of this gear cuts into the root fillet of the {name}"
-        yield problem(key, other.addendum, cuts, f"at most {digits(largest)}")
+        yield problem(key, other.addendum, cuts, f"at most {digits(down(largest))}")
     clearance = root_clearance(gear, gear.root, other, pair.actual_distance)
     if clearance <= 0.0:
-        allowed = f"less than {digits(other.addendum + clearance / other.module)}"
+        allowed = f"less than {digits(down(other.addendum + clearance / other.module))}"
         runs = f"the tip of this gear runs into the root of the {name}"
         yield problem(key, other.addendum, runs, allowed)
 

@@ -9,7 +9,7 @@ from loadshare.errors import Problem
 from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.body import fillet_angle, rack_tip_half_width
 from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.problems import Check, digits, failed, millimetres, problem
+from loadshare.tooth.problems import Check, digits, down, failed, millimetres, problem, up
 
 
 def gear_problems(gear: HelicoidGear, key: str) -> list[Problem]:
@@ -68,8 +68,8 @@ def _tooth_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     yield from (_internal_problems if gear.internal else _external_problems)(gear, key)
     depth = gear.kind * (gear.root - gear.rim_radius)
     if not (depth > 0.0 and gear.rim_radius > 0.0):
-        side = "above" if gear.internal else "above 0 and below"
-        allowed = f"{side} the root radius, {millimetres(gear.root)}"
+        side, to = ("above", up) if gear.internal else ("above 0 and below", down)
+        allowed = f"{side} the root radius, {millimetres(gear.root, to)}"
         yield problem(f"{key}.rim", gear.rim_radius, "no body is left below the teeth", allowed)
 
 
@@ -78,25 +78,28 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     if rack_tip_half_width(gear) < 0.0:
         room = math.pi / 4 - gear.dedendum * slope
         largest = room / (1.0 / math.cos(gear.pressure_angle) - slope)
-        lower = f"0, with a dedendum of at most {digits(math.pi / 4 / slope)}"
+        lower = f"0, with a dedendum of at most {digits(down(math.pi / 4 / slope))}"
         what = "the tip of the generating rack has no room for this radius"
-        allowed = f"at most {digits(largest)} with this dedendum" if room >= 0.0 else lower
+        allowed = f"at most {digits(down(largest))} with this dedendum" if room >= 0.0 else lower
         yield problem(f"{key}.tip_radius", gear.tip_radius, what, allowed)
     if gear.profile_shift < gear.least_profile_shift - TEETH.fits:
         what = "the generating rack undercuts the teeth"
-        allowed = f"at least {gear.least_profile_shift:.4f} with {gear.teeth} teeth"
+        least = math.ceil(1e4 * (gear.least_profile_shift - TEETH.fits)) / 1e4
+        allowed = f"at least {least:.4f} with {gear.teeth} teeth"
         hint = "A smaller dedendum, a larger tip radius or more teeth help too."
         yield problem(f"{key}.profile_shift", gear.profile_shift, what, allowed, hint)
     if gear.tip <= gear.base_radius:
-        least = digits(gear.addendum_to(gear.base_radius))
+        allowed = f"more than {digits(up(gear.addendum_to(gear.base_radius)))}"
         inside = "the tip lies inside the base circle"
-        yield problem(addendum, gear.addendum, inside, f"more than {least}")
+        yield problem(addendum, gear.addendum, inside, allowed)
     elif gear.base_half_angle <= 0.0 or gear.half_angle(gear.tip) <= 0.0:
-        largest = -math.inf
-        if gear.base_half_angle > 0.0:
-            largest = gear.addendum_to(gear.pointed)
         what = "the teeth are pointed below this tip"
-        allowed = f"less than {digits(largest)} with this profile shift"
+        if gear.base_half_angle <= 0.0:
+            yield problem(addendum, gear.addendum, what, "none with so small a profile shift")
+            return
+        allowed = (
+            f"less than {digits(down(gear.addendum_to(gear.pointed)))} with this profile shift"
+        )
         hint = "A smaller profile shift helps too."
         yield problem(addendum, gear.addendum, what, allowed, hint)
 
@@ -104,7 +107,7 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
 def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     addendum = f"{key}.addendum"
     if gear.tip < gear.base_radius:
-        largest = digits(gear.addendum_to(gear.base_radius))
+        largest = digits(down(gear.addendum_to(gear.base_radius)))
         inside = "the tips reach inside the base circle, where there is no involute"
         yield problem(addendum, gear.addendum, inside, f"at most {largest}")
     elif gear.half_angle(gear.tip) <= 0.0:

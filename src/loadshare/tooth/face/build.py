@@ -21,11 +21,13 @@ from loadshare.tooth.problems import (
     Check,
     degrees,
     digits,
+    down,
     failed,
     millimetres,
     problem,
     refuse,
     same,
+    up,
 )
 from loadshare.tooth.unloaded.positions import meeting_problems
 
@@ -96,7 +98,7 @@ def _shaper_problems(gear: FaceGear) -> Iterator[Problem]:
         yield problem("driven.shaper.addendum", shaper.addendum, what, allowed)
     if gear.axial_scale <= 0.0:
         what = "shaper and gear do not roll on each other at this angle"
-        allowed = f"more than {degrees(math.acos(min(1.0, 1.0 / gear.roll_ratio)))}"
+        allowed = f"more than {degrees(math.acos(min(1.0, 1.0 / gear.roll_ratio)), up)}"
         yield problem("driven.shaft_angle", gear.shaft_angle, what, allowed)
 
 
@@ -119,7 +121,7 @@ def _shift_problems(pinion: HelicoidGear, shaper: Shaper) -> Iterator[Problem]:
     excess = pinion.profile_shift - shaper.profile_shift
     room = 0.5 * teeth * inv(shaper.pressure_angle) / math.tan(shaper.pressure_angle)
     if not (excess <= TEETH.fits if teeth == 0 else excess < room):
-        largest = digits(shaper.profile_shift + room)
+        largest = digits(down(shaper.profile_shift + room))
         what = "the pinion's teeth are too thick for the spaces that the shaper has cut"
         allowed = f"{'at most' if teeth == 0 else 'less than'} {largest}"
         hint = "Give the shaper the same profile shift."
@@ -130,12 +132,12 @@ def _limit_problems(gear: FaceGear) -> Iterator[Problem]:
     undercut, pointed = undercut_limit(gear), pointing_limit(gear)
     if gear.inner < undercut:
         what = "the shaper's tip undercuts the teeth at the inner end"
-        allowed = f"at least L1 = {millimetres(undercut)}"
+        allowed = f"at least L1 = {millimetres(undercut, up)}"
         hint = "A smaller addendum of the shaper lowers this limit."
         yield problem("driven.inner", gear.inner, what, allowed, hint)
     if gear.outer > pointed:
         what = "the teeth are pointed at the outer end"
-        allowed = f"at most L2 = {millimetres(pointed)}"
+        allowed = f"at most L2 = {millimetres(pointed, down)}"
         hint = "A smaller addendum of the gear raises this limit."
         yield problem("driven.outer", gear.outer, what, allowed, hint)
 
@@ -158,13 +160,14 @@ def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:
     pinion, gear, shaper = pair.pinion, pair.gear, pair.gear.shaper
     contact, beside = pair.contact_length, abs(pair.contact_length - pair.middle)
     if not gear.inner < contact < gear.outer:
-        end, more = ("inner", "less") if contact <= gear.inner else ("outer", "more")
+        inside = contact <= gear.inner
+        end, more, to = ("inner", "less", down) if inside else ("outer", "more", up)
         beyond = "the ideal pair's point of contact lies beyond this end of the teeth"
-        allowed = f"{more} than {millimetres(contact)}"
+        allowed = f"{more} than {millimetres(contact, to)}"
         yield problem(f"driven.{end}", getattr(gear, end), beyond, allowed)
     elif beside >= 0.5 * pinion.face_width:
         what = "the ideal pair's point of contact lies beyond the end of the pinion"
-        allowed = f"more than {millimetres(2.0 * beside)}"
+        allowed = f"more than {millimetres(2.0 * beside, up)}"
         hint = "Or choose inner and outer end so that their middle is nearer the contact."
         yield problem("driver.face_width", pinion.face_width, what, allowed, hint)
     deepest = pair.shaper_roll(pinion.tip_roll)
@@ -172,12 +175,11 @@ def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:
         roll = pair.pinion_roll(shaper.tip_roll)
         tip = min(pinion.base_radius * math.hypot(1.0, roll), shaper.tip - pair.axis_distance)
         what = "the tip of the pinion cuts into the root of the face gear"
-        allowed = f"less than {digits(pinion.addendum_to(tip))} with the shaper's addendum"
+        allowed = f"less than {digits(down(pinion.addendum_to(tip)))} with the shaper's addendum"
         hint = "A larger addendum of the shaper makes room."
         yield problem("driver.addendum", pinion.addendum, what, allowed, hint)
     if pair.roll_range[0] < pinion.form_roll - TEETH.fits:
-        roll, angle = max(pair.shaper_roll(pinion.form_roll), 0.0), pair.working_angle
-        depth = shaper.base_radius * (math.cos(angle) + roll * math.sin(angle))
+        depth = pair.depth(pair.shaper_roll(pinion.form_roll))
         what = "the tip of the face gear cuts into the root fillet of the pinion"
-        allowed = f"less than about {digits((shaper.radius - depth) / shaper.module)}"
+        allowed = f"at most {digits(down((shaper.radius - depth) / shaper.module))}"
         yield problem("driven.addendum", gear.addendum, what, allowed)

@@ -119,16 +119,14 @@ class FaceGearPair(GearPair):
     @cached_property
     def roll_range(self) -> tuple[float, float]:
         """Pinion's angles of roll where the gear's tip leaves the ideal pair's, and at its tip."""
-        gear, flank = self.gear, FaceFlank(self.gear)
-        phi = np.array(-self.working_angle)
+        tip, end = self.gear.shaper.tip_roll, self.gear.tip_depth
+        first = root_of(lambda roll: self.depth(roll) - end, -2.0 * tip, tip)
+        return self.pinion_roll(first), self.pinion.tip_roll
 
-        def depth(roll: float) -> float:
-            point = flank.point(np.array(roll), phi)
-            return float(gear.blank(point)[1]) - gear.tip_depth
-
-        tip = gear.shaper.tip_roll
-        first = self.pinion_roll(root_of(depth, -2.0 * tip, tip))
-        return first, self.pinion.tip_roll
+    def depth(self, roll: float) -> float:
+        """Depth in the blank of the ideal pair's contact at an angle of roll of the shaper [m]."""
+        point = FaceFlank(self.gear).point(np.array(roll), np.array(-self.working_angle))
+        return float(self.gear.blank(point)[1])
 
     @cached_property
     def driver(self) -> HelicoidBody:
