@@ -7,7 +7,8 @@ import pytest
 from tests.tooth.geometry.samples import face_gear, face_pair
 
 from loadshare.settings import TEETH
-from loadshare.tooth.cylindrical.gear import Modification
+from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
+from loadshare.tooth.face.build import face_gear_pair
 from loadshare.tooth.face.flank import (
     FaceFlank,
     planar_pointing_limit,
@@ -16,7 +17,8 @@ from loadshare.tooth.face.flank import (
     tip_half_angle,
     undercut_limit,
 )
-from loadshare.tooth.face.pair import FaceMisalignment
+from loadshare.tooth.face.gear import FaceGear, Shaper
+from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
 from loadshare.tooth.unloaded.positions import positions, transmission_error
 from loadshare.tooth.unloaded.touch import contact_points
 
@@ -203,6 +205,24 @@ def test_ends_of_the_lines_lie_on_edges():
     margins = np.min(list(mesh.margins(trace.driver_at, trace.driven_at).values()), axis=0)
     # Interpolated between stations 0.1 mm apart.
     np.testing.assert_allclose(margins, 0.0, atol=2e-8)
+
+
+def narrow_pair() -> FaceGearPair:
+    """A face gear only two modules wide, whose ends bend away beside the pinion's axis."""
+    shaper = Shaper(2e-3, 24, math.radians(20.0), addendum=1.15)
+    pinion = HelicoidGear(2e-3, 23, 6e-3, addendum=0.88, tip_radius=0.25)
+    gear = FaceGear(91, shaper, 88.5e-3, 93e-3, addendum=0.98)
+    return face_gear_pair(pinion, gear, FaceMisalignment(shaft_angle=1e-4))
+
+
+def test_lines_of_a_narrow_face_end_at_its_edges_at_every_position():
+    """Of lines, too, that begin at a corner, of which only the end of the look is on both."""
+    mesh = narrow_pair()
+    found = mesh.extents(*mesh.ideal(np.arange(400) / 400))
+    assert (found.start < found.end).all()
+    trace = found.trace(np.stack([found.start, found.end], axis=1))
+    margins = np.min(list(mesh.margins(trace.driver_at, trace.driven_at).values()), axis=0)
+    np.testing.assert_allclose(margins, 0.0, atol=1e-6)
 
 
 def test_undercut_limit_by_the_closed_condition():

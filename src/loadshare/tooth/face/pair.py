@@ -217,7 +217,14 @@ class FaceGearPair(GearPair):
         ends = np.array(self.roll_range)[:, None] + [[-per_tooth], [per_tooth]]
         position, pairs = between(*(ends - self.roll(np.zeros(1), 0.0, driver)) / per_tooth)
         valleys = self.valleys(pairs, driver[position], driven[position])
-        width = min(self.pinion.face_width, self.gear.outer - self.gear.inner)
-        along = np.maximum(np.abs(valleys.start.major[:, 2]), 0.2)
-        reach = 1.1 * (0.5 * width + abs(self.contact_length - self.middle)) / along
-        return position, pairs, valleys, reach
+        return position, pairs, valleys, self._reach(valleys)
+
+    def _reach(self, valleys: Valleys) -> Array:
+        """How far from their anchors lines (m,) may reach on both flanks [m]."""
+        pinion, gear = 0.5 * self.pinion.face_width, 0.5 * (self.gear.outer - self.gear.inner)
+        point, major = valleys.start.point, np.abs(valleys.start.major)
+        along = np.maximum(major[:, 2], 0.2)
+        # The ends of the gear are arcs, which bend away beside the pinion's axis.
+        beside = np.abs(point[:, 1]) + major[:, 1] / along * min(pinion, gear)
+        half = np.minimum(pinion, gear + 0.5 * beside**2 / self.gear.inner)
+        return np.asarray(1.1 * (half + abs(self.contact_length - self.middle)) / along)

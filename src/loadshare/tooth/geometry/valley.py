@@ -174,7 +174,7 @@ def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]
     Returns
     -------
     found : array (k,) of int
-        Lines with a positive station on the first grid.
+        Lines with a positive station on the first grid, and more than a point about it.
     start, end : array (k,)
         First and last station of their stretches [m].
     """
@@ -191,7 +191,8 @@ def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]
         first = np.where(beyond, side * steps, FIRST)
         out = np.argmin(np.where(first < 0, FIRST, first), axis=1)
         outside.append(stations[line, out])
-        inside.append(stations[line, np.clip(out - side, 0, FIRST - 1)])
+        # Where the stretch begins at the end of the reach there is nothing farther in.
+        inside.append(stations[line, out - side * (out != best)])
     good, bad = np.array(inside), np.array(outside)
 
     def both_ends(grid: Array, *, near: bool = False) -> Array:
@@ -211,4 +212,5 @@ def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]
     fall = np.maximum(within - beyond, np.finfo(float).tiny)
     ends = good + (bad - good) * np.clip(within / fall, -1.0, 2.0)
     start, end = np.clip(ends, -reach[found], reach[found])
-    return found, start, end
+    some = start < end
+    return found[some], start[some], end[some]
