@@ -86,6 +86,9 @@ class Teeth(NamedTuple):
     """Axis ratio, less one, within which a contact ellipse counts as a circle."""
     least_deflection: float = 1e-6
     """Deflection [m] of flanks that do not yield at all."""
+    shortest: float = 1e-4
+    """Part of a face width below which a contact line is none: it is far shorter than its contact
+    is wide, of which line contact makes a width of metres and too stiff a point."""
     at_end: float = 1e-12
     """Distance [m] within which a station is the end of its line."""
 

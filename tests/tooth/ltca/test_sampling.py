@@ -107,3 +107,26 @@ def test_tangent_and_increment_are_of_the_means():
 def test_means_need_equal_parts():
     with pytest.raises(ValueError, match="number of positions"):
         ltca(PAIRS["spur"], 100.0, [0.0, 0.5], (1.0,), "slices", means=True)
+
+
+@pytest.mark.parametrize("pitches", [1.0, 1.0 + 1e-7, 2.0])
+def test_faces_of_whole_axial_pitches_have_means(pitches):
+    """Pairs come and go at once, next to where nearly nothing is left of their lines."""
+    width = pitches * math.pi * 3e-3 / math.sin(math.radians(15.0))
+    angle = math.radians(15.0)
+    ends = (gear(z, face_width=width, helix_angle=way * angle) for z, way in ((25, 1), (50, -1)))
+    mesh = helicoid_pair(*ends)
+    found = ltca(mesh, 100.0, 2, (1.0,), "slices", points=8, means=True).elastic[:, -1]
+    other = ltca(mesh, 100.0, 5, (1.0,), "slices", points=8, means=True).elastic[:, -1]
+    assert found.mean() == pytest.approx(other.mean(), rel=5e-4)
+
+
+@pytest.mark.parametrize("beside", [1e-15, 1e-13, 1e-9, 1e-7, 1e-6, 1e-5])
+def test_a_line_of_which_nearly_nothing_is_left_carries_nothing(beside):
+    """It would be a contact that is metres wide, or none with which the contact settles."""
+    mesh = PAIRS["helical"]
+    phases = [(change + way * beside) % 1.0 for change in mesh.changes for way in (-1, 1)]
+    found = ltca(mesh, 100.0, phases, (0.1, 1.0), "slices", points=8)
+    assert found.approach[::2] == pytest.approx(found.approach[1::2], rel=1e-3)
+    widest = max(float(line.half_width.max()) for row in found.lines for line in row[-1])
+    assert widest < 1e-3

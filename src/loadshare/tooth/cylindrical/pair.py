@@ -11,6 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from loadshare.involute import inv, working_angle
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.body import HelicoidBody
 from loadshare.tooth.cylindrical.flank import HelicoidFlank
 from loadshare.tooth.cylindrical.gear import HelicoidGear
@@ -180,7 +181,7 @@ class HelicoidPair(GearPair):
         else:
             crossing = np.sort([(first - at_middle) / slope, (last - at_middle) / slope], axis=0)
             start, end = np.maximum(crossing[0], low), np.minimum(crossing[1], high)
-            inside = start < end
+            inside = end - start > TEETH.shortest * (high - low)
         rows = pairs[inside], driver[inside], driven[inside]
         return Extents(
             position[inside],

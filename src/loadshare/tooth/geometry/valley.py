@@ -212,5 +212,5 @@ def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]
     fall = np.maximum(within - beyond, np.finfo(float).tiny)
     ends = good + (bad - good) * np.clip(within / fall, -1.0, 2.0)
     start, end = np.clip(ends, -reach[found], reach[found])
-    some = start < end
+    some = end - start > TEETH.shortest * reach[found]
     return found[some], start[some], end[some]
