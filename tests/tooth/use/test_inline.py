@@ -228,6 +228,11 @@ def test_what_is_assumed_is_reported(case):
 def test_problems_stand_with_the_keys_of_the_case(case):
     with pytest.raises(CaseError, match=r"gears\.a\.bore.*leaves no body below the teeth"):
         case.replace({"gears.a.bore": "90 mm"})
+    with pytest.raises(CaseError) as caught:
+        resolve(case.replace({"gears.a.rim": "60 mm"}))
+    (problem,) = caught.value.problems
+    assert problem.key == "gears.a.rim"
+    assert problem.allowed == "less than the root radius, 34.7185 mm"
     wrong = case.replace({"gears.b.tip_radius": 0.6, "gears.b.teeth": 49})
     with pytest.raises(CaseError) as caught:
         resolve(wrong)

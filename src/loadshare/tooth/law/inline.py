@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from loadshare.case.place import minus
 from loadshare.errors import CaseError, Problem
 from loadshare.tooth.pair.file import PairFile, built
 from loadshare.tooth.pair.model import HelicoidContent
+from loadshare.tooth.problems import down, millimetres, refuse
 
 if TYPE_CHECKING:
     from loadshare.case import Case, Gear
@@ -39,6 +41,8 @@ def inline_pair(case: Case, name: str) -> PairFile:
     mesh = case.meshes[name]
     centres = case.centres()
     driver, driven = facing(mesh, case.gears, centres)
+    gears = dict(zip(mesh.ends, (driver, driven), strict=True))
+    refuse(problem for end, gear in gears.items() for problem in _too_deep(case, end, gear))
     distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
     torque = mesh.rated_torque.si if mesh.rated_torque else _rated(driver, driven)
     content = HelicoidContent.model_validate(
@@ -108,6 +112,15 @@ def _gear(gear: Gear) -> dict[str, Any]:
         content["tip_radius"] = gear.tip_radius
     rim = _rim(gear)
     return content if rim is None else content | {"rim": f"{rim!r} m"}
+
+
+def _too_deep(case: Case, name: str, gear: Gear) -> Iterator[Problem]:
+    """Yield the rim of an external gear that is deeper than the gear itself."""
+    radius = _rim(gear)
+    if gear.tooth is not None and radius is not None and radius <= 0.0:
+        what = "leaves no bore in the body below the teeth"
+        allowed = f"less than the root radius, {millimetres(gear.tooth.root, down)}"
+        yield case.problem(dotted(("gears", name, "rim")), what, allowed)
 
 
 def _rim(gear: Gear) -> float | None:
