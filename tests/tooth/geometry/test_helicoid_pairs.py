@@ -12,6 +12,7 @@ from tests.tooth.geometry.samples import RELIEVED, gear, pair
 from loadshare.involute import inv
 from loadshare.tooth.cylindrical.gear import Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
+from loadshare.tooth.geometry.gap import least_gap
 from loadshare.tooth.unloaded.positions import positions, transmission_error
 from loadshare.tooth.unloaded.touch import contact_points
 
@@ -286,3 +287,14 @@ def test_the_cycle_begins_at_the_pitch_point_in_the_middle_of_the_common_face(da
     middle = np.array([0.5 * sum(mesh.ends)])
     roll = mesh.roll(np.zeros(1), middle, driver)
     np.testing.assert_allclose(roll, math.tan(mesh.working_angle), rtol=1e-12)
+
+
+@pytest.mark.parametrize("helix", [0.0, 0.2])
+def test_the_least_gap_is_found_in_a_kink(helix):
+    """End relief on a tilted pair makes a V of the gap, whose tip lies between the stations."""
+    relieved = Modification(end_relief=20e-6, end_relief_length=4.3e-3)
+    mesh = pair(helix=helix, off=Misalignment(deviation=4e-4), modification=relieved)
+    found = mesh.extents(*mesh.ideal(np.arange(5) / 5))
+    stations = found.start[:, None] + np.outer(found.end - found.start, np.linspace(0, 1, 40001))
+    dense = found.trace(stations).gap.min(axis=1)
+    np.testing.assert_allclose(least_gap(found)[0], dense, rtol=0.0, atol=1e-9)

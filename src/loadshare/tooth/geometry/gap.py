@@ -135,7 +135,7 @@ def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace
     """Least gap on each line, ends included, and its station.
 
     Two grids find the place; where the slope of the gap changes sign next to it, the secant of the
-    slope gives the station.
+    slope gives the station, or the tangents do, which meet in a kink such as that of end relief.
 
     Returns
     -------
@@ -167,10 +167,17 @@ def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace
     before, after = slope[row, left], slope[row, right]
     turns = (before < 0.0) & (after > 0.0)
     if turns.any():
-        share = before / np.where(turns, before - after, 1.0)
-        between = stations[row, left] + share * (stations[row, right] - stations[row, left])
-        between = np.where(turns, between, station)
-        found = lines.trace(between[:, None]).gap[:, 0]
+        length, turn = (
+            stations[row, right] - stations[row, left],
+            np.where(turns, before - after, 1.0),
+        )
+        rise = trace.gap[row, right] - trace.gap[row, left]
+        steps = np.stack([before / turn * length, (rise - after * length) / turn])
+        between = stations[row, left] + np.clip(steps, 0.0, length)
+        between = np.where(turns, between, station).T
+        found = lines.trace(between).gap
+        lower = np.argmin(found, axis=1)
+        found, between = found[row, lower], between[row, lower]
         better = found < least
         least, station = np.where(better, found, least), np.where(better, between, station)
     return least, station, middles
