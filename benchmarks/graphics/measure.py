@@ -23,8 +23,8 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import compiled
 from loadshare.solver.hot.contact_states import DONE
-from loadshare.solver.hot.exchange import Found, exchange, first_sets
-from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
+from loadshare.solver.hot.exchange import Found, exchange
+from loadshare.solver.hot.iterate import Iterate, at_rest
 from loadshare.solver.hot.kernel.set_arrays import Samples, packed_sets
 from loadshare.solver.hot.kernel.work import Given
 from loadshare.solver.hot.rule import rule_of, samples_to_learn
@@ -103,11 +103,7 @@ def prepared(workload: Workload, count: int) -> Prepared:
     taught = loading.take(samples_to_learn(loading.count))
     forces = at_rest(structure, taught)
     found = exchange(structure, taught, forces, compiled.settle)
-    rows, share = structure.rows, np.abs(forces.force) / pushes(taught)[:, None]
-    rule = rule_of(taught, found.states[:, :rows], share)
-    states, named = first_sets(structure, loading), rule.named(loading)
-    states[:, :rows] = rule.states[named]
-    iterate = at_rest(structure, loading, rule.share, named)
+    states, iterate = rule_of(structure, taught, found.states, forces).start(structure, loading)
     return Prepared(structure, loading, iterate, states)
 
 

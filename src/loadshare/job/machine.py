@@ -314,14 +314,13 @@ class Machine:
         known = np.flatnonzero(found.solved)
         if not len(known):
             return None
-        share = np.abs(iterate.force[known]) / pushes(loading)[known, None]
-        return rule_of(loading.take(known), found.states[known, : self.structure.rows], share)
+        return rule_of(
+            self.structure, loading.take(known), found.states[known], iterate.take(known)
+        )
 
     def _by_rule(self, loading: Loading, engine: Engine, rule: Rule) -> tuple[Iterate, Found]:
         """Let samples begin where a rule says."""
-        states, named = first_sets(self.structure, loading), rule.named(loading)
-        states[:, : self.structure.rows] = rule.states[named]
-        iterate = at_rest(self.structure, loading, rule.share, named)
+        states, iterate = rule.start(self.structure, loading)
         return iterate, exchange(self.structure, loading, iterate, engine, states)
 
     def _search(

@@ -12,7 +12,7 @@ from hypothesis import given, note, settings
 from hypothesis import strategies as st
 from tests.physics.test_random_trains import split_torques, stars
 from tests.reproducible import TRAINS, examples
-from tests.solver.hot.trains import VARIED, varied
+from tests.solver.hot.trains import VARIED, planets_in_bearings, varied
 from tests.support import EVERY_SHIPPED, mostly_slow, shipped
 
 import loadshare as ls
@@ -173,49 +173,7 @@ def test_radial_elements_move_alike_from_place_to_place(data):
 
 def test_planets_come_to_rest_in_their_roller_bearings_one_after_another():
     """Where a drift ends is told once the walls before it are pressed in."""
-    at_origin = {"centre": ["0 mm", "0 mm"]}
-    rollers = {"rollers": 14, "length": "12 mm"}
-    case = ls.Case(
-        {
-            "operating": {
-                "input": "sun",
-                "output": "carrier",
-                "torque": "1 kN*m",
-                "positions": 3,
-            },
-            "gears": {
-                "sun": {"teeth": 18, "module": "5 mm", **at_origin},
-                "ring": {
-                    "type": "internal",
-                    "teeth": 90,
-                    "module": "5 mm",
-                    "held": True,
-                    **at_origin,
-                },
-                "carrier": {"type": "carrier", **at_origin},
-                "planet": {
-                    "copies": 3,
-                    "carrier": "carrier",
-                    "teeth": 36,
-                    "module": "5 mm",
-                    "centre": {"angle": "90 deg"},
-                },
-            },
-            "meshes": {
-                "sun-planet": {"stiffness": "2e6 N*m/rad", "backlash": "100 um"},
-                "planet-ring": {"stiffness": "2e6 N*m/rad", "backlash": "110 um"},
-            },
-            "errors": {
-                "planet2": {
-                    "pin": {"tangential": "30 um", "radial": "5 um"},
-                    "eccentricity": {"amount": "8 um", "direction": "0 deg"},
-                }
-            },
-            "rings": {"sun": {"radius": "40 um", "stiffness": "5e8 N/m"}},
-            "bearings": {"planet": {"clearance": "15 um", "diameter": "50 mm", "rolling": rollers}},
-        }
-    )
-    machine = Machine(build_train(case))
+    machine = Machine(build_train(planets_in_bearings()))
     loading = loading_of(machine.structure, machine.situations([1, 2, 3]))
     start = at_rest(machine.structure, loading)
     assert exchange(machine.structure, loading, start, compiled.settle).solved.all()

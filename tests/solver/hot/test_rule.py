@@ -2,16 +2,17 @@
 
 import numpy as np
 import pytest
+from tests.solver.hot.trains import planets_in_bearings
 from tests.support import CASES
 
 from benchmarks.workloads import workloads
 from loadshare.job.machine import Machine
 from loadshare.scene.loading import loading_of
 from loadshare.settings import RULE
+from loadshare.solver.hot import compiled, vectorised
 from loadshare.solver.hot import rule as rule_module
-from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.exchange import exchange, first_sets
-from loadshare.solver.hot.iterate import at_rest, pushes
+from loadshare.solver.hot.iterate import at_rest
 from loadshare.solver.hot.rule import rule_of, samples_to_learn
 from loadshare.train.samples import samples_of
 
@@ -35,19 +36,19 @@ def test_it_names_most_sets_of_samples_that_it_has_not_seen(rings):
     machine, _, loading, iterate, found = rings
     taught = np.arange(TAUGHT)
     states = found.states[:, : machine.structure.rows]
-    share = np.abs(iterate.force[taught]) / pushes(loading)[taught, None]
-    rule = rule_of(loading.take(taught), states[taught], share)
-    right = (rule.states[rule.named(loading)] == states).all(axis=1)[TAUGHT:]
+    of = machine.structure, loading.take(taught), found.states[taught], iterate.take(taught)
+    rule = rule_of(*of)
+    right = (rule.states[rule.named(loading)[0]] == states).all(axis=1)[TAUGHT:]
     _, times = np.unique(states, axis=0, return_counts=True)
     assert right.mean() >= max(0.7, 1.1 * times.max() / COUNT)
 
 
 def test_samples_of_one_set_all_begin_there(rings):
     machine, _, loading, iterate, found = rings
-    states = np.repeat(found.states[:1, : machine.structure.rows], TAUGHT, axis=0)
-    taught = loading.take(np.arange(TAUGHT))
-    rule = rule_of(taught, states, np.abs(iterate.force[:TAUGHT]))
-    assert (rule.states[rule.named(loading)] == states[0]).all()
+    states, taught = np.repeat(found.states[:1], TAUGHT, axis=0), np.arange(TAUGHT)
+    rule = rule_of(machine.structure, loading.take(taught), states, iterate.take(taught))
+    named = rule.states[rule.named(loading)[0]]
+    assert (named == states[0, : machine.structure.rows]).all()
 
 
 @pytest.mark.parametrize("count", [640, 5120, 16_670, 10**6])
@@ -81,9 +82,27 @@ def test_answers_are_those_from_rest_in_fewer_visits(rings, monkeypatch):
 def test_numbers_that_do_not_vary_teach_nothing(rings):
     machine, situations, *_ = rings
     loading = loading_of(machine.structure, situations.take(np.zeros(TAUGHT, dtype=np.intp)))
-    states = np.zeros((TAUGHT, machine.structure.rows), dtype=np.int8)
+    states = np.zeros((TAUGHT, machine.structure.switches), dtype=np.int8)
     states[::2, 0] = 1
-    share = np.zeros((TAUGHT, len(machine.structure.kinds)))
-    rule = rule_of(loading, states, share)
+    rule = rule_of(machine.structure, loading, states, at_rest(machine.structure, loading))
     # All begin on the set that was met most often, of two as often the first.
-    assert (rule.named(loading) == 0).all()
+    assert (rule.named(loading)[0] == 0).all()
+
+
+@pytest.mark.parametrize("engine", [vectorised.settle, compiled.settle])
+def test_floats_begin_on_the_walls_that_hold_them(engine):
+    """From rest a visit goes by for every wall that a float has drifted to."""
+    case = planets_in_bearings()
+    samples = {
+        "operating.torque [N*m]": np.linspace(500.0, 1500.0, COUNT),
+        "errors.planet2.pin.radial [um]": 20.0 * np.sin(np.arange(COUNT)),
+    }
+    ((_, group),) = samples_of(case, samples)
+    machine, situations = Machine(group.train), group.situations(1)
+    alone = machine.answer(situations, 1e-9, engine)
+    begun = machine.answer(situations, 1e-9, engine, starts=(1,))
+    assert alone.passed.all()
+    assert begun.passed.all()
+    assert begun.turns.mean() < 1.2 < 5.0 <= alone.turns.mean()
+    one, other = alone.equilibria.flank_force, begun.equilibria.flank_force
+    assert np.abs(one - other).max() <= 1e-12 * one.max()

@@ -47,6 +47,52 @@ def tabled() -> ls.Case:
     return case.replace(changes)
 
 
+def planets_in_bearings() -> ls.Case:
+    """Three planets in roller bearings with clearance, which one of their pins presses unevenly."""
+    at_origin = {"centre": ["0 mm", "0 mm"]}
+    rollers = {"rollers": 14, "length": "12 mm"}
+    return ls.Case(
+        {
+            "operating": {
+                "input": "sun",
+                "output": "carrier",
+                "torque": "1 kN*m",
+                "positions": 3,
+            },
+            "gears": {
+                "sun": {"teeth": 18, "module": "5 mm", **at_origin},
+                "ring": {
+                    "type": "internal",
+                    "teeth": 90,
+                    "module": "5 mm",
+                    "held": True,
+                    **at_origin,
+                },
+                "carrier": {"type": "carrier", **at_origin},
+                "planet": {
+                    "copies": 3,
+                    "carrier": "carrier",
+                    "teeth": 36,
+                    "module": "5 mm",
+                    "centre": {"angle": "90 deg"},
+                },
+            },
+            "meshes": {
+                "sun-planet": {"stiffness": "2e6 N*m/rad", "backlash": "100 um"},
+                "planet-ring": {"stiffness": "2e6 N*m/rad", "backlash": "110 um"},
+            },
+            "errors": {
+                "planet2": {
+                    "pin": {"tangential": "30 um", "radial": "5 um"},
+                    "eccentricity": {"amount": "8 um", "direction": "0 deg"},
+                }
+            },
+            "rings": {"sun": {"radius": "40 um", "stiffness": "5e8 N/m"}},
+            "bearings": {"planet": {"clearance": "15 um", "diameter": "50 mm", "rolling": rollers}},
+        }
+    )
+
+
 VARIED: dict[str, tuple[Callable[[], ls.Case], Mapping[str, tuple[float, float]]]] = {
     "errors": (lambda: placed(loaded(shipped("fgfbstts/both_errors"), "900 N*m")), ERRORS),
     "coast flanks": (

@@ -1,10 +1,15 @@
-"""A linear rule that names, from a sample's numbers, the set of contacts that it will end on.
+"""A linear rule that names, from a sample's numbers, the set of elements that it will end on.
 
-It is learnt from samples that were solved, those of all positions together. Whether a contact acts
+It is learnt from samples that were solved, those of all positions together. Whether an element acts
 follows from the sign of a linear function of what varies, by least squares on ±1. Of the sets that
 were met the one is taken that fits these signs best, or the one to which numbers of such values
 most likely belong (Fisher's discriminant): whichever names more of the samples solved. A wrong name
 costs a visit or two, and never an answer.
+
+What has friction begins on the first piece of its graph all the same: a slip is found from stick
+more surely than from another sample's slip. A wall without friction is met again and again where a
+gear floats, one visit for every wall; so it is named like a contact, and the rule says where the
+float is and how hard it leans there, which is the direction of its line.
 """
 
 from __future__ import annotations
@@ -17,7 +22,10 @@ import numpy as np
 
 from loadshare.array_types import Array, Numbers, States
 from loadshare.scene.loading import Loading
+from loadshare.scene.structure import Structure
 from loadshare.settings import RULE
+from loadshare.solver.hot.exchange import first_sets
+from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 
 
 class Part(NamedTuple):
@@ -29,7 +37,7 @@ class Part(NamedTuple):
         Of the array.
     used : ndarray of int or None
         Columns with a weight; None for all, where it takes less time than to pick them.
-    weights : ndarray, shape (columns, sets)
+    weights : ndarray, shape (columns, sets + values)
     """
 
     name: str
@@ -39,34 +47,56 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rule:
-    """Sets that were met, and what names one of them.
+    """Sets that were met, what names one of them, and where it begins.
 
     Attributes
     ----------
-    states : ndarray of int8, shape (sets, rows)
+    switches : ndarray of int, or slice
+        Of the elements that are named: contacts, and walls without friction.
+    states : ndarray of int8, shape (sets, named)
     share : ndarray, shape (sets, m)
         Mean forces on each, in shares of the load.
     constant : ndarray, shape (sets,)
+    place : ndarray, shape (sets, values)
+        Constants of the coordinates, and of the forces of radial elements, in the units of the
+        force method; without values where no wall is named.
     parts : sequence of Part
     """
 
+    switches: Numbers | slice
     states: States
     share: Array
     constant: Array
+    place: Array
     parts: Sequence[Part] = ()
 
-    def named(self, loading: Loading) -> Numbers:
-        """Return the number of the set, one of `states`, on which each of S samples is to begin."""
+    def start(self, structure: Structure, loading: Loading) -> tuple[States, Iterate]:
+        """Return the sets on which S samples begin, and where they stand."""
+        states, (named, place) = first_sets(structure, loading), self.named(loading)
+        states[:, self.switches] = self.states[named]
+        iterate = at_rest(structure, loading, self.share, named)
+        if place.shape[1]:
+            iterate.x[:], iterate.force[:, structure.columns.radials] = np.split(
+                place, [structure.size], axis=1
+            )
+        return states, iterate
+
+    def named(self, loading: Loading) -> tuple[Numbers, Array]:
+        """Return the number of the set, one of `states`, of each of S samples, and its place."""
+        sets = len(self.states)
         if not self.parts:
-            return np.zeros(loading.count, dtype=np.intp)
-        fit = np.tile(self.constant, (loading.count, 1))
+            none = np.zeros(loading.count, dtype=np.intp)
+            return none, self.place[none]
+        fit = np.zeros((loading.count, sets + self.place.shape[1]))
+        fit[:, :sets] = self.constant
         for name, used, weights in self.parts:
             table = getattr(loading, name)
             table = table.reshape(len(table), -1)
-            # What is infinite without a weight spoils the name of its own sample only.
+            # What is infinite without a weight spoils the start of its own sample only.
             with np.errstate(invalid="ignore"):
                 fit += table @ weights if used is None else table[:, used] @ weights
-        return np.asarray(fit.argmax(axis=1))
+        named = fit[:, :sets].argmax(axis=1)
+        return named, fit[:, sets:] + self.place[named]
 
 
 def samples_to_learn(count: int) -> Numbers:
@@ -80,42 +110,75 @@ def samples_to_learn(count: int) -> Numbers:
     return np.unique((multiples % 1.0 * count).astype(np.intp))
 
 
-def rule_of(loading: Loading, states: States, share: Array) -> Rule:
+def rule_of(structure: Structure, loading: Loading, states: States, iterate: Iterate) -> Rule:
     """Learn from samples that were solved where others begin.
 
     Parameters
     ----------
+    structure : Structure
     loading : Loading
         T samples.
-    states : ndarray of int8, shape (T, rows)
+    states : ndarray of int8, shape (T, switches)
         Sets that they ended on.
-    share : ndarray, shape (T, m)
-        Their forces, in shares of the load.
+    iterate : Iterate
+        Where they ended.
     """
+    walls, place = _walls(loading), np.zeros((len(states), 0))
+    switches: Numbers | slice = slice(structure.rows)
+    if len(walls):
+        switches = np.concatenate([np.arange(structure.rows), structure.rows + walls])
+        place = np.hstack([iterate.x, iterate.force[:, structure.columns.radials]])
+    states = states[:, switches]
     # As strings of bytes, which NumPy sorts fifteen times as fast as rows of an array.
-    rows = np.ascontiguousarray(states).view(f"V{states.shape[1]}").ravel()
+    each = np.ascontiguousarray(states).view(f"V{states.shape[1]}").ravel()
     _, first, every, times = np.unique(
-        rows, return_index=True, return_inverse=True, return_counts=True
+        each, return_index=True, return_inverse=True, return_counts=True
     )
     kept = np.argsort(-times, kind="stable")[: RULE.sets]
     number = np.full(len(times), -1)
     number[kept] = np.arange(len(kept))
     met, which = states[first[kept]], number[every]
-    shares = np.array([share[which == k].mean(axis=0) for k in range(len(kept))])
-    tables = _varying(loading) if len(met) > 1 else {}
+    share = np.abs(iterate.force) / pushes(loading)[:, None]
+    shares = _means(share, which, len(met))
+    tables = _varying(loading) if len(met) > 1 or len(walls) else {}
     if not tables:
-        return Rule(met, shares, np.zeros(len(met)))
+        return Rule(switches, met, shares, np.zeros(len(met)), _means(place, which, len(met)))
     known = np.concatenate([table[:, columns] for table, columns in tables.values()], axis=1)
-    weights, constant = _learnt(known, states, met, which)
+    naming, constant = _learnt(known, states, met, which)
+    moving, place = _placed(known, place, which, len(met))
+    weights = np.hstack([naming, moving])
     parts, start = [], 0
     for name, (table, columns) in tables.items():
-        here = np.zeros((table.shape[1], len(met)))
+        here = np.zeros((table.shape[1], weights.shape[1]))
         here[columns] = weights[start : start + len(columns)]
         start += len(columns)
         used = np.flatnonzero(here.any(axis=1))
         whole = len(used) > RULE.dense * table.shape[1] and np.isfinite(table).all()
         parts.append(Part(name, None, here) if whole else Part(name, used, here[used]))
-    return Rule(met, shares, constant, parts)
+    return Rule(switches, met, shares, constant, place, parts)
+
+
+def _walls(loading: Loading) -> Numbers:
+    """Radial elements without friction and without a first rise in all samples."""
+    return np.flatnonzero((loading.radial[:, :, [0, 3]] == 0.0).all(axis=(0, 2)))
+
+
+def _means(values: Array, which: Numbers, sets: int) -> Array:
+    """Mean values (sets, V) of the samples on each set."""
+    means: Array = np.array([values[which == k].mean(axis=0) for k in range(sets)])
+    return means
+
+
+def _placed(numbers: Array, values: Array, which: Numbers, sets: int) -> tuple[Array, Array]:
+    """Weights of numbers (T, N), and constants of every set, that give values (T, V)."""
+    if not values.shape[1]:
+        return np.zeros((numbers.shape[1], 0)), np.zeros((sets, 0))
+    known = which >= 0
+    others = which[known, None] == np.arange(1, sets)
+    every = np.hstack([numbers[known], others])
+    weights, constant = _least_squares(every, values[known])
+    of_sets = constant + np.vstack([np.zeros_like(constant), weights[numbers.shape[1] :]])
+    return weights[: numbers.shape[1]], of_sets
 
 
 def _learnt(numbers: Array, states: States, met: States, which: Numbers) -> tuple[Array, Array]:
@@ -129,6 +192,8 @@ def _learnt(numbers: Array, states: States, met: States, which: Numbers) -> tupl
     which : ndarray of int, shape (T,)
         Which of these each sample ended on; −1 for none of them.
     """
+    if len(met) == 1:
+        return np.zeros((numbers.shape[1], 1)), np.zeros(1)
     differing = (met != met[:1]).any(axis=0)
     signs = np.where(met[:, differing] != 0, 1.0, -1.0)
     weights, constant = _least_squares(numbers, np.where(states[:, differing] != 0, 1.0, -1.0))
@@ -150,6 +215,7 @@ def _least_squares(numbers: Array, wanted: Array) -> tuple[Array, Array]:
     from scipy.linalg import qr
 
     mean, spread = numbers.mean(axis=0), numbers.std(axis=0)
+    spread[spread == 0.0] = 1.0
     scaled = (numbers - mean) / spread
     triangle, order = qr(scaled, mode="r", pivoting=True)
     size = np.abs(np.diagonal(triangle))
@@ -169,12 +235,12 @@ def _discriminant(values: Array, which: Numbers, sets: int) -> tuple[Array, Arra
     """
     known = which >= 0
     times = np.bincount(which[known], minlength=sets)
-    means = np.array([values[which == k].mean(axis=0) for k in range(sets)])
+    means = _means(values, which, sets)
     away = values[known] - means[which[known]]
     spread = away.T @ away / len(away)
     diagonal = np.diag_indices(len(spread))
     spread[diagonal] += RULE.ridge * max(spread[diagonal].mean(), np.finfo(float).tiny)
-    weights = np.linalg.solve(spread, means.T)
+    weights = np.asarray(np.linalg.solve(spread, means.T), dtype=np.float64)
     return weights, np.log(times) - 0.5 * (means.T * weights).sum(axis=0)
 
 
