@@ -52,10 +52,9 @@ def members(
             relative[name] = speed_on(gears[name], gears[frame], both)
     found = dict(gears)
     for group in on_one_shaft(gears, shafts):
-        riding = gears[group[0]].carrier is not None
-        # What stands still where it is seen from has no sense there.
-        first_by, then_by = (relative, speeds) if riding else (speeds, relative)
-        seen = [by[name] for by in (first_by, then_by) for name in group]
+        # What stands still in the housing has no sense there.
+        seen = [(relative if gears[name].carrier else speeds)[name] for name in group]
+        seen += [relative[name] for name in group]
         way = -1 if next(filter(None, seen), 1.0) < 0.0 else 1
         for name in group:
             found[name] = replace(
