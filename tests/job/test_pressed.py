@@ -191,7 +191,7 @@ def test_power_that_goes_round_may_press_either_flank(stiffness, wrong):
     assert abs(exact.torque["s2-p21"]) == pytest.approx(abs(100.0 + 5.0 * sun) / 3.0, rel=1e-6)
     (found,) = ls.solve(loop(stiffness)).positions
     assert bool(found.validity.warned) is wrong
-    # The first sun turns with the block, and pushes its planets the way that it turns.
+    # The first sun, joined to the carriers, turns with them, and pushes its planets that way.
     expected = {"s1-p11": 100.0 / 15.0, "s2-p21": 0.0} if wrong else exact.torque
     for name in ("s1-p11", "s2-p21"):
         assert found.torque[name] == pytest.approx(expected[name], rel=1e-6, abs=1e-9)

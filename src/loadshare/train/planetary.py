@@ -52,8 +52,9 @@ def members(
             relative[name] = speed_on(gears[name], gears[frame], both)
     found = dict(gears)
     for group in on_one_shaft(gears, shafts):
-        # What stands still in the housing has no sense there.
-        seen = [(relative if gears[name].carrier else speeds)[name] for name in group]
+        # What goes round with a carrier as one piece keeps the sense of its walk, unless a shaft
+        # leads out; what stands still in the housing has no sense there.
+        seen = [(speeds if relative[n] and not gears[n].carrier else relative)[n] for n in group]
         seen += [relative[name] for name in group]
         way = -1 if next(filter(None, seen), 1.0) < 0.0 else 1
         for name in group:
