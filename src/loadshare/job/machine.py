@@ -309,8 +309,9 @@ class Machine:
 
     def _taught(self, loading: Loading, engine: Engine) -> Rule | None:
         """Return the rule that samples teach; None if none of them is solved."""
-        iterate = at_rest(self.structure, loading)
-        found = exchange(self.structure, loading, iterate, engine)
+        iterate, found = self._from_rest(loading, engine)
+        if 2 * np.count_nonzero(found.solved) < loading.count:
+            iterate, found = self._from_rest(loading, vectorised.settle, singly=True)
         known = np.flatnonzero(found.solved)
         if not len(known):
             return None

@@ -12,7 +12,7 @@ from hypothesis import given, note, settings
 from hypothesis import strategies as st
 from tests.physics.test_random_trains import split_torques, stars
 from tests.reproducible import TRAINS, examples
-from tests.solver.hot.trains import VARIED, planets_in_bearings, varied
+from tests.solver.hot.trains import ROLLERS, VARIED, planets_in_bearings, varied
 from tests.support import EVERY_SHIPPED, mostly_slow, shipped
 
 import loadshare as ls
@@ -173,7 +173,7 @@ def test_radial_elements_move_alike_from_place_to_place(data):
 
 def test_planets_come_to_rest_in_their_roller_bearings_one_after_another():
     """Where a drift ends is told once the walls before it are pressed in."""
-    machine = Machine(build_train(planets_in_bearings()))
+    machine = Machine(build_train(planets_in_bearings(**ROLLERS)))
     loading = loading_of(machine.structure, machine.situations([1, 2, 3]))
     start = at_rest(machine.structure, loading)
     assert exchange(machine.structure, loading, start, compiled.settle).solved.all()

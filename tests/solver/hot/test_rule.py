@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.solver.hot.trains import planets_in_bearings
+from tests.solver.hot.trains import ROLLERS, planets_in_bearings
 from tests.support import CASES
 
 from benchmarks.workloads import workloads
@@ -89,10 +89,11 @@ def test_numbers_that_do_not_vary_teach_nothing(rings):
     assert (rule.named(loading)[0] == 0).all()
 
 
+@pytest.mark.parametrize("law", [ROLLERS, {"stiffness": "4e8 N/m"}, {"stiffness": "rigid"}])
 @pytest.mark.parametrize("engine", [vectorised.settle, compiled.settle])
-def test_floats_begin_on_the_walls_that_hold_them(engine):
+def test_floats_begin_on_the_walls_that_hold_them(law, engine):
     """From rest a visit goes by for every wall that a float has drifted to."""
-    case = planets_in_bearings()
+    case = planets_in_bearings(**law)
     samples = {
         "operating.torque [N*m]": np.linspace(500.0, 1500.0, COUNT),
         "errors.planet2.pin.radial [um]": 20.0 * np.sin(np.arange(COUNT)),

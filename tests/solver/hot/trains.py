@@ -47,10 +47,12 @@ def tabled() -> ls.Case:
     return case.replace(changes)
 
 
-def planets_in_bearings() -> ls.Case:
-    """Three planets in roller bearings with clearance, which one of their pins presses unevenly."""
+ROLLERS = {"diameter": "50 mm", "rolling": {"rollers": 14, "length": "12 mm"}}
+
+
+def planets_in_bearings(**law: object) -> ls.Case:
+    """Three planets in bearings with clearance and some law, one of them on a pin out of place."""
     at_origin = {"centre": ["0 mm", "0 mm"]}
-    rollers = {"rollers": 14, "length": "12 mm"}
     return ls.Case(
         {
             "operating": {
@@ -88,7 +90,7 @@ def planets_in_bearings() -> ls.Case:
                 }
             },
             "rings": {"sun": {"radius": "40 um", "stiffness": "5e8 N/m"}},
-            "bearings": {"planet": {"clearance": "15 um", "diameter": "50 mm", "rolling": rollers}},
+            "bearings": {"planet": {"clearance": "15 um", **law}},
         }
     )
 

@@ -251,7 +251,9 @@ def _varying(loading: Loading) -> dict[str, tuple[Array, Numbers]]:
         table = getattr(loading, name)
         if len(table) > 1:
             table = table.reshape(len(table), -1)
-            varies = np.isfinite(table).all(axis=0) & (np.ptp(table, axis=0) > 0.0)
+            # What is rigid is infinite in every sample.
+            with np.errstate(invalid="ignore"):
+                varies = np.isfinite(table).all(axis=0) & (np.ptp(table, axis=0) > 0.0)
             if varies.any():
                 found[name] = table, np.flatnonzero(varies)
     return found
