@@ -48,3 +48,26 @@ def test_a_differential_halves_the_torque():
     assert sum(meshes[f"right-second{k}"] for k in (1, 2, 3)) == pytest.approx(500.0, rel=1e-12)
     first = sum(meshes[f"first{k}-left"] for k in (1, 2, 3))
     assert first == pytest.approx(500.0 * 16.0 / 21.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("sun", ["left", "right"])
+def test_a_sun_that_goes_round_with_its_carrier_drives_a_wheel_outside(sun):
+    """With the flank that the name says, whose contact no backlash takes away."""
+    place = {"left": "-24.6 mm", "right": "24.6 mm"}[sun]
+    case = ls.load_case(CASES / "planetary/differential.toml").to_dict()
+    case["gears"]["wheel"] = {
+        "teeth": 42,
+        "module": "3 mm",
+        "face_width": "0.6 mm",
+        "centre": ["94.5 mm", "0 mm", place],
+    }
+    case["gears"]["right"].pop("support")
+    case["operating"]["output"] = "wheel"
+    case["operating"]["external"] = {{"left": "right", "right": "left"}[sun]: "-500 N*m"}
+    found = []
+    for play in ("0 um", "150 um"):
+        case["meshes"][f"{sun}-wheel"] = {"stiffness": "1e6 N*m/rad", "backlash": play}
+        found.append(ls.solve(ls.Case(case)).positions[0])
+    for one in found:
+        assert one.torque[f"{sun}-wheel"] == pytest.approx(500.0, rel=1e-12)
+        assert one.rotation[sun] == pytest.approx(500.0 / 1e6, rel=1e-9)

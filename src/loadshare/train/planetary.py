@@ -22,7 +22,8 @@ def members(
     """Return the members of planetary sets with speeds, frames, pins, and senses that fit these.
 
     Planets count along their sense on the carrier, all others along that in the housing: users give
-    torques and clockings by these, and gears outside a set know of no carrier.
+    torques and clockings by these, and gears outside a set know of no carrier. What goes round with
+    a carrier as one piece has no sense on it and keeps that of its walk, unless a shaft leads out.
 
     Parameters
     ----------
@@ -52,8 +53,7 @@ def members(
             relative[name] = speed_on(gears[name], gears[frame], both)
     found = dict(gears)
     for group in on_one_shaft(gears, shafts):
-        # What goes round with a carrier as one piece keeps the sense of its walk, unless a shaft
-        # leads out; what stands still in the housing has no sense there.
+        # What stands still in the housing has no sense there.
         seen = [(speeds if relative[n] and not gears[n].carrier else relative)[n] for n in group]
         seen += [relative[name] for name in group]
         way = -1 if next(filter(None, seen), 1.0) < 0.0 else 1

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 from loadshare.involute import InvoluteTooth
-from loadshare.tooth.geometry.body import HALVED, RIM, Gear, PitchDeviations
+from loadshare.tooth.geometry.body import HALVED, HEIGHTS, RIM, Gear, PitchDeviations
 
 HALF = 0.5
 """Least radius, over the root radius, at which the body of an external gear is assumed to end."""
@@ -200,7 +200,7 @@ class HelicoidGear(InvoluteTooth, Gear):
         """Radius at which the gear's body ends where nobody says [m]."""
         # A hub held at next to no radius would wind up without end.
         least = 0.0 if self.internal else HALF * self.root
-        return max(self.root - self.kind * 1.5 * abs(self.tip - self.root), least)
+        return max(self.root - self.kind * HEIGHTS * abs(self.tip - self.root), least)
 
     @property
     def assumed_rim(self) -> str:

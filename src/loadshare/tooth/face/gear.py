@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.involute import InvoluteTooth
-from loadshare.tooth.geometry.body import Array, Gear, PitchDeviations, about_y
+from loadshare.tooth.geometry.body import HEIGHTS, Array, Gear, PitchDeviations, about_y
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class FaceGear(Gear):
     @property
     def rim_thickness(self) -> float:
         """Thickness of the body below the root [m]."""
-        return self.rim if self.rim is not None else 1.5 * (self.shaper.tip - self.tip_depth)
+        return self.rim if self.rim is not None else HEIGHTS * (self.shaper.tip - self.tip_depth)
 
     @cached_property
     def axes(self) -> Array:

@@ -14,8 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 Array: TypeAlias = NDArray[np.float64]
 
 
-RIM = "1.5 tooth heights"
-"""How deep the body below the teeth is where nobody says."""
+HEIGHTS = 1.5
+"""Depth of the body below the teeth where nobody says, over the height of the teeth [-]."""
+RIM = f"{HEIGHTS} tooth heights"
+"""The same in words."""
 HALVED = "half the root radius"
 """The same of an external gear that 1.5 tooth heights would leave next to no bore."""
 

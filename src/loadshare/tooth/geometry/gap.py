@@ -167,10 +167,8 @@ def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace
     before, after = slope[row, left], slope[row, right]
     turns = (before < 0.0) & (after > 0.0)
     if turns.any():
-        length, turn = (
-            stations[row, right] - stations[row, left],
-            np.where(turns, before - after, 1.0),
-        )
+        length = stations[row, right] - stations[row, left]
+        turn = np.where(turns, before - after, 1.0)
         rise = trace.gap[row, right] - trace.gap[row, left]
         steps = np.stack([before / turn * length, (rise - after * length) / turn])
         between = stations[row, left] + np.clip(steps, 0.0, length)

@@ -24,7 +24,7 @@ from loadshare.errors import CaseError, Refused
 from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import Ltca
-from loadshare.tooth.geometry.body import HALVED, RIM
+from loadshare.tooth.geometry.body import HALVED, HEIGHTS, RIM
 from loadshare.tooth.pair.file import PairFile
 from loadshare.tooth.pair.gears import PairGears, gears_of
 from loadshare.tooth.pair.model import Load, Number, Positions
@@ -60,6 +60,8 @@ class Rim(Element):
         )
 
 
+ROUNDED = 1e-3
+"""By how much a depth that a law file tells may be less than that assumed, relative."""
 SIDEWAYS = 11.4
 """By how much helical teeth yield more than slices say, over (sin β_b m/b)² (docs/ltca.md)."""
 SLICES = 0.05
@@ -177,8 +179,9 @@ class MeshLaw(Element):
         gear = getattr(self.computed.gears, name, None)
         if gear is None or None in (gear.module, gear.addendum, gear.dedendum):
             return RIM
-        heights = self.rim[name].thickness[1].si / gear.module.si
-        return RIM if heights > 1.499 * (gear.addendum + gear.dedendum) else HALVED
+        depth = self.rim[name].thickness[1].si / gear.module.si
+        heights = depth / (gear.addendum + gear.dedendum)
+        return RIM if heights > (1.0 - ROUNDED) * HEIGHTS else HALVED
 
     @property
     def yielding(self) -> float:
