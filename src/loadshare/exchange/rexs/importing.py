@@ -12,6 +12,7 @@ from typing import Any
 from loadshare.case.place import Vector
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import Data, Imported, commented
+from loadshare.exchange.rexs.balance import balanced
 from loadshare.exchange.rexs.checking import (
     contradictions,
     unknown_gears,
@@ -19,7 +20,7 @@ from loadshare.exchange.rexs.checking import (
     unread_values,
     unused,
 )
-from loadshare.exchange.rexs.flow import balanced, flow_of
+from loadshare.exchange.rexs.flow import flow_of
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.holding import Holding, holding_of
 from loadshare.exchange.rexs.links import Links, links_of
