@@ -18,8 +18,8 @@ AGAIN = 30.0
 PREFIX = "Compiling"
 """First word of every message that tells of compiling."""
 _FIRST = (
-    "the first use of this version here takes one to three minutes of processor time; later ones "
-    "find the compiled kernel on disk"
+    "the first use of this version here takes from a few seconds (tooth contact) to three minutes "
+    "(many samples) of processor time; later ones find what is compiled on disk"
 )
 
 

@@ -79,8 +79,27 @@ LOOK_AT_VALUES: Mapping[Rule, frozenset[str]] = {
     meshing.check_turning: frozenset({"errors"}),
     meshing.check_march_teeth: frozenset({"meshes"}),
 }
-"""Rules for which physical values matter, and in which sections, beside those of gears. All others
-look at names, words and counts, and at what is given."""
+"""Rules for which physical values of sections other than the gears matter, and of which."""
+
+LOOK_AT_NO_GEAR: frozenset[Rule] = frozenset(
+    {
+        names.check_gear_names,
+        names.check_mesh_names,
+        names.check_about_circles,
+        names.check_pairs,
+        names.check_stage_groups,
+        names.check_measured_names,
+        names.check_measured_positions,
+        names.check_assumed_patterns,
+        meshing.check_list_lengths,
+        flow.check_taken_part,
+        flow.check_output_reached,
+        flow.check_loaded_meshes,
+        flow.check_pressed_flanks,
+    }
+)
+"""Rules for which no physical value of a gear matters: of gears, they look at names, words and
+counts, and at what is given, as all rules do."""
 
 
 def check(draft: Draft, before: Content | None = None) -> Iterator[Problem]:
@@ -112,7 +131,13 @@ def _concerned(draft: Draft, before: Content) -> Collection[Rule]:
         now, then = getattr(draft, name), getattr(before, name)
         if now is then or not (now or then):
             continue
-        if name == "gears" or not same_but_for_values(now, then):
+        if not same_but_for_values(now, then):
             return CHECKS
         changed.add(name)
-    return [rule for rule in CHECKS if changed & LOOK_AT_VALUES.get(rule, frozenset())]
+    return [rule for rule in CHECKS if changed & _values_for(rule)]
+
+
+def _values_for(rule: Rule) -> frozenset[str]:
+    """Sections whose physical values matter to a rule."""
+    gears = frozenset() if rule in LOOK_AT_NO_GEAR else frozenset({"gears"})
+    return gears | LOOK_AT_VALUES.get(rule, frozenset())

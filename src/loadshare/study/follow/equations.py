@@ -124,6 +124,7 @@ class Equations:
 
     def __init__(self, structure: Structure, active: WorkingSet, numbers: Numbers) -> None:
         self.structure, self.active = structure, active
+        self._kinds = numbers.kinds
         self.tabulated = tabulated = numbers.tabulated[0]
         self.states: States = np.array(active.states, dtype=np.int8)
         self.n = structure.size
@@ -133,8 +134,8 @@ class Equations:
         rows = self.states[: structure.rows] == at.CLOSED
         acting = np.append(np.ones(structure.springs, dtype=bool), rows)
         self.acts = acting[: self.scalars]
-        curved: Flags = np.asarray((numbers.hertz > 0.0).any(axis=0))
-        yields: Flags = np.asarray((numbers.bending > 0.0).any(axis=0) | curved | (tabulated >= 0))
+        curved, bends, _ = self._kinds
+        curved, yields = curved.copy(), bends | curved | (tabulated >= 0)
         tied = [structure.springs + k for k in active.tied]
         yields[tied] = curved[tied] = False
         part = slice(0, self.scalars)
@@ -153,6 +154,10 @@ class Equations:
             if self.states[k] != at.OPEN:
                 self.polar_at[k] = self.size if width else None
                 self.size += width
+
+    def serve(self, numbers: Numbers) -> bool:
+        """Whether contacts are rigid, linear, curved or tabulated with other numbers as here."""
+        return all(map(np.array_equal, self._kinds, numbers.kinds))
 
     def _forces_of(self, k: int, yields: Flags) -> int:
         """How many unknown forces an arc or radial element has that acts."""

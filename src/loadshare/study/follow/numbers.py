@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags
 from loadshare.scene.loading import loading_of
 from loadshare.scene.structure import Structure, structure_of
 from loadshare.train import Train
@@ -75,6 +75,16 @@ class Numbers:
         """Return the numbers of several machines, one after another."""
         names = [f.name for f in fields(cls)]
         return cls(**{n: np.concatenate([getattr(p, n) for p in parts]) for n in names})
+
+    @property
+    def kinds(self) -> tuple[Flags, Flags, NDArray[np.intp]]:
+        """Which elements have a Hertz part and which bend, at any value; tables and their points.
+
+        Of every element the number of its table; then how many points the tables have.
+        """
+        points = np.append(self.tabulated[0], self.tables.shape[-1])
+        curved, bends = (np.asarray((v > 0.0).any(axis=0)) for v in (self.hertz, self.bending))
+        return curved, bends, points
 
     def row(self, number: int) -> Numbers:
         """Return the numbers at one of the values."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -121,6 +121,8 @@ class Branch:
     ----------
     setting : Setting
     active : WorkingSet
+    like : Equations, optional
+        Of this set at another value, which serve for this one as well if they can.
 
     Attributes
     ----------
@@ -133,10 +135,12 @@ class Branch:
         If a radial law lacks the step on which the set stands.
     """
 
-    def __init__(self, setting: Setting, active: WorkingSet) -> None:
+    def __init__(self, setting: Setting, active: WorkingSet, like: Equations | None = None) -> None:
         self.setting, self.active = setting, active
         self.numbers = numbers = setting.numbers
-        e = self.equations = Equations(setting.structure, active, numbers)
+        if like is None or not like.serve(numbers):
+            like = Equations(setting.structure, active, numbers)
+        e = self.equations = like
         self.size, self.n = e.size, e.n
         law = at.graph(numbers.radial[0], np.zeros(len(e.radials)))
         self.pins: dict[int, float] = {}
@@ -148,22 +152,32 @@ class Branch:
             elif not {at.PINNED: play == 0.0, at.WALL: play > 0.0}.get(int(e.states[k]), True):
                 raise BranchLost("a limit without play is another element than one with some")
 
-    def figures(self, z: Array) -> Array:
-        """Return G at unknowns z (size,), then the torque of every mesh [N·m].
+    def beside(self, setting: Setting) -> Branch:
+        """Return the branch of the same set at another value of the input.
 
         Raises
         ------
         BranchLost
-            If a radial law would drop there.
+            If it has other unknowns there.
         """
-        state = self.equations.state(z[None], self.numbers)
-        if not all(law.valid.all() for law in state.laws.values()):
-            raise BranchLost("a spline's force would drop where it starts to slip")
-        residual = self.equations.residual(z[None], self.numbers, state)[0]
+        there = Branch(setting, self.active, self.equations)
+        if there.size != self.size:
+            raise BranchLost("a limit without play is another element than one with some")
+        return there
+
+    def play(self, z: Array) -> Array:
+        """Return how far pins let their gears go at unknowns z, as part of G.
+
+        Raises
+        ------
+        BranchLost
+            If nothing pushes such a gear.
+        """
+        found = np.zeros(self.size)
         for k, play in self.pins.items():
             if play > 0.0:
-                residual[self._pinned(k)] -= play * self._way(k, z)
-        return np.concatenate([residual, self.setting.levers @ state.force[0]])
+                found[self._pinned(k)] = play * self._way(k, z)
+        return found
 
     def _pinned(self, k: int) -> slice:
         """Where the two forces of a pin are among the unknowns."""
@@ -184,7 +198,7 @@ class Branch:
         return self.equations.jacobian(z, self.numbers)
 
     def rounding(self, z: Array) -> Array:
-        """Bound on the round-off of these figures, from the sizes of their terms."""
+        """Bound on the round-off of `figures`, from the sizes of their terms."""
         state = self.equations.state(z[None], self.numbers)
         sizes = self.equations.sizes(z[None], self.numbers, state)[0]
         torques = np.abs(self.setting.levers @ state.force[0])
@@ -240,3 +254,43 @@ class Branch:
             if gradient is None or gradient.any():
                 gauges[k, gauge.to] = Gauge(k, float(gauge.first[0]), gradient)
         return gauges
+
+
+def figures(branches: Sequence[Branch], z: Array) -> list[Array | BranchLost]:
+    """Return G at unknowns z (size,), then the torque of every mesh [N·m], for several branches.
+
+    In place of those at which a radial law would drop: why there are none.
+    """
+    together: dict[int, list[int]] = {}
+    for k, branch in enumerate(branches):
+        together.setdefault(id(branch.equations), []).append(k)
+    found: dict[int, Array | BranchLost] = {}
+    for rows in together.values():
+        found |= zip(rows, _figures([branches[k] for k in rows], z), strict=True)
+    return [found[k] for k in range(len(branches))]
+
+
+def _figures(branches: Sequence[Branch], z: Array) -> list[Array | BranchLost]:
+    """Figures of branches with the same equations."""
+    equations = branches[0].equations
+    numbers = Numbers.stacked([branch.numbers for branch in branches])
+    points = np.repeat(z[None], len(branches), axis=0)
+    state = equations.state(points, numbers)
+    residual = equations.residual(points, numbers, state)
+    levers = np.array([branch.setting.levers for branch in branches])
+    torque = (levers @ state.force[:, :, None])[:, :, 0]
+    lost = np.zeros(len(branches), dtype=bool)
+    for law in state.laws.values():
+        lost |= ~law.valid
+    found: list[Array | BranchLost] = []
+    for row, branch in enumerate(branches):
+        if lost[row]:
+            found.append(BranchLost("a spline's force would drop where it starts to slip"))
+            continue
+        try:
+            residual[row] -= branch.play(z)
+        except BranchLost as why:
+            found.append(why)
+        else:
+            found.append(np.concatenate([residual[row], torque[row]]))
+    return found

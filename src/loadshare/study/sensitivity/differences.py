@@ -8,7 +8,7 @@ is one side only: then differences of third order are taken to each side.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,7 +45,14 @@ LEAST = {
 _FORWARD = np.array([-21.0, 32.0, -12.0, 1.0]) / 12.0
 _FORWARD_CHECK = np.array([-1.5, 2.0, -0.5, 0.0])
 
+_AWAY = 1, 2, 4
+"""Steps away from the value at which the function is taken."""
+
 Points = dict[int, Array]
+Group = list[Array] | Exception
+"""Figures at some numbers, or why the input cannot be at one of them."""
+Function = Callable[[Sequence[Sequence[float]]], list[Group]]
+"""Figures at groups of numbers, in the unit of the input."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,14 +94,20 @@ class Derivative:
         return self.rising if sign > 0.0 else self.falling
 
 
-def differentiate(of: Callable[[float], Array], value: Value, rounding: Array) -> Derivative:
+def whole(found: Sequence[Array | Exception]) -> Group:
+    """Return figures of a group, or the first reason why some are missing."""
+    why = next((one for one in found if isinstance(one, Exception)), None)
+    return why or [one for one in found if not isinstance(one, Exception)]
+
+
+def differentiate(of: Function, value: Value, rounding: Array) -> Derivative:
     """Differentiate a function of an input to both sides.
 
     Parameters
     ----------
     of : callable
-        The function, of the input's number in its unit. It may raise `CaseError`, `ValueError` or
-        `BranchLost` where the input cannot be.
+        The function, of groups of numbers. What it gives for a group with a number at which the
+        input cannot be is a `CaseError`, a `ValueError` or a `BranchLost`.
     value : Value
         Where.
     rounding : ndarray
@@ -142,20 +155,25 @@ def _relative(found: Derivative) -> float:
     return worst
 
 
-def _differentiated(
-    of: Callable[[float], Array], value: Value, rounding: Array, usual: float
-) -> Derivative:
-    here = of(value.number)
+def _differentiated(of: Function, value: Value, rounding: Array, usual: float) -> Derivative:
+    here: Array | None = None
     sides: dict[int, tuple[Points, float] | Exception] = {}
     for share in SENSITIVITY.shorter:
         h = usual * share
-        for sign in (-1, 1):
-            if isinstance(sides.get(sign), tuple):
-                continue
-            try:
-                sides[sign] = {k: of(value.number + sign * k * h) for k in (1, 2, 4)}, h
-            except (CaseError, ValueError, BranchLost) as error:
-                sides.setdefault(sign, error)
+        left = [sign for sign in (-1, 1) if not isinstance(sides.get(sign), tuple)]
+        if not left:
+            break
+        beside = [[value.number + sign * k * h for k in _AWAY] for sign in left]
+        alone, *found = of([[value.number], *beside])
+        if isinstance(alone, Exception):
+            raise alone
+        here = alone[0]
+        for sign, points in zip(left, found, strict=True):
+            if isinstance(points, Exception):
+                sides.setdefault(sign, points)
+            else:
+                sides[sign] = dict(zip(_AWAY, points, strict=True)), h
+    assert here is not None
     below, above = sides[-1], sides[1]
     if isinstance(below, CaseError) and isinstance(above, CaseError):
         raise above

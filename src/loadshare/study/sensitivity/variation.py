@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from loadshare.array_types import Array
 from loadshare.case import Case
+from loadshare.errors import CaseError
 from loadshare.results.share import flank_torques
 from loadshare.scene.structure import Structure
 from loadshare.settings import SENSITIVITY
@@ -15,8 +16,8 @@ from loadshare.study.follow.active import WorkingSet
 from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.parameter import Value
 from loadshare.study.positions import certified
-from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
-from loadshare.study.sensitivity.differences import Derivative, differentiate
+from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting, figures
+from loadshare.study.sensitivity.differences import Derivative, Group, differentiate, whole
 from loadshare.study.sensitivity.inputs import twin_of
 from loadshare.study.sensitivity.result import Input
 from loadshare.train import Train, build_train
@@ -144,14 +145,24 @@ class Variation:
         key = branch.active, z.tobytes()
         if key not in self._changes:
 
-            def of(number: float) -> Array:
-                there = Branch(self._setting(number), branch.active)
-                if there.size != branch.size:
-                    raise BranchLost("a limit without play is another element than one with some")
-                return there.figures(z)
+            def of(groups: Sequence[Sequence[float]]) -> list[Group]:
+                there = [self._beside(branch, numbers) for numbers in groups]
+                every = [b for some in there if not isinstance(some, Exception) for b in some]
+                found = iter(figures(every, z))
+                return [
+                    some if isinstance(some, Exception) else whole([next(found) for _ in some])
+                    for some in there
+                ]
 
             self._changes[key] = differentiate(of, self.value, branch.rounding(z))
         return self._changes[key]
+
+    def _beside(self, branch: Branch, numbers: Sequence[float]) -> list[Branch] | Exception:
+        """Return a branch with the input at some numbers, or why it is not at one of them."""
+        try:
+            return [branch.beside(self._setting(number)) for number in numbers]
+        except (CaseError, ValueError, BranchLost) as why:
+            return why
 
     def steps(self, sign: float, step: float) -> tuple[str, ...]:
         """Meshes that pass to another place of their cycle right next to the value."""
