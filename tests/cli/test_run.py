@@ -10,6 +10,39 @@ from loadshare.cli.options import MethodName, SolverName
 from loadshare.contact.backends.backend import SOLVERS
 from loadshare.contact.record import METHODS
 
+NEUTRAL = """
+[operating]
+input = "in"
+output = "out"
+torque = "200 N*m"
+
+[gears]
+in = { base_radius = "56 mm", centre = ["0 mm", "0 mm"] }
+wheel = { base_radius = "28 mm", centre = ["90 mm", "0 mm"] }
+pinion = { base_radius = "54 mm", centre = ["90 mm", "0 mm", "100 mm"] }
+back = { base_radius = "30 mm", centre = ["0 mm", "0 mm", "100 mm"] }
+sun = { base_radius = "30 mm", centre = ["0 mm", "0 mm"] }
+carrier = { type = "carrier", centre = ["0 mm", "0 mm"] }
+out = { type = "internal", base_radius = "78 mm", centre = ["0 mm", "0 mm"] }
+
+[gears.planet]
+copies = 3
+carrier = "carrier"
+base_radius = "24 mm"
+centre = { distance = "57 mm", angle = "0 deg" }
+
+[meshes]
+in-wheel.stiffness = "1e6 N*m/rad"
+pinion-back.stiffness = "1e6 N*m/rad"
+sun-planet.stiffness = "1e6 N*m/rad"
+planet-out.stiffness = "1e6 N*m/rad"
+
+[shafts]
+wheel-pinion.stiffness = "1e5 N*m/rad"
+in-carrier.stiffness = "1e5 N*m/rad"
+back-sun.stiffness = "1e5 N*m/rad"
+"""
+
 
 def test_a_certified_case_prints_everything_an_engineer_asks_for(command, cases):
     result = command("run", cases / "fgfbstts/limit_ring.toml")
@@ -178,6 +211,28 @@ def test_a_refusal_leaves_with_1_and_names_what_nothing_holds(command, unheld):
     assert "PASSED" not in result.stdout
 
 
+def test_only_a_mesh_squeezed_between_its_flanks_is_said_to_carry_on_both(command, cases):
+    """One that its second gear drives carries on one flank: its torque is no difference."""
+    driven = "Where the torque is negative, the gear named first is driven."
+    case = cases / "planetary/four_planets.toml"
+    words = ("--set", "operating.torque=-1000 N*m")
+    braking = command("run", case, *words).stdout
+    assert driven in braking
+    assert "coast flank" not in braking
+    changes = (
+        'meshes."sun-planet2".backlash=0 um',
+        'meshes."planet2-ring".backlash=0 um',
+        "gears.sun.support=rigid",
+        "errors.planet2.pin.radial=-50 um",
+        "operating.torque=100 N*m",
+    )
+    squeezed = command("run", case, *(w for c in changes for w in ("--set", c))).stdout
+    assert driven in squeezed
+    assert squeezed.count("coast flank carries up to") == 1
+    assert "Mesh sun-planet2: the coast flank carries up to " in squeezed
+    assert driven not in command("run", case).stdout
+
+
 def test_a_refusal_names_what_turns_together(command, cases, tmp_path):
     free = tmp_path / "free.toml"
     text = (cases / "planetary/four_planets.toml").read_text(encoding="utf-8")
@@ -187,6 +242,18 @@ def test_a_refusal_names_what_turns_together(command, cases, tmp_path):
     assert "the load on gear sun rotation: no contact, support or limit holds it; " in result.stderr
     turning = "sun, planet1, planet2, planet3, planet4, … turn together"
     assert f"gears {turning}: hold one (held = true) or give it a torque" in result.stderr
+
+
+def test_an_output_that_stands_still_as_the_input_turns_is_named(command, tmp_path):
+    """A gear pair drives the sun at 3.6 of the carrier's speed, and the ring stands still."""
+    neutral = tmp_path / "neutral.toml"
+    neutral.write_text(NEUTRAL, encoding="utf-8")
+    result = command("run", neutral)
+    assert result.exit_code == 1
+    assert (
+        "gears in, wheel, carrier, pinion, back, … turn together: gear out, the output, stands "
+        "still as gear in turns (a geared neutral), so no torque on it balances that of the input"
+    ) in result.stderr
 
 
 def test_certified_positions_are_kept_when_others_are_refused(command, half_held, tmp_path):

@@ -184,7 +184,7 @@ def _refuse_if_driven(scene: Scene) -> None:
         if len(turning) == len(moves) > 1:
             named = f"{', '.join(turning[:_NAMED])}{', …' if len(turning) > _NAMED else ''}"
             hint = _balancing_torque(scene, moves) or _balancing_with_backlash(scene)
-            hint = hint or "hold one (held = true) or give it a torque"
+            hint = hint or _still_output(scene) or "hold one (held = true) or give it a torque"
             also = f"; gears {named} turn together: {hint}"
         closing = _other_flanks(scene, moves)
         if closing:
@@ -239,6 +239,17 @@ def _balancing_with_backlash(scene: Scene) -> str:
     both = assemble(replace(train, meshes=meshes), scene.position) if train.external else None
     moves = runaway(both) if both is not None else {}
     return _balancing_torque(both, moves) if both is not None and moves else ""
+
+
+def _still_output(scene: Scene) -> str:
+    """Say that the output takes no power: it stands still while what drives it turns."""
+    train = scene.train
+    if train.gears[train.output].ratio:
+        return ""
+    return (
+        f"gear {train.output}, the output, stands still as gear {train.input} turns (a geared "
+        "neutral), so no torque on it balances that of the input"
+    )
 
 
 def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:

@@ -21,7 +21,7 @@ from loadshare.report.numbers import (
 )
 from loadshare.results import Position, Result
 from loadshare.results.laws import law_lines
-from loadshare.settings import JOB
+from loadshare.settings import CERTIFY, JOB
 
 FOLDED = 24
 """Rows from which a table is shown only when asked for."""
@@ -215,7 +215,20 @@ def torque_notes(result: Result, rows: Iterable[Record]) -> list[str]:
         notes.append(sentences[0] if alike(result) else sentences[1])
     if any(row["Ω pair"].text == NONE for row in rows):
         notes.append(f"{NONE}: not in a stage, or without load.")
+    least = unloaded(result)
+    if any(torque < -least for p in result.positions for torque in p.torque.values()):
+        notes.append("Where the torque is negative, the gear named first is driven.")
     return notes + law_lines(result.laws)
+
+
+def unloaded(result: Result) -> float:
+    """Torque [N·m] up to which a flank carries nothing but round-off."""
+    flanks = (
+        max(coast, p.torque[mesh] + coast)
+        for p in result.positions
+        for mesh, coast in p.coast_torque.items()
+    )
+    return CERTIFY.carries * max(flanks, default=0.0)
 
 
 def largest(shares: Iterable[float | None]) -> Cell:

@@ -176,16 +176,16 @@ def print_sharing(result: Result) -> None:
 
 def _coast(result: Result) -> list[str]:
     """Say which meshes are squeezed: both their flanks carry load."""
-    places = records.torque_places(result)
-    most = {
-        mesh: max(p.coast_torque[mesh] for p in result.positions)
-        for mesh in result.positions[0].torque
-    }
+    places, least = records.torque_places(result), records.unloaded(result)
+    most: dict[str, float] = {}
+    for p in result.positions:
+        for mesh, coast in p.coast_torque.items():
+            if min(coast, p.torque[mesh] + coast) > least:
+                most[mesh] = max(coast, most.get(mesh, 0.0))
     return [
         f"Mesh {mesh}: the coast flank carries up to {fixed(torque, places)} N·m; "
         "the torque is the difference."
         for mesh, torque in most.items()
-        if torque > 0.0
     ]
 
 
