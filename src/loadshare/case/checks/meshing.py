@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from loadshare.case.checks.fit import mm
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Gear
 from loadshare.case.keys import Path
@@ -44,7 +45,22 @@ def check_teeth_fit(draft: Draft) -> Iterator[Problem]:
             f"{found.other}: by the base radii there would be {found.expected:.5g}"
         )
         hint = "The speed ratio of a mesh is that of its base radii, and of its teeth."
+        hint += _acting_radius(draft, found)
         yield draft.problem(("gears", found.gear, "teeth"), message, hint=hint)
+
+
+def _acting_radius(draft: Draft, found: Misfit) -> str:
+    """Say which acting radius of a face gear would fit: it is not in the middle of its teeth."""
+    for name, ratio in ((found.gear, 1.0), (found.other, -1.0)):
+        gear, number = draft.gears[name], draft.gears[found.gear].teeth
+        if gear.type == "face" and number is not None:
+            radius = gear.acting_radius * (number / found.expected) ** ratio
+            would_do = f'gears.{name}.base_radius = "{mm(radius)}"'
+            if gear.base_radius is not None:
+                return f" {would_do} would do."
+            middle = "(inner_radius + outer_radius)/2"
+            return f" The force on gear {name} acts at {middle}; {would_do} in its place would do."
+    return ""
 
 
 def check_turning(draft: Draft) -> Iterator[Problem]:
