@@ -264,6 +264,17 @@ def test_planets_at_one_place():
     assert "is where gear p1 is" in refusal(star, ["0 deg", "0 deg"])
 
 
+def test_a_ring_that_is_not_called_internal():
+    """It stands where the sun does, and the planets would have to roll between two gears."""
+    set_ = star(3)
+    with pytest.raises(CaseError) as found:
+        set_.replace({"gears.r.type": "external"})
+    message = str(found.value)
+    assert "is where gear r is, and both mesh with p1" in message
+    assert 'If gear r is a ring about the other, it is of type = "internal".' in message
+    assert "is a ring" not in refusal(star, ["0 deg", "0 deg"])
+
+
 def test_gears_that_stand_side_by_side_along_the_axis():
     def wheels(height: str) -> Case:
         at = {"angle": "0 deg", "about": "a"}

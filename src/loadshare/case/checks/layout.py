@@ -55,7 +55,11 @@ def _what_is_missing(
     )
     if not there:
         with_whom = f"with {about} or " if about is not None else ""
-        return f"It follows where the gear meshes {with_whom}with a gear on the axis of its pole."
+        origin = "" if about is not None else ": the origin, unless about names a gear"
+        return (
+            f"It follows where the gear meshes {with_whom}with a gear on the axis of its pole"
+            f"{origin}."
+        )
     bare = [n for n in (name, *there) if draft.gears[n].tooth is None]
     if bare:
         return f"It follows from the teeth: give teeth and module of {' and '.join(bare)}."
@@ -198,12 +202,15 @@ def _in_the_way(draft: Draft, middle: str, clash: _Clash, centres: Mapping[str, 
     """Say how two gears overlap, and how many would fit."""
     path = ("gears", clash.two, "centre")
     aside = "give them places along the axis if they are side by side there"
+    tips = [t.tip for n in (clash.one, clash.two) if (t := draft.gears[n].tooth) is not None]
     if not clash.apart:
         what = f"is where gear {clash.one} is, and both mesh with {middle}"
         hint = f"Join them by a shaft if they are one body, or {aside}."
+        if not math.isclose(*tips, rel_tol=SQUARE):
+            outer = clash.one if tips[0] > tips[1] else clash.two
+            hint += f' If gear {outer} is a ring about the other, it is of type = "internal".'
         return draft.problem(path, what, hint=hint)
     what = f"is in the way of gear {clash.one}: their tip circles overlap by {mm(clash.over)}"
-    tips = [t.tip for n in (clash.one, clash.two) if (t := draft.gears[n].tooth) is not None]
     radii = [
         centre_distance(draft.gears[n], minus(centres[middle], centres[n]))
         for n in (clash.one, clash.two)
