@@ -198,6 +198,12 @@ def test_what_cannot_stand_in_a_cell_is_not_written(box) -> None:
         dict(case_tables(data))
 
 
+def test_spaces_at_the_ends_of_a_title_are_named(box) -> None:
+    data = import_tables(box()).case().to_dict() | {"title": "A box, which one? "}
+    with pytest.raises(CaseError, match="A cell loses the spaces at its ends"):
+        dict(case_tables(data))
+
+
 def test_the_command_writes_tables_that_the_command_reads(tmp_path) -> None:
     command, folder = on_a_screen_of(200), tmp_path / "deep" / "box"
     case = shipped("fgfbstts/all_elements")

@@ -161,7 +161,9 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
         ):
             what = "cannot stand in a cell as it is"
             where = dotted((above[0], "…", *path) if len(above) > 1 else (*above, *path))
-            raise CaseError([Problem("", where, text_of(value), what)])
+            spaces = isinstance(value, str) and value != value.strip()
+            hint = "A cell loses the spaces at its ends." if spaces else ""
+            raise CaseError([Problem("", where, text_of(value), what, hint=hint)])
     return head, cells
 
 
