@@ -68,6 +68,17 @@ def test_copies_are_written_out() -> None:
     assert Case(case.to_dict()) == case
 
 
+def test_directions_of_copies_are_those_of_the_case() -> None:
+    """Places are rotated about the pole; stiffer along x is stiffer along x for every copy."""
+    gears = copy.deepcopy(SET["gears"])
+    gears["planet"]["support"] = ["1e9 N/m", "2e8 N/m"]
+    bearings = {"planet": {"clearance": "5 um", "stiffness": "rigid", "offset": ["9 um", "0 um"]}}
+    case = Case(changed(gears=gears, bearings=bearings))
+    for k in (1, 2, 3):
+        assert [value.si for value in case.gears[f"planet{k}"].support] == [1e9, 2e8]
+        assert [value.si for value in case.bearings[f"planet{k}"].offset] == [9e-6, 0.0]
+
+
 def test_the_name_of_all_copies_is_none_of_them() -> None:
     with pytest.raises(CaseError, match=r"Give one: planet1, planet2, planet3\."):
         Case(changed()).replace({"operating.output": "planet"})

@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, Strict, Tag
+from pydantic import BeforeValidator, Field, Strict, Tag
+from pydantic_core import PydanticCustomError
 
 from loadshare.case.element import (
     LIST,
@@ -111,6 +112,23 @@ class Tooth(InvoluteTooth):
         return self.radius - self.kind * (self.dedendum - self.profile_shift) * self.module
 
 
+AXES = "x, y, z, or a list of 3 numbers"
+AGAINST = {"-x": "[-1, 0, 0]", "-y": "[0, -1, 0]", "-z": "[0, 0, -1]"}
+"""Axes that have no word, and how they are given."""
+
+
+def _along(axis: Any) -> Any:
+    """Return an axis as it was given, unless it is one against a word."""
+    if isinstance(axis, str) and axis in AGAINST:
+        context = {
+            "message": "is not one of the allowed words",
+            "allowed": AXES,
+            "hint": f"Against {axis[1]} is {AGAINST[axis]}.",
+        }
+        raise PydanticCustomError("message", "{message}. Allowed: {allowed}. {hint}", context)
+    return axis
+
+
 def shortened(length: float) -> str:
     """Return a tip alteration [m] as a case file would have it, rounded down to a micrometre."""
     return f'"{math.floor(1e6 * length) / 1e3:.7g} mm"'
@@ -149,9 +167,9 @@ class Gear(Element):
     """Centre: x, y and, where it matters, z [length]; or distance and angle from another gear."""
 
     axis: Annotated[
-        Annotated[Literal["x", "y", "z"], Tag(VALUE)]
+        Annotated[Literal["x", "y", "z"], BeforeValidator(_along), Tag(VALUE)]
         | Annotated[tuple[Number, Number, Number], Tag(LIST)],
-        shaped("x, y, z, or a list of 3 numbers"),
+        shaped(AXES),
     ] = "z"
     """Direction of the axis: x, y, z, or three components [-]."""
 
@@ -169,9 +187,10 @@ class Gear(Element):
     ) = None
     """Gears that this one is short for: their number, or the angles of their rotation [angle].
 
-    The gear p is short for p1, p2 and so on, rotated about its pole; a mesh s-p for s-p1, s-p2, and
-    likewise shafts, splines, rings, bearings, errors and what stages name. What is written of
-    single copies counts first.
+    The gear p is short for p1, p2 and so on, at places rotated about its pole; directions, as of an
+    axis, an offset or a support with two stiffnesses, are the same for all. A mesh s-p is short for
+    s-p1, s-p2, and likewise shafts, splines, rings, bearings, errors and what stages name. What is
+    written of single copies counts first.
     """
 
     carrier: str | None = None
