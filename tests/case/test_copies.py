@@ -113,6 +113,18 @@ def test_gears_on_one_pin_are_copied_together() -> None:
     assert case.gears["pinion3"].centre.about == "planet3"
 
 
+def test_pairs_of_unequal_numbers_are_told_so() -> None:
+    """No copy is to be named where all of one gear cannot meet all of another."""
+    data = changed()
+    data["gears"]["outer"] = data["gears"]["planet"] | {"copies": 4}
+    data["meshes"]["planet-outer"] = {"stiffness": "2e7 N*m/rad"}
+    with pytest.raises(CaseError) as caught:
+        Case(data)
+    unequal = "planet has 3 copies, outer 4: they are copied in pairs."
+    assert unequal in str(caught.value)
+    assert "Give one: planet1" not in str(caught.value)
+
+
 def test_what_is_wrong_with_copies_is_reported_once() -> None:
     for given, key in ((1, "copies"), ("three", "copies"), (["0 mm", "5 mm"], "copies")):
         data = changed()

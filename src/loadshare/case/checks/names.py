@@ -24,11 +24,27 @@ def check_gear_names(draft: Draft) -> Iterator[Problem]:
             known, allowed = (
                 (carriers, allowed_carriers(carriers)) if of_planet else (gears, choices(gears))
             )
-            copies = [g for g in gears if g.startswith(name) and g[len(name) :].isdecimal()]
+            copies = _copies(name, gears)
             hint = did_you_mean(name, known)
             if name and copies:
-                hint = f"Give one: {', '.join(copies)}."
+                hint = _unequal(draft, path, gears) or f"Give one: {', '.join(copies)}."
             yield draft.problem(path, f'"{name}" is not a gear', allowed, hint)
+
+
+def _copies(name: str, gears: list[str]) -> list[str]:
+    return [g for g in gears if g.startswith(name) and g[len(name) :].isdecimal()]
+
+
+def _unequal(draft: Draft, path: Path, gears: list[str]) -> str:
+    """Say that a mesh or shaft joins gears of which there are not as many copies of each."""
+    name = str(path[1])
+    of = {"meshes": draft.meshes.get(name), "shafts": draft.shafts.get(name)}.get(str(path[0]))
+    ends = of.ends if of is not None else ()
+    counts = {end: len(_copies(end, gears)) for end in ends if end and end not in gears}
+    if len(set(counts.values()) - {0}) < 2:
+        return ""
+    (one, first), (other, second) = counts.items()
+    return f"{one} has {first} copies, {other} {second}: they are copied in pairs."
 
 
 def carriers_in(draft: Draft) -> list[str]:
