@@ -11,11 +11,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
+from loadshare.libraries import pd, xr
 
 STANDARD = Path("-")
 """Means standard output."""

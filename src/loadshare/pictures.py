@@ -8,8 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+__all__ = ["Figure", "drawn_by", "picture"]
+
 if TYPE_CHECKING:
     from loadshare.report.figure import Figure
+else:
+    Figure = Any
 
 _drawn_by: list[Callable[[], Callable[..., Figure]]] = []
 

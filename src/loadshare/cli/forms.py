@@ -19,11 +19,10 @@ from loadshare.cli.options import OUTPUT
 from loadshare.cli.waiting import speak
 from loadshare.errors import LoadshareError
 from loadshare.json_text import json_text
+from loadshare.libraries import pd
 from loadshare.output import STANDARD, csv_of, write_whole
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from loadshare.report.figure import Figure
 
 FORMS = {
@@ -261,8 +260,6 @@ def _json(name: str, frame: pd.DataFrame, about: Mapping[str, object]) -> str:
 
 def _plain(cell: Any) -> object:
     """Return a cell as JSON knows it, which has no NaN and no infinity."""
-    import pandas as pd
-
     value = cell.item() if hasattr(cell, "item") else cell
     if isinstance(value, float):
         return value if math.isfinite(value) else None

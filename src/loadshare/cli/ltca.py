@@ -15,6 +15,7 @@ from loadshare.cli.forms import FOLDER, Output, outputs, write_all
 from loadshare.cli.refusal import refusal_lines
 from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
+from loadshare.libraries import pd
 from loadshare.output import csv_of
 
 if TYPE_CHECKING:
@@ -214,6 +215,5 @@ def _figures(pair: PairFile, found: Ltca) -> Iterator[Figure]:
 
 
 def _csv(rows: Iterable[dict[str, Any]]) -> str:
-    import pandas as pd
 
     return csv_of(pd.DataFrame(rows))

@@ -17,10 +17,9 @@ from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, 
 from loadshare.cli.refusal import refusal_lines, refused_document
 from loadshare.errors import Refused
 from loadshare.json_text import json_text
+from loadshare.libraries import pd
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from loadshare.case import Case
     from loadshare.results import Result
 

@@ -12,13 +12,11 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.case.words import as_given
+from loadshare.libraries import pd, xr
 from loadshare.results.differences import DIGITS, ROUND_OFF
 from loadshare.results.figures import COMPONENTS
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
     from loadshare.results.figures import Figures
     from loadshare.results.result import Result
 
@@ -114,8 +112,6 @@ def dataset(result: Result) -> xr.Dataset:
         Dimensions position, mesh, gear, shaft, side, component, end, float, figure and measure;
         every variable carries its unit. Its arrays cannot be written to.
     """
-    import xarray as xr
-
     stamp, positions = result.stamp, result.positions
     # A train that is placed may have a shift to report at some positions only.
     measures = list(dict.fromkeys(m for figures, _ in _groups(result) for m in figures.measured))
@@ -187,8 +183,6 @@ def _alike(name: str, expected: xr.Variable, found: xr.Variable) -> bool:
 
 def frame(result: Result) -> pd.DataFrame:
     """Tabulate position by mesh: torque [N·m], coefficients, the position's worst residual."""
-    import pandas as pd
-
     positions = result.positions
     names = positions[0].figures.names
     meshes = len(names["mesh"])

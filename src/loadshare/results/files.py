@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from loadshare.errors import Problem, ResultError
 from loadshare.input import Unreadable, read_file
+from loadshare.libraries import xr
 from loadshare.results.dataset import array_differences
 from loadshare.results.digest import is_sealed
 from loadshare.results.reading import AGAIN, read_document
@@ -63,8 +64,6 @@ def _unread(path: Path, why: str = "holds no result of loadshare") -> ResultErro
 
 def _read_netcdf(path: Path, content: bytes) -> Result:
     """Load the result, and compare the arrays next to it with its own."""
-    import xarray as xr
-
     if not is_sealed(content):
         why = "holds no result of loadshare, or one that was changed: it lacks its digest"
         raise ResultError([Problem(str(path), "", "", why, hint=AGAIN)])

@@ -13,6 +13,7 @@ from loadshare.case.table import Table
 from loadshare.certify import Certificate, FloatState
 from loadshare.certify.uniqueness import MEANINGS, Uniqueness
 from loadshare.certify.validity import Measure, Validity
+from loadshare.libraries import pd, xr
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
 from loadshare.results.elastic import Elastic
@@ -26,9 +27,6 @@ from loadshare.train.train import Train
 from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
     from loadshare.case import Case
     from loadshare.report.plots import Plots
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,15 +14,11 @@ from loadshare.case.keys import dotted
 from loadshare.case.measured import COEFFICIENTS, Measurement
 from loadshare.errors import CaseError
 from loadshare.job import Progress, solve
-from loadshare.pictures import picture
+from loadshare.libraries import pd
+from loadshare.pictures import Figure, picture
 from loadshare.results import Position, Result
 from loadshare.study.positions import loaded
 from loadshare.view import View, Viewed
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from loadshare.report.figure import Figure
 
 MEANS = ("torque", "share", "pair_share")
 """Quantities of a mesh: without a position, their mean over all positions is taken."""
@@ -109,8 +104,6 @@ class Comparison(Viewed):
 
     def to_frame(self) -> pd.DataFrame:
         """The comparison as a table."""
-        import pandas as pd
-
         of_target = ("measurement", "quantity", "where", "position")
         rows = [
             {name: getattr(d.target, name) for name in of_target}

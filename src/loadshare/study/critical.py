@@ -11,14 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING
 
 from loadshare.case import Case
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
-from loadshare.pictures import picture
+from loadshare.libraries import pd
+from loadshare.pictures import Figure, picture
 from loadshare.study.events import Event, events_of, flanks_changed
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
@@ -33,11 +33,6 @@ from loadshare.study.parameter import (
 )
 from loadshare.study.positions import alike, loaded
 from loadshare.view import View, Viewed
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from loadshare.report.figure import Figure
 
 SHOWN = 5
 """Intervals that are named one by one where they are not proved."""
@@ -104,8 +99,6 @@ class Critical(Viewed):
 
     def to_dataframe(self) -> pd.DataFrame:
         """The events as a table, one row each, by the attributes of `Event`."""
-        import pandas as pd
-
         columns = [f.name for f in fields(Event)]
         return pd.DataFrame(
             [[getattr(e, c) for c in columns] for e in self.events], columns=columns

@@ -18,6 +18,7 @@ from loadshare.case import Case
 from loadshare.case.reader import opened
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import solve
+from loadshare.libraries import optimize, qmc, special
 from loadshare.results import Result
 from loadshare.settings import FIT
 from loadshare.study.compare import Comparison, Deviation, Target, computed, needed, slope, targets
@@ -157,8 +158,6 @@ class _Problem:
         """Return the values of `own`, then Sobol points."""
         points = [(self.own() - self.low) / (self.high - self.low)]
         if count > 1:
-            from scipy.stats import qmc
-
             power = math.ceil(math.log2(count))
             sampler = qmc.Sobol(len(self.parameters), seed=seed)
             points += list(sampler.random_base2(power))[: count - 1]
@@ -216,10 +215,8 @@ class _Problem:
 
     def descend(self, start: Array) -> tuple[float, Array]:
         """Return the χ² and the point to which a start leads."""
-        from scipy.optimize import least_squares
-
         # The method keeps strictly inside; a start on a bound would be moved by it anyway.
-        found = least_squares(
+        found = optimize.least_squares(
             self.residual,
             np.clip(start, FIT.inside, 1.0 - FIT.inside),
             jac=self.jacobian,
@@ -287,8 +284,6 @@ class _Problem:
 
 def _too_far(comparison: Comparison, unknowns: int) -> list[str]:
     """Say if χ² is larger than the stated uncertainties make it, but for one time in a thousand."""
-    from scipy import special
-
     freedom, chi = len(comparison.deviations) - unknowns, comparison.chi_square
     # Where all could be met, what is not met at a bound counts as one figure.
     usual = float(special.chdtri(max(freedom, 1), FIT.improbable))

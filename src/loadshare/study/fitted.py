@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from loadshare.array_types import Array
 from loadshare.case import Case
-from loadshare.pictures import picture
+from loadshare.libraries import pd
+from loadshare.pictures import Figure, picture
 from loadshare.study.compare import Comparison
 from loadshare.study.parameter import Parameter
 from loadshare.view import View, Viewed
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from loadshare.report.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +88,6 @@ class Fit(Viewed):
 
     def to_dataframe(self) -> pd.DataFrame:
         """The fitted inputs as a table, one row each, in the unit given next to them."""
-        import pandas as pd
-
         rows = [
             {"input": u.parameter.name, "value": u.value, "deviation": u.deviation}
             | {"unit": u.parameter.unit or "1", "low": u.low, "high": u.high}

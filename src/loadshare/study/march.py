@@ -11,7 +11,7 @@ from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -21,8 +21,9 @@ from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
 from loadshare.job.answer import Answer
 from loadshare.job.positions import result_of
+from loadshare.libraries import pd, xr
 from loadshare.one_thread import one_thread
-from loadshare.pictures import picture
+from loadshare.pictures import Figure, picture
 from loadshare.results import Result
 from loadshare.settings import CERTIFY, MARCH
 from loadshare.study.memory import stepped
@@ -34,12 +35,6 @@ from loadshare.train.gear import Vector
 from loadshare.train.memory import slip_of
 from loadshare.train.placed import train_at
 from loadshare.view import View, Viewed, by_name
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
-    from loadshare.report.figure import Figure
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,7 +10,7 @@ from functools import cached_property, partial
 from itertools import product
 from math import prod
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,10 @@ from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.answered import Answered, answer_samples
 from loadshare.later import known
+from loadshare.libraries import pd, xr
 from loadshare.output import csv_of, netcdf_of, write_whole
-from loadshare.pictures import picture
+from loadshare.pictures import Figure, picture
+from loadshare.results import Result
 from loadshare.settings import ALLOWED
 from loadshare.study.parameter import (
     STUDY,
@@ -38,13 +40,6 @@ from loadshare.study.parameter import (
 from loadshare.study.positions import loaded
 from loadshare.train import build_train
 from loadshare.view import View, Viewed, by_name
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
-    from loadshare.report.figure import Figure
-    from loadshare.results import Result
 
 Array = NDArray[np.float64]
 

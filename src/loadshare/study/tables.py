@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loadshare._version import __version__
+from loadshare.libraries import pd, xr
 from loadshare.results import share
 from loadshare.results.dataset import VARIABLES
 from loadshare.results.figures import COMPONENTS
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
     from loadshare.job.answered import Part
     from loadshare.study.march import March
     from loadshare.study.sensitivity import Sensitivity
@@ -35,8 +33,6 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
         position, float) as words, "status" and "message" (parameters). What was not certified is
         NaN, or an empty text.
     """
-    import xarray as xr
-
     dims = tuple(p.name for p in sweep.parameters)
     shape = tuple(len(values) for values in sweep.grids)
     coords: dict[str, object] = {
@@ -140,8 +136,6 @@ def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
 
 def sweep_frame(sweep: Sweep) -> pd.DataFrame:
     """Tabulate a sweep: point by position by mesh; a refused point has one row with its message."""
-    import pandas as pd
-
     positions, names, arrays = _filled(sweep, (*TABULATED, "residual"))
     worst = arrays.get("residual", np.full((len(sweep.points), 0, 1), np.nan)).max(axis=2)
     point, position = np.nonzero(~np.isnan(worst))
@@ -181,8 +175,6 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
         "value", "unit" and "factor" (SI units per unit) say what the input is, "error" the largest
         stated error of a torque's derivative, "kink" (position) whether the sides may differ.
     """
-    import xarray as xr
-
     keys = [item.key for item in found.inputs]
     kinks = {kink.position for kink in found.kinks}
     some = next(iter(found.rates.values()), None)

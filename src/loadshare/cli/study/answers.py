@@ -14,11 +14,11 @@ from loadshare.cli.tables.sensitivity import show_sensitivity
 from loadshare.cli.tables.table import show, table
 from loadshare.cli.tables.tolerance import show_tolerance, statistics_document
 from loadshare.json_text import json_text
+from loadshare.libraries import pd
 from loadshare.output import netcdf_of
 from loadshare.report.numbers import counted, omega
 
 if TYPE_CHECKING:
-    import pandas as pd
     from rich.table import Table
 
     from loadshare.study.compare import Comparison, Deviation
@@ -135,7 +135,6 @@ def show_fit(found: Fit) -> None:
 
 def _of_fit(found: Fit) -> Makers:
     def frame() -> pd.DataFrame:
-        import pandas as pd
 
         rows = [
             (u.parameter.name, u.parameter.unit, u.start, u.value, u.deviation, u.low, u.high)

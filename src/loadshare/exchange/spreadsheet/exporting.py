@@ -21,11 +21,10 @@ from loadshare.exchange.spreadsheet.cells import (
 )
 from loadshare.exchange.spreadsheet.importing import ABOUT, ALONE, sheet_names
 from loadshare.exchange.spreadsheet.sheet import FOUND
+from loadshare.libraries import pd
 from loadshare.output import clear, csv_of, without_formulas, write_together
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from loadshare.results import Result
 
 
@@ -90,8 +89,6 @@ def workbook_of(tables: Mapping[str, pd.DataFrame]) -> bytes:
 
 def _cell(value: Any) -> str | float | None:
     """Return what a cell of a workbook holds, which knows no infinity and nothing missing."""
-    import pandas as pd
-
     value = value.item() if hasattr(value, "item") else value
     if value is pd.NA or value is None or value != value:
         return None
@@ -168,7 +165,6 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
 
 
 def _texts(heads: list[str], rows: list[list[str]]) -> pd.DataFrame:
-    import pandas as pd
 
     return pd.DataFrame(rows, columns=heads, dtype=object)
 

@@ -6,11 +6,12 @@ import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from loadshare.errors import LoadshareError
+from loadshare.libraries import xr
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import (
@@ -27,9 +28,6 @@ from loadshare.report.figures.marks import (
 from loadshare.report.palette import WARNING, Look, Palette, ends_from_names, look
 from loadshare.report.units import Unit, engineering
 from loadshare.report.vega_lite import Drawing, Row, channel, joined, layer, panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Event = tuple[float, str]
 

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from loadshare.errors import LoadshareError
+from loadshare.libraries import xr
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks as drawn
 from loadshare.report.figures.marks import axis, heading, hover, rules
 from loadshare.report.numbers import significant
 from loadshare.report.palette import COLOURS, INK
 from loadshare.report.vega_lite import Channel, Drawing, Row, channel, joined, layer, panel
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 BINS = 60
 LEAST = 0.01

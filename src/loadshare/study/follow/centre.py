@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from loadshare.array_types import Array
+from loadshare.libraries import optimize
 from loadshare.settings import FOLLOW
 from loadshare.study.follow.equations import Equations, balanced, free_moves
 from loadshare.study.follow.numbers import Numbers
@@ -96,7 +97,6 @@ def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
     """
     if not blocks:
         return []
-    from scipy.optimize import linprog
     from scipy.sparse import block_diag
 
     widths = [rows.shape[1] for rows, _ in blocks]
@@ -105,7 +105,7 @@ def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
     cost[last] = -1.0
     upper = np.full(len(cost), np.inf)
     upper[last] = most
-    answer = linprog(  # type: ignore[call-overload]
+    answer = optimize.linprog(  # type: ignore[call-overload]
         cost,
         A_ub=block_diag([rows for rows, _ in blocks], format="csc"),
         b_ub=np.concatenate([room for _, room in blocks]),

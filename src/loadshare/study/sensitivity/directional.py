@@ -22,6 +22,7 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.errors import CaseError, Refused
+from loadshare.libraries import optimize
 from loadshare.settings import EPS, SENSITIVITY
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import set_of, switch_names
@@ -302,13 +303,13 @@ class Neighbourhood:
 
 def _has_room(rows: list[tuple[Array, float]]) -> bool:
     """Whether what is loose can move so that no verge contact closes: row·v ≤ room for all."""
-    from scipy.optimize import linprog
-
     if not rows:
         return True
     matrix, room = np.array([r for r, _ in rows]), np.array([b for _, b in rows])
     # Room over the largest one: the free moves are as large as the gaps demand.
     scale = float(np.abs(room).max()) or 1.0
     count = matrix.shape[1]
-    found = linprog(np.zeros(count), A_ub=matrix, b_ub=room / scale, bounds=[(None, None)] * count)
+    found = optimize.linprog(
+        np.zeros(count), A_ub=matrix, b_ub=room / scale, bounds=[(None, None)] * count
+    )
     return bool(found.status == 0)

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from loadshare.array_types import Array
-from loadshare.pictures import picture
+from loadshare.libraries import pd, xr
+from loadshare.pictures import Figure, picture
 from loadshare.study.parameter import Value
 from loadshare.view import View, Viewed, listed
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
-    from loadshare.report.figure import Figure
 
 SIDES = ("falling", "rising")
 

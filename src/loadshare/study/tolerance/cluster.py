@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare._version import __version__
 from loadshare.errors import LoadshareError
+from loadshare.libraries import pa
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.job import Part, known_job
 
 if TYPE_CHECKING:
-    import pyarrow as pa
     from distributed import Client
 
 JOIN = 10.0

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loadshare.array_types import Array
+from loadshare.libraries import xr
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.statistics import Estimate
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from loadshare.study.tolerance.result import OmegaStatistics, Tolerance
 
 
@@ -23,8 +22,6 @@ def dataset(found: Tolerance) -> xr.Dataset:
     Dimensions are ``over`` ("stage", "group"), ``stage``, ``level`` of the quantiles, ``input`` and
     ``bin``; intervals are next to their figures as ``…_low`` and ``…_high``.
     """
-    import xarray as xr
-
     overs = list(dict.fromkeys(o.over for o in found.omega))
     stages = list(dict.fromkeys(o.stage for o in found.omega))
     levels = list(found.omega[0].summary.quantiles) if found.omega else []

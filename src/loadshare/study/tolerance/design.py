@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array
+from loadshare.libraries import qmc
 from loadshare.settings import JOB, TOLERANCE
 from loadshare.study.tolerance.inputs import Inputs
 
@@ -112,7 +113,6 @@ def uniforms(sampling: str, seed: int, stream: tuple[int, ...], block: int, widt
 
 
 def _sobol(seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
-    from scipy.stats import qmc
 
     each = JOB.block // TOLERANCE.sequences
     points = np.empty((each, TOLERANCE.sequences, width))

@@ -11,6 +11,7 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.case.study import NUMBERS, Spread
+from loadshare.libraries import special, stats
 from loadshare.settings import TOLERANCE
 from loadshare.study.parameter import Value, read_value
 
@@ -39,8 +40,6 @@ class Distribution:
     @cached_property
     def frozen(self) -> Any:
         """The distribution as scipy.stats has it."""
-        from scipy import stats
-
         of: dict[str, Callable[..., Any]] = {
             "normal": lambda mean, deviation: stats.norm(mean, deviation),
             "truncated normal": lambda mean, deviation, low, high: stats.truncnorm(
@@ -162,8 +161,6 @@ class Copula:
 
     def applied(self, uniforms: Array) -> Array:
         """Return uniforms, shape (S, inputs), with those of the members correlated."""
-        from scipy import special
-
         columns = list(self.members)
         scores = special.ndtri(uniforms[:, columns])
         # Term by term: a product of matrices could round differently for another number of rows.

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError, Problem, ResultError
+from loadshare.libraries import pa, parquet, pd
 from loadshare.lock import LOCK
 from loadshare.output import clear, is_left, write_whole
 from loadshare.results.digest import DIGEST, digest_of
@@ -19,8 +20,6 @@ from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
 
 if TYPE_CHECKING:
     import numpy as np
-    import pandas as pd
-    import pyarrow as pa
 
 log = logging.getLogger("loadshare")
 
@@ -101,8 +100,6 @@ class Folder:
         return found
 
     def _whole(self, part: Part) -> bool:
-        import pyarrow as pa
-        from pyarrow import parquet
 
         file = self.file(part)
         try:
@@ -117,9 +114,6 @@ class Folder:
 
     def write(self, part: Part, table: pa.Table) -> None:
         """Put a part in its place, whole or not at all."""
-        import pyarrow as pa
-        from pyarrow import parquet
-
         file = self.file(part)
         sealed = table.replace_schema_metadata(
             {**table.schema.metadata, PART_DIGEST: digest(table)}
@@ -169,9 +163,6 @@ class Folder:
         ValueError
             If there is no such column.
         """
-        import pyarrow as pa
-        from pyarrow import parquet
-
         files = self.files()
         chosen = [columns] if isinstance(columns, str) else None if columns is None else [*columns]
         with _reading(files[0]):
@@ -210,8 +201,6 @@ def read_part(file: Path, columns: list[str] | None = None) -> pa.Table:
     ResultError
         If the part cannot be read, or was altered since it was written.
     """
-    from pyarrow import parquet
-
     with _reading(file):
         return parquet.read_table(file, columns=columns, page_checksum_verification=True)
 
@@ -219,8 +208,6 @@ def read_part(file: Path, columns: list[str] | None = None) -> pa.Table:
 @contextmanager
 def _reading(file: Path) -> Iterator[None]:
     """Turn what is wrong with a part into a message."""
-    import pyarrow as pa
-
     try:
         yield
     except (OSError, ValueError, pa.ArrowException) as error:

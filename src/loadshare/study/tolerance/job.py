@@ -8,19 +8,17 @@ import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from loadshare._version import __version__
 from loadshare.case import Case
+from loadshare.libraries import pa
 from loadshare.study.tolerance.design import Drawn, PickFreeze
 from loadshare.study.tolerance.figures import Solver
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train import build_train
-
-if TYPE_CHECKING:
-    import pyarrow as pa
 
 SAMPLES, INDICES = "samples", "indices"
 STAMP = b"loadshare"
@@ -140,8 +138,6 @@ class Job:
             One row per sample: its number, inputs, figures, largest residual, and the message of
             one that has no certified answer.
         """
-        import pyarrow as pa
-
         design = self.designs[part.design]
         pieces = [self._piece(design, block) for block in self.blocks(part.design, part.number)]
         joined = {

@@ -6,22 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 from loadshare.case.words import count
 from loadshare.errors import LoadshareError
-from loadshare.pictures import picture
+from loadshare.libraries import pd, xr
+from loadshare.pictures import Figure, picture
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.study.tolerance.statistics import Estimate, Share, Summary
 from loadshare.study.tolerance.worst import WorstCase
 from loadshare.view import View, Viewed, figure, listed
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
-    from loadshare.report.figure import Figure
 
 Over: TypeAlias = Literal["stage", "group"]
 OVERS: tuple[Over, ...] = get_args(Over)

@@ -8,19 +8,17 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.case.words import as_given
 from loadshare.errors import Problem, ResultError
+from loadshare.libraries import pa
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.folder import Folder, read_part
 from loadshare.study.tolerance.job import Job, Part
-
-if TYPE_CHECKING:
-    import pyarrow as pa
 
 AGAIN = "Remove this file and give the same command: the part is then solved again."
 

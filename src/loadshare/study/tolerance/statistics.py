@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array
+from loadshare.libraries import special, stats
 from loadshare.settings import TOLERANCE
 
 ROUND_OFF = 1e-12
@@ -111,8 +112,6 @@ def _replicates(values: Array) -> list[Array]:
 
 def _from_replicates(value: float, found: Sequence[float]) -> Estimate:
     """Student's interval from independent estimates of one figure."""
-    from scipy import special
-
     count = len(found)
     if count < 2:
         return Estimate(value, math.nan, math.nan)
@@ -122,7 +121,6 @@ def _from_replicates(value: float, found: Sequence[float]) -> Estimate:
 
 
 def _mean(known: Array, deviation: float, replicates: list[Array] | None) -> Estimate:
-    from scipy import special
 
     value = float(known.mean())
     if replicates is not None:
@@ -152,7 +150,6 @@ def quantile(ordered: Array, level: float, replicates: list[Array] | None) -> Es
         low = float(np.quantile(ordered, span.low)) if span.low > 0.0 else -math.inf
         high = float(np.quantile(ordered, span.high)) if span.high < 1.0 else math.inf
         return Estimate(value, low, high)
-    from scipy import stats
 
     # The number of samples below the true quantile is binomial.
     tail = (1.0 - TOLERANCE.confidence) / 2.0
@@ -171,8 +168,6 @@ def wilson(hits: int, count: int) -> Estimate:
     E. B. Wilson, Probable inference, the law of succession, and statistical inference, Journal of
     the American Statistical Association 22 (1927).
     """
-    from scipy import special
-
     z = float(special.ndtri(0.5 + TOLERANCE.confidence / 2.0))
     share = hits / count
     middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count)
