@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import switch_names
-from loadshare.study.follow.changes import Change, Gap, Point
+from loadshare.study.follow.changes import Change, Gap, Point, change_between
 from loadshare.study.follow.line import Line
 
 _STATES = {
@@ -96,7 +97,7 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
     rows, kinds = structure.rows, structure.kinds[structure.columns.contacts]
     names = switch_names(structure)
     changed = change.before.changes(change.after, structure)
-    found = []
+    event, found = _events(line, position, change, len(changed)), []
     for k in changed:
         ring = k >= rows and structure.radials[k - rows].kind == "ring"
         sides = (change.before, change.after)
@@ -112,23 +113,22 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
             kind = f"float {'reaches' if after == 'closed' else 'leaves'} boundary"
         else:
             kind = f"contact {'closes' if after == 'closed' else 'opens'}"
-        found.append(
-            Event(
-                value=change.value,
-                unit=line.parameter.unit,
-                position=position,
-                element=names[k],
-                gear=gear,
-                kind=kind,
-                before=before,
-                after=after,
-                together=len(changed),
-                confirmed=change.confirmed,
-                worst=change.worst,
-                apart=change.apart,
-            )
-        )
+        found.append(event(element=names[k], gear=gear, kind=kind, before=before, after=after))
     return found
+
+
+def _events(line: Line, position: int, change: Change, together: int) -> partial[Event]:
+    """Return what makes events of a change, from element, gear, kind and both states."""
+    return partial(
+        Event,
+        value=change.value,
+        unit=line.parameter.unit,
+        position=position,
+        together=together,
+        confirmed=change.confirmed,
+        worst=change.worst,
+        apart=change.apart,
+    )
 
 
 def _state(states: int, is_row: bool, is_ring: bool) -> str:
@@ -164,22 +164,9 @@ def flanks_changed(line: Line, position: int, gap: Gap) -> list[Event]:
     before, after = (line.train(point.value).meshes for point in (first, last))
     changed = sorted(n for n in carrying & before.keys() if before[n].turned != after[n].turned)
     value = 0.0 if first.value <= 0.0 <= last.value else last.value
+    event = _events(line, position, change_between(first, last, value), len(changed))
     found = []
     for name in changed:
         here, then = (_FLANKS[m[name].is_drive(True)] for m in (before, after))
-        event = Event(
-            value=value,
-            unit=line.parameter.unit,
-            position=position,
-            element=name,
-            gear=None,
-            kind="flank changes",
-            before=here,
-            after=then,
-            together=len(changed),
-            confirmed=False,
-            worst=max(first.worst, last.worst),
-            apart=max(value - first.value, last.value - value),
-        )
-        found.append(event)
+        found.append(event(element=name, gear=None, kind="flank changes", before=here, after=then))
     return found

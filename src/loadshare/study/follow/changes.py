@@ -54,6 +54,13 @@ class Change:
     apart: float
 
 
+def change_between(first: Point, last: Point, value: float, confirmed: bool = False) -> Change:
+    """Return the change from the set of one point to that of another, which happens at a value."""
+    apart = float(max(value - first.value, last.value - value))
+    worst = max(first.worst, last.worst)
+    return Change(value, first.active, last.active, confirmed, worst, apart)
+
+
 Stretch = tuple[Point | Missing, Point | Missing]
 
 

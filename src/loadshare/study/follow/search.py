@@ -20,7 +20,15 @@ from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import States, WorkingSet, set_of
 from loadshare.study.follow.centre import centred
-from loadshare.study.follow.changes import Change, Gap, Point, Stretch, distinct, merged
+from loadshare.study.follow.changes import (
+    Change,
+    Gap,
+    Point,
+    Stretch,
+    change_between,
+    distinct,
+    merged,
+)
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
 from loadshare.study.follow.line import Line, Missing, Solved
@@ -192,8 +200,7 @@ class Search:
             value = hint if first.value <= hint <= last.value else value
         if first.value <= 0.0 <= last.value and abs(value) < self.least:
             value = 0.0
-        apart = max(value - first.value, last.value - value)
-        return Change(value, first.active, last.active, False, max(first.worst, last.worst), apart)
+        return change_between(first, last, value)
 
     def proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
         """Prove stretches whose ends have the same set, and return the others."""
@@ -238,9 +245,7 @@ class Search:
         if low.value < high.value:
             self.gaps.append(Gap(low, high, HIDDEN))
         elif first.active.states != last.active.states:
-            apart = float(max(value - first.value, last.value - value))
-            worst = max(first.worst, last.worst)
-            self.changes.append(Change(value, first.active, last.active, True, worst, apart))
+            self.changes.append(change_between(first, last, value, confirmed=True))
         return True
 
     def _reached(self, point: Point, value: float) -> Point | None:

@@ -12,13 +12,12 @@ from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
 from loadshare.results.share import carries, flank_torques, largest_of
 from loadshare.settings import SENSITIVITY
-from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import Setting
 from loadshare.study.sensitivity.differenced import NoDifference, differenced
 from loadshare.study.sensitivity.differences import Slope
 from loadshare.study.sensitivity.directional import Neighbourhood
 from loadshare.study.sensitivity.motion import Motion
-from loadshare.study.sensitivity.result import SIDES, Rates, Remark
+from loadshare.study.sensitivity.result import Input, Rates, Remark
 from loadshare.study.sensitivity.variation import Trains, Variation, torques_of
 from loadshare.train import Train
 from loadshare.train.placed import train_at
@@ -84,23 +83,18 @@ class Corner:
         """Elements for which the derivatives found so far hold to one side only."""
         return tuple(dict.fromkeys((*self.neighbourhood.verge, *self._caught)))
 
-    def rates(self, trains: Trains, value: Value, key: str) -> dict[str, Rates]:
-        """Return the derivatives to both sides.
+    def rates(self, trains: Trains, item: Input) -> dict[tuple[int, str, str], Rates]:
+        """Return the derivatives to both sides, by position, input and side.
 
         Raises
         ------
         CaseError
             If the input can be varied to neither side.
         """
-        varied = Variation(trains, value, self.position, self.structure)
-        found: dict[str, Rates] = {}
-        both: Rates | None = None
-        for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
-            if both is None:
-                made, shared = self._side(varied, sign, key, side)
-                both = made if shared else None
-            found[side] = both or made
-        return found
+        varied, key = Variation(trains, item.value, self.position, self.structure), item.key
+        falling, shared = self._side(varied, -1.0, key, "falling")
+        rising = falling if shared else self._side(varied, 1.0, key, "rising")[0]
+        return {(self.position, key, "falling"): falling, (self.position, key, "rising"): rising}
 
     def _side(self, varied: Variation, sign: float, key: str, side: str) -> tuple[Rates, bool]:
         """Return the derivatives to one side, and whether they are those to the other as well."""

@@ -17,6 +17,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -76,14 +77,10 @@ class Neighbourhood:
         Motion or None
             None if no active set was found that holds to that side.
         """
-        for point in self._points:
+        for point in chain(tuple(self._points), self._near(sign, varied)):
             found = self._followed(point, sign, varied)
             if found is not None:
-                return found
-        for point in self._near(sign, varied):
-            found = self._followed(point, sign, varied)
-            if found is not None:
-                self._points.append(point)
+                self._points += [] if point in self._points else [point]
                 return found
         return None
 
@@ -113,15 +110,11 @@ class Neighbourhood:
     def _followed(self, point: Point, sign: float, varied: Variation) -> Motion | None:
         """Return the motion on a set, if the set holds to that side."""
         branch, z, tangent = point.branch, point.z, point.tangent
-        try:
-            change = varied.change(branch, z)
-        except _NOTHING:
-            return None
-        slope = change.to(sign)
-        if not isinstance(slope, Slope):
+        slope, step = self._slope(point, sign, varied)
+        if slope is None:
             return None
         explicit, error = slope.value[: branch.size], slope.error[: branch.size]
-        cannot, left = self._unbalanced(point, slope, change.step)
+        cannot, left = self._unbalanced(point, slope, step)
         if cannot:
             return None
         rate = -tangent.solve(explicit)
@@ -131,7 +124,7 @@ class Neighbourhood:
         verge = self._verge(point)
         if verge is None:
             return None
-        still = self._still(point, sign, rate, change.step, varied, verge)
+        still = self._still(point, sign, rate, step, varied, verge)
         if still is None:
             return None
         elements: tuple[str, ...] = ()
@@ -143,6 +136,16 @@ class Neighbourhood:
         one_sided = bool(elements) or len(still) < len(verge)
         beside = tuple(self._with(point, still, sign, varied))
         return Motion(branch, z, tangent, rate, error, slope, elements, one_sided, beside)
+
+    @staticmethod
+    def _slope(point: Point, sign: float, varied: Variation) -> tuple[Slope | None, float]:
+        """How an input changes the equations to a side, if it can, and the step that showed it."""
+        try:
+            change = varied.change(point.branch, point.z)
+        except _NOTHING:
+            return None, 0.0
+        slope = change.to(sign)
+        return slope if isinstance(slope, Slope) else None, change.step
 
     @staticmethod
     def _verge(point: Point) -> Gauges | None:
@@ -160,18 +163,14 @@ class Neighbourhood:
             other = self._beside(point, changes)
             if other is None:
                 continue
-            branch = other.branch
-            try:
-                change = varied.change(branch, other.z)
-            except _NOTHING:
+            (slope, step), verge = self._slope(other, sign, varied), self._verge(other)
+            if slope is None or verge is None:
                 continue
-            slope, verge = change.to(sign), self._verge(other)
-            if not isinstance(slope, Slope) or verge is None:
-                continue
-            rate = -other.tangent.solve(slope.value[: branch.size])
-            if self._still(other, sign, rate, change.step, varied, verge, later=True) is not None:
-                error = slope.error[: branch.size]
-                yield Motion(branch, other.z, other.tangent, rate, error, slope)
+            size = other.branch.size
+            rate = -other.tangent.solve(slope.value[:size])
+            if self._still(other, sign, rate, step, varied, verge, later=True) is not None:
+                error = slope.error[:size]
+                yield Motion(other.branch, other.z, other.tangent, rate, error, slope)
 
     def _beside(self, point: Point, changes: tuple[tuple[int, int], ...]) -> Point | None:
         """Return a point with elements in other states, if there is one: the same for any input."""

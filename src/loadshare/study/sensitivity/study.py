@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from itertools import product
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,7 +20,7 @@ from loadshare.settings import SENSITIVITY
 from loadshare.study.positions import each_certified, loaded
 from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
-from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity
+from loadshare.study.sensitivity.result import SIDES, Kink, Rates, Sensitivity
 from loadshare.study.sensitivity.variation import Trains
 from loadshare.tooth import bears_on_laws, resolve
 from loadshare.train import Train
@@ -95,23 +94,22 @@ def sensitivity(
         try:
             own = following if bears_on_laws(parse(item.key)) else case
             trains = Trains((case, geometry, train), own, item, chosen)
-            rates |= _rates(corners, trains, item)
+            rates |= {at: of for c in corners for at, of in c.rates(trains, item).items()}
         except CaseError as refusal:
             if len(wanted) == 1 or item.key in named:
                 raise
             skipped.append((item.key, refusal.problems[0].message))
         else:
             usable.append(item)
-    omega, omega_error = _omegas(train, corners, rates, usable, "share")
-    pair_omega, pair_omega_error = _omegas(train, corners, rates, usable, "pair_share")
+    shares, pairs = (_largest(train, corners, rates, kind) for kind in ("share", "pair_share"))
     return Sensitivity(
         inputs=tuple(usable),
         positions=tuple(chosen),
         rates=rates,
-        omega=omega,
-        pair_omega=pair_omega,
-        omega_error=omega_error,
-        pair_omega_error=pair_omega_error,
+        omega=_each(shares, "rate"),
+        pair_omega=_each(pairs, "rate"),
+        omega_error=_each(shares, "error"),
+        pair_omega_error=_each(pairs, "error"),
         kinks=tuple(Kink(c.position, elements) for c in corners if (elements := c.on_the_verge)),
         error={item.key: _error(rates, item.key, chosen) for item in usable},
         remarks=tuple(r for c in corners for r in c.remarks),
@@ -119,14 +117,13 @@ def sensitivity(
     )
 
 
-def _rates(
-    corners: Iterable[Corner], trains: Trains, item: Input
-) -> dict[tuple[int, str, str], Rates]:
-    """Differentiate all positions by an input."""
+def _each(
+    largest: dict[tuple[str, str], dict[str, Slope]], what: str
+) -> dict[tuple[str, str], dict[str, float]]:
+    """Return one figure of slopes by input and side, then by stage."""
     return {
-        (corner.position, item.key, side): rates
-        for corner in corners
-        for side, rates in corner.rates(trains, item.value, item.key).items()
+        at: {stage: getattr(slope, what) for stage, slope in slopes.items()}
+        for at, slopes in largest.items()
     }
 
 
@@ -137,41 +134,23 @@ def _error(rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequen
     return max((v for v in stated if not math.isnan(v)), default=math.nan)
 
 
-def _omegas(
-    train: Train,
-    corners: list[Corner],
-    rates: dict[tuple[int, str, str], Rates],
-    inputs: Iterable[Input],
-    kind: str,
-) -> tuple[dict[tuple[str, str], dict[str, float]], dict[tuple[str, str], dict[str, float]]]:
-    """Derivatives of the largest Ω by input and side, then by stage; and their errors."""
-    slopes, errors = {}, {}
-    for at in product((item.key for item in inputs), SIDES):
-        largest = _largest(train, corners, rates, at, kind)
-        slopes[at] = {stage: slope.rate for stage, slope in largest.items()}
-        errors[at] = {stage: slope.error for stage, slope in largest.items()}
-    return slopes, errors
-
-
 def _largest(
-    train: Train,
-    corners: list[Corner],
-    rates: dict[tuple[int, str, str], Rates],
-    at: tuple[str, str],
-    kind: str,
-) -> dict[str, Slope]:
-    """Derivative of the largest Ω of each stage, and of the system, by an input to one side."""
-    found: dict[str, Slope] = {}
-    for stage in train.stages:
-        groups = [stage.meshes] if kind == "share" else stage.groups
-        near: list[Slope] = []
-        for corner in corners:
-            shares = coefficients(corner.torque, groups, corner.largest_torque)
-            here = rates[corner.position, *at]
-            slopes, errors = getattr(here, kind), getattr(here.error, kind)
-            near += [Slope(s, slopes[m], errors[m]) for m, s in shares.items() if s is not None]
-        found[stage.name] = _steepest(near, at[1])
-    found["system"] = _steepest(list(found.values()), at[1])
+    train: Train, corners: list[Corner], rates: dict[tuple[int, str, str], Rates], kind: str
+) -> dict[tuple[str, str], dict[str, Slope]]:
+    """Derivatives of the largest Ω of each stage, and of the system, by input and side."""
+    found: dict[tuple[str, str], dict[str, Slope]] = {}
+    for key, side in dict.fromkeys((key, side) for _, key, side in rates):
+        here = found[key, side] = {}
+        for stage in train.stages:
+            groups = [stage.meshes] if kind == "share" else stage.groups
+            near: list[Slope] = []
+            for corner in corners:
+                shares = coefficients(corner.torque, groups, corner.largest_torque)
+                own = rates[corner.position, key, side]
+                slopes, errors = getattr(own, kind), getattr(own.error, kind)
+                near += [Slope(s, slopes[m], errors[m]) for m, s in shares.items() if s is not None]
+            here[stage.name] = _steepest(near, side)
+        here["system"] = _steepest(list(here.values()), side)
     return found
 
 
