@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from pathlib import Path as FilePath
+from typing import Any, NoReturn, TypeAlias
 
 from loadshare.case import Case
 from loadshare.case.keys import Path
 from loadshare.case.origin import Origin
 from loadshare.case.writer import toml_text
+from loadshare.errors import CaseError, Problem
+from loadshare.input import Unreadable
 
 Data: TypeAlias = dict[str, Any]
 
@@ -59,3 +63,19 @@ def commented(data: Data, assumed: Iterable[str], left: Iterable[str]) -> str:
         if notes:
             lines += [f"# {title}", *(f"#   {' '.join(line.split())}" for line in notes)]
     return "\n".join([*lines, "", toml_text(data)])
+
+
+def refuse(path: FilePath, why: str, hint: str = "") -> NoReturn:
+    """Refuse a file."""
+    raise CaseError([Problem(str(path), "", "", why, hint=hint)]) from None
+
+
+@contextmanager
+def reading(path: FilePath) -> Iterator[None]:
+    """Refuse a file that cannot be read, and say why."""
+    try:
+        yield
+    except OSError as error:
+        refuse(path, (error.strerror or "cannot be read").lower())
+    except Unreadable as error:
+        refuse(path, str(error))

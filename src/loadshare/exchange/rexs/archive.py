@@ -10,9 +10,8 @@ from contextlib import contextmanager
 from copy import copy
 from io import BytesIO
 from pathlib import Path
-from typing import NoReturn
 
-from loadshare.errors import CaseError, Problem
+from loadshare.exchange.imported import refuse
 from loadshare.input import Unreadable
 from loadshare.settings import ALLOWED
 
@@ -30,11 +29,6 @@ ENCRYPTED = 1
 """Flag of a file in an archive."""
 START = b"PK\x03\x04"
 """Of an archive."""
-
-
-def refuse(path: Path, why: str) -> NoReturn:
-    """Refuse a file."""
-    raise CaseError([Problem(str(path), "", "", why)])
 
 
 def unpacked(path: Path, content: bytes) -> bytes:

@@ -12,13 +12,13 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.errors import CaseError, Problem
+from loadshare.exchange.imported import reading, refuse
 from loadshare.exchange.rexs.archive import repacked, unpacked
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.holding import borne_by
 from loadshare.exchange.rexs.model import Component
-from loadshare.exchange.rexs.reading import read_model, tables
-from loadshare.input import Unreadable, read_file
+from loadshare.exchange.rexs.reading import is_json, read_model, tables
+from loadshare.input import read_file
 from loadshare.results import Result
 from loadshare.results.share import load_factors
 from loadshare.settings import ALLOWED
@@ -61,17 +61,16 @@ def export_rexs(result: Result, unit: str | Path) -> str:
     unit = Path(unit)
     found = _found(result, Gearing(read_model(unit)))
     if not found:
-        why = "has no mesh of this case: gears must be named as the import names them"
-        raise CaseError([Problem(str(unit), "", "", why)])
+        refuse(unit, "has no mesh of this case: gears must be named as the import names them")
     content = unpacked(unit, read_file(unit, ALLOWED.other_bytes))
-    if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":
+    if is_json(content):
         return into_json(json.loads(content.decode("utf-8-sig")), found)
     parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
     try:
         root = ElementTree.fromstring(content, parser)
     except ElementTree.ParseError as error:
         # Prefixes without a namespace are read, as the import asks for none, but cannot be written.
-        raise CaseError([Problem(str(unit), "", "", f"is not valid XML: {error}")]) from None
+        refuse(unit, f"is not valid XML: {error}")
     return into_xml(root, found)
 
 
@@ -91,10 +90,8 @@ def in_form_of(unit: str | Path, text: str) -> bytes:
         If the unit cannot be read.
     """
     unit = Path(unit)
-    try:
+    with reading(unit):
         return repacked(unit, read_file(unit, ALLOWED.other_bytes), text)
-    except Unreadable as error:
-        raise CaseError([Problem(str(unit), "", "", str(error))]) from None
 
 
 def _found(result: Result, gearing: Gearing) -> Values:

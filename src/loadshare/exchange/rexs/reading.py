@@ -9,15 +9,17 @@ import re
 import struct
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 from xml.etree import ElementTree
 from xml.parsers import expat
 
-from loadshare.exchange.rexs.archive import refuse, unpacked
+from loadshare.exchange.imported import reading, refuse
+from loadshare.exchange.rexs.archive import unpacked
 from loadshare.exchange.rexs.model import Component, Model, Relation, Unread, Value
 from loadshare.exchange.rexs.quantities import QUANTITIES, in_si
-from loadshare.input import Unreadable, read_file
+from loadshare.input import read_file
 from loadshare.settings import ALLOWED
 
 CODES = {"float64": "d", "float32": "f"}
@@ -51,18 +53,13 @@ def read_model(path: Path) -> Model:
     CaseError
         If it cannot be read or is no REXS.
     """
-    try:
+    with reading(path):
         content = read_file(path, ALLOWED.other_bytes)
         if path.suffix.lower() in OTHERS:
             refuse(path, OTHERS[path.suffix.lower()])
         content = unpacked(path, content)
-    except OSError as error:
-        refuse(path, (error.strerror or "cannot be read").lower())
-    except Unreadable as error:
-        refuse(path, str(error))
-    is_json = content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
     try:
-        model = _from_json(content) if is_json else _from_xml(content)
+        model = _model_of(_from_json(content) if is_json(content) else _from_xml(content))
     except _NoRexs as error:
         refuse(path, str(error))
     except RecursionError:
@@ -72,26 +69,29 @@ def read_model(path: Path) -> Model:
     return model
 
 
+def is_json(content: bytes) -> bool:
+    """Tell whether a REXS file is JSON, not XML."""
+    return content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
+
+
 class _NoRexs(Exception):  # noqa: N818 -- reported as a problem, never raised to a user
     """Why a text is no REXS."""
 
 
-def _from_xml(content: bytes) -> Model:
+def _from_xml(content: bytes) -> Mapping[str, Any]:
+    """Return the model of an XML file as a JSON file holds it."""
     root = _parsed(content)
     if root.tag != "model":
         raise _NoRexs(f"is no REXS: its first element is {root.tag}, not model")
-    relations = [
-        _relation(
-            r.get("type", ""), {ref.get("role", ""): ref.get("id", "") for ref in r.iter("ref")}
-        )
-        for r in root.iterfind("relations/relation")
-    ]
-    whole = [_component(c) for c in root.iterfind("components/component")]
-    cases = [
-        {c.get("id", ""): _component(c) for c in case.iter("component")}
-        for case in root.iterfind("load_spectrum/load_case")
-    ]
-    return _loaded(root.get("version", ""), whole, relations, cases)
+    relations = root.iterfind("relations/relation")
+    cases = root.iterfind("load_spectrum/load_case")
+    changed = [{"components": list(map(_as_json, case.iter("component")))} for case in cases]
+    return {
+        **root.attrib,
+        "relations": [r.attrib | {"refs": [of.attrib for of in r.iter("ref")]} for r in relations],
+        "components": list(map(_as_json, root.iterfind("components/component"))),
+        "load_spectrum": {"load_cases": changed},
+    }
 
 
 def _parsed(content: bytes) -> ElementTree.Element:
@@ -127,24 +127,27 @@ def _parsed(content: bytes) -> ElementTree.Element:
         raise _NoRexs(f"is not valid XML: {error}") from None
 
 
-def _component(element: ElementTree.Element) -> Component:
-    attributes: dict[str, Value] = {}
+def _as_json(element: ElementTree.Element) -> dict[str, Any]:
+    """Return a component of an XML file as a JSON file holds it."""
+    attributes = []
     for attribute in element.iterfind("attribute"):
         array = attribute.find("array")
+        value: Any
         if array is None:
             value = _scalar((attribute.text or "").strip())
         elif array.get("code"):
-            value = _decoded(array.text or "", array.get("code", ""))
+            value = {"value": array.text or "", "code": array.get("code")}
         else:
-            value = _numbers([(c.text or "").strip() for c in array.iterfind("c")])
-        _put(attributes, attribute.get("id", ""), value, attribute.get("unit", ""))
-    return Component(
-        element.get("id", ""), element.get("type", ""), element.get("name", ""), attributes
-    )
+            value = [(c.text or "").strip() for c in array.iterfind("c")]
+        about = {key: attribute.get(key, "") for key in ("id", "unit")}
+        attributes.append(about | {"value": value})
+    return {**element.attrib, "attributes": attributes}
 
 
-def _relation(kind: str, roles: dict[str, str]) -> Relation:
+def _relation(given: Mapping[str, Any]) -> Relation:
     """Return a relation, couplings as later versions name them."""
+    kind = str(given.get("type", ""))
+    roles = {str(ref.get("role", "")): str(ref.get("id", "")) for ref in tables(given.get("refs"))}
     if kind == "coupling" and "side_1" in roles:
         return Relation("side", {FIRST_NAMES.get(role, role): id_ for role, id_ in roles.items()})
     return Relation(kind, roles)
@@ -191,7 +194,7 @@ def _decoded(text: str, code: str) -> Value:
         return ""
 
 
-def _from_json(content: bytes) -> Model:
+def _from_json(content: bytes) -> Mapping[str, Any]:
     try:
         held = json.loads(content.decode("utf-8-sig"))
     except (UnicodeDecodeError, ValueError) as error:
@@ -199,20 +202,7 @@ def _from_json(content: bytes) -> Model:
     model = held.get("model") if isinstance(held, Mapping) else None
     if not isinstance(model, Mapping):
         raise _NoRexs("is no REXS: it has no model")
-    relations = [
-        _relation(
-            str(r.get("type", "")),
-            {str(ref.get("role", "")): str(ref.get("id", "")) for ref in tables(r.get("refs"))},
-        )
-        for r in tables(model.get("relations"))
-    ]
-    whole = [_json_component(c) for c in tables(model.get("components"))]
-    spectrum = model.get("load_spectrum")
-    cases = [
-        {c.id: c for c in map(_json_component, tables(case.get("components")))}
-        for case in tables(spectrum.get("load_cases") if isinstance(spectrum, Mapping) else None)
-    ]
-    return _loaded(str(model.get("version", "")), whole, relations, cases)
+    return model
 
 
 def tables(given: Any) -> list[dict[str, Any]]:
@@ -220,18 +210,18 @@ def tables(given: Any) -> list[dict[str, Any]]:
     return [t for t in given if isinstance(t, dict)] if isinstance(given, list) else []
 
 
-def _json_component(given: Mapping[str, Any]) -> Component:
+def _component(given: Mapping[str, Any]) -> Component:
     attributes: dict[str, Value] = {}
     for attribute in tables(given.get("attributes")):
         values = [v for k, v in attribute.items() if k not in ("id", "unit")]
-        value = _json_value(values[0]) if len(values) == 1 else ""
+        value = _value(values[0]) if len(values) == 1 else ""
         _put(attributes, str(attribute.get("id", "")), value, str(attribute.get("unit") or ""))
     return Component(
         str(given.get("id", "")), str(given.get("type", "")), str(given.get("name", "")), attributes
     )
 
 
-def _json_value(given: Any) -> Value:
+def _value(given: Any) -> Value:
     if isinstance(given, bool | str):
         return given
     if isinstance(given, int | float):
@@ -244,28 +234,27 @@ def _json_value(given: Any) -> Value:
     return _numbers(given) if isinstance(given, list) else ""
 
 
-def _loaded(
-    version: str,
-    components: list[Component],
-    relations: list[Relation],
-    cases: list[dict[str, Component]],
-) -> Model:
+def _model_of(given: Mapping[str, Any]) -> Model:
     """Return a model with what its first load case says of components laid over them."""
-    whole = {component.id: component for component in components}
-    for id_, count in Counter(component.id for component in components).items():
+    version = str(given.get("version", ""))
+    relations = list(map(_relation, tables(given.get("relations"))))
+    spectrum = given.get("load_spectrum")
+    cases = tables(spectrum.get("load_cases") if isinstance(spectrum, Mapping) else None)
+    every = list(map(_component, tables(given.get("components"))))
+    whole = {component.id: component for component in every}
+    for id_, count in Counter(component.id for component in every).items():
         if count > 1:
             raise _NoRexs(f"has {count} components with the id {id_!r}: every id is that of one")
     notes: tuple[str, ...] = ()
     if not VERSIONS.fullmatch(version):
-        given = f"version {version} is not known" if version else "no version is given"
-        notes = (f"{given}: read as one from 1.1 to 2.0",)
+        lacks = f"version {version} is not known" if version else "no version is given"
+        notes = (f"{lacks}: read as one from 1.1 to 2.0",)
     if cases:
         notes += (f"loads are those of the first of {len(cases)} load cases",)
-        for id_, changed in cases[0].items():
-            if id_ in whole:
-                one = whole[id_]
-                attributes = {**one.attributes, **changed.attributes}
-                whole[id_] = Component(one.id, one.type, one.name, attributes)
+        changes = {c.id: c for c in map(_component, tables(cases[0].get("components")))}
+        for id_ in changes.keys() & whole.keys():
+            attributes = {**whole[id_].attributes, **changes[id_].attributes}
+            whole[id_] = replace(whole[id_], attributes=attributes)
     once = {(r.type, frozenset(r.roles.items())): r for r in relations}
     if repeated := len(relations) - len(once):
         notes += (f"relations given more than once count once: {repeated} left out",)

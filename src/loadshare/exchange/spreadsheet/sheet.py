@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
-from loadshare.errors import CaseError, Problem
+from loadshare.errors import Problem
 
 FOUND = "result_"
 """Beginning of the names of sheets that hold a result."""
@@ -47,8 +46,3 @@ def cell_of(place: str, row: int, column: int) -> str:
         rest, letter = divmod(rest - 1, 26)
         letters = chr(ord("A") + letter) + letters
     return f"{place}: row {row + 1}, column {letters}"
-
-
-def unread(path: Path, why: str, hint: str = "") -> CaseError:
-    """Return the error of a file that cannot be read at all."""
-    return CaseError([Problem(str(path), "", "", why, hint=hint)])

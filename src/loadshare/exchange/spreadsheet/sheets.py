@@ -7,9 +7,10 @@ from io import StringIO
 from pathlib import Path
 
 from loadshare.errors import CaseError, Problem
-from loadshare.exchange.spreadsheet.sheet import Sheet, unread
+from loadshare.exchange.imported import reading, refuse
+from loadshare.exchange.spreadsheet.sheet import Sheet
 from loadshare.exchange.spreadsheet.workbook import ENDING, sheets_of_workbook
-from loadshare.input import Unreadable, read_file
+from loadshare.input import read_file
 from loadshare.settings import ALLOWED
 
 
@@ -23,12 +24,10 @@ def sheets_of(path: Path) -> list[Sheet]:
     """
     if path.suffix.lower() == ENDING:
         return sheets_of_workbook(path)
-    try:
+    with reading(path):
         files = sorted(f for f in path.iterdir() if f.suffix.lower() == ".csv" and f.stem[0] != ".")
-    except OSError as error:
-        raise unread(path, (error.strerror or "cannot be read").lower()) from None
     if not files:
-        raise unread(path, "holds no CSV file")
+        refuse(path, "holds no CSV file")
     sheets: list[Sheet] = []
     problems: list[Problem] = []
     for file in files[: ALLOWED.entries]:
@@ -43,18 +42,15 @@ def sheets_of(path: Path) -> list[Sheet]:
 
 def _of_csv(file: Path) -> Sheet:
     try:
-        text = read_file(file, ALLOWED.other_bytes).decode("utf-8-sig")
+        with reading(file):
+            text = read_file(file, ALLOWED.other_bytes).decode("utf-8-sig")
         rows = list(csv.reader(StringIO(text, newline=""), strict=True))
-    except OSError as error:
-        raise unread(file, (error.strerror or "cannot be read").lower()) from None
-    except Unreadable as error:
-        raise unread(file, str(error)) from None
     except UnicodeDecodeError as error:
-        raise unread(file, f"is not UTF-8 text at byte {error.start}") from None
+        refuse(file, f"is not UTF-8 text at byte {error.start}")
     except csv.Error as error:
-        raise unread(file, f"is not CSV: {error}") from None
+        refuse(file, f"is not CSV: {error}")
     first = next((cell for row in rows[:1] for cell in row), "")
     if rows and len(rows[0]) == 1 and (";" in first or "\t" in first):
         hint = "Save it with commas between cells, and points in numbers."
-        raise unread(file, "has no commas between its cells", hint)
+        refuse(file, "has no commas between its cells", hint)
     return Sheet(file.stem.strip().lower(), str(file), rows)

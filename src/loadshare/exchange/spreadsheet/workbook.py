@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from loadshare.errors import Problem
-from loadshare.exchange.spreadsheet.sheet import FOUND, Sheet, cell_of, unread
+from loadshare.exchange.imported import reading, refuse
+from loadshare.exchange.spreadsheet.sheet import FOUND, Sheet, cell_of
 from loadshare.input import Unreadable, read_file
 from loadshare.settings import ALLOWED
 
@@ -36,18 +37,17 @@ def sheets_of_workbook(path: Path) -> list[Sheet]:
             "Install it with: pip install 'loadshare[spreadsheet]'. Or save every sheet as a CSV "
             "file in one folder, and import the folder."
         )
-        raise unread(path, "is a workbook, which needs openpyxl to be read", hint) from None
-    try:
-        content, calculated, named = _content(path)
-        book = load_workbook(content, read_only=True, data_only=True)
-        _check_whole(book.sheetnames, named)
-        return [_sheet(path, sheet, calculated) for sheet in book.worksheets]
-    except OSError as error:
-        raise unread(path, (error.strerror or "cannot be read").lower()) from None
-    except Unreadable as error:
-        raise unread(path, str(error)) from None
-    except Exception as error:  # noqa: BLE001 -- whatever openpyxl raises of what is damaged
-        raise unread(path, f"is a damaged workbook ({type(error).__name__})") from None
+        refuse(path, "is a workbook, which needs openpyxl to be read", hint)
+    with reading(path):
+        try:
+            content, calculated, named = _content(path)
+            book = load_workbook(content, read_only=True, data_only=True)
+            _check_whole(book.sheetnames, named)
+            return [_sheet(path, sheet, calculated) for sheet in book.worksheets]
+        except (OSError, Unreadable):
+            raise
+        except Exception as error:  # noqa: BLE001 -- whatever openpyxl raises of what is damaged
+            refuse(path, f"is a damaged workbook ({type(error).__name__})")
 
 
 def _check_whole(found: list[str], named: list[str]) -> None:
