@@ -22,9 +22,8 @@ from loadshare.certify import certify
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.digest import sealed
-from loadshare.results.document import FORMAT, OLDER, as_data
+from loadshare.results.document import DOCUMENT, FORMAT, OLDER, as_data
 from loadshare.results.reading import read_document
-from loadshare.results.writing import DOCUMENT
 from loadshare.study.march import march
 from loadshare.study.memory import stepped
 from loadshare.train import build_train

@@ -153,7 +153,7 @@ def _write(
     files: Sequence[Output] | None, result: Result, given: Case, case: str, picture: str
 ) -> None:
     from loadshare.exchange.spreadsheet import write_tables
-    from loadshare.results.writing import netcdf_content
+    from loadshare.results.document import netcdf_content
 
     def report() -> str:
         from loadshare.report.page import chapter, report_page

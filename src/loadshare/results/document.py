@@ -7,7 +7,9 @@ from dataclasses import is_dataclass
 from math import isfinite, isinf
 from typing import TYPE_CHECKING, Any
 
-from loadshare.results.digest import DIGEST, digest_of
+from loadshare.json_text import json_text
+from loadshare.output import netcdf_of
+from loadshare.results.digest import DIGEST, digest_of, sealed
 from loadshare.results.laws import law_lines
 
 if TYPE_CHECKING:
@@ -72,6 +74,16 @@ def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
     if law_lines(result.laws):
         document["laws"] = as_data(result.laws)
     return document | {DIGEST: digest_of(document)}
+
+
+DOCUMENT = "loadshare_result"
+"""Attribute of a netCDF file that holds the whole result."""
+
+
+def netcdf_content(result: Result) -> bytes:
+    """Return a netCDF file: arrays for any reader, and the whole result as an attribute."""
+    text = json_text(to_document(result))
+    return sealed(netcdf_of(result.dataset.assign_attrs({DOCUMENT: text})))
 
 
 def as_data(given: Any) -> Any:

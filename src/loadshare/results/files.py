@@ -11,8 +11,8 @@ from loadshare.input import Unreadable, read_file
 from loadshare.libraries import xr
 from loadshare.results.dataset import array_differences
 from loadshare.results.digest import is_sealed
+from loadshare.results.document import DOCUMENT
 from loadshare.results.reading import AGAIN, read_document
-from loadshare.results.writing import DOCUMENT
 from loadshare.settings import ALLOWED
 
 if TYPE_CHECKING:

@@ -13,14 +13,19 @@ from loadshare.case.table import Table
 from loadshare.certify import Certificate, FloatState
 from loadshare.certify.uniqueness import MEANINGS, Uniqueness
 from loadshare.certify.validity import Measure, Validity
+from loadshare.json_text import json_text
 from loadshare.libraries import pd, xr
+from loadshare.output import write_whole
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
+from loadshare.results.dataset import dataset, frame, with_units
+from loadshare.results.document import netcdf_content, to_document
 from loadshare.results.elastic import Elastic
 from loadshare.results.figures import Figures
 from loadshare.results.judged import Judged
 from loadshare.results.laws import LawUse, laws_of
 from loadshare.results.loads import Loads
+from loadshare.results.view import position_view, result_view
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
@@ -229,8 +234,6 @@ class Position(Viewed):
         return self.certificate.claims.uniquenesses[self.row]
 
     def _view(self) -> View:
-        from loadshare.results.view import position_view
-
         return position_view(self)
 
 
@@ -352,8 +355,6 @@ class Result:
 
     @cached_property
     def _arrays(self) -> xr.Dataset:
-        from loadshare.results.dataset import dataset
-
         return dataset(self)
 
     @property
@@ -386,32 +387,25 @@ class Result:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as the JSON file holds it."""
-        from loadshare.results.document import to_document
-
         return to_document(self)
 
     def to_json(self, path: str | Path | None = None) -> str:
         """JSON text of the result; written to `path` as well, if given."""
-        from loadshare.results.writing import write_json
-
-        return write_json(self, path)
+        text = json_text(self.to_dict())
+        if path is not None:
+            write_whole(Path(path), text)
+        return text
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the labelled arrays, and the whole result with them, to a netCDF file."""
-        from loadshare.results.writing import write_netcdf
-
-        write_netcdf(self, path)
+        write_whole(Path(path), netcdf_content(self))
 
     def to_frame(self) -> pd.DataFrame:
         """Torques and coefficients as a table, one row per position and mesh."""
-        from loadshare.results.dataset import frame
-
         return frame(self)
 
     def to_dataframe(self) -> pd.DataFrame:
         """The table of `to_frame`, with the unit of every column in ``attrs["units"]``."""
-        from loadshare.results.dataset import with_units
-
         return with_units(self.to_frame(), self.dataset)
 
     def to_xarray(self) -> xr.Dataset:
@@ -419,6 +413,4 @@ class Result:
         return self.dataset
 
     def _repr_html_(self) -> str:
-        from loadshare.results.view import result_view
-
         return result_view(self).html

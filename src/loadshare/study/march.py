@@ -28,6 +28,7 @@ from loadshare.results import Result
 from loadshare.settings import CERTIFY, MARCH
 from loadshare.study.memory import stepped
 from loadshare.study.positions import BACKEND
+from loadshare.study.tables import march_dataset
 from loadshare.train import Train, build_train
 from loadshare.train.build import with_laws
 from loadshare.train.elements import Spline
@@ -88,8 +89,6 @@ class March(Viewed):
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The result's labelled arrays, with slips, dissipation and revolutions by position."""
-        from loadshare.study.tables import march_dataset
-
         return march_dataset(self)
 
     def to_dataframe(self) -> pd.DataFrame:

@@ -25,6 +25,7 @@ from loadshare.libraries import pd, xr
 from loadshare.output import csv_of, netcdf_of, write_whole
 from loadshare.pictures import Figure, picture
 from loadshare.results import Result
+from loadshare.results.dataset import with_units
 from loadshare.settings import ALLOWED
 from loadshare.study.parameter import (
     STUDY,
@@ -38,6 +39,7 @@ from loadshare.study.parameter import (
     too_many,
 )
 from loadshare.study.positions import loaded
+from loadshare.study.tables import largest_shares, sweep_dataset, sweep_frame
 from loadshare.train import build_train
 from loadshare.view import View, Viewed, by_name
 
@@ -114,8 +116,6 @@ class Sweep(Viewed):
     @cached_property
     def dataset(self) -> xr.Dataset:
         """Everything found as labelled arrays: one dimension per parameter, then position."""
-        from loadshare.study.tables import sweep_dataset
-
         return sweep_dataset(self)
 
     def largest(self, kind: str, point: int) -> dict[str, float | None]:
@@ -133,8 +133,6 @@ class Sweep(Viewed):
     @cached_property
     def shares(self) -> dict[str, dict[str, Array]]:
         """Largest Ω at all points, by kind and stage; not a number without one."""
-        from loadshare.study.tables import largest_shares
-
         return largest_shares(self)
 
     def plot(
@@ -169,14 +167,10 @@ class Sweep(Viewed):
 
     def to_frame(self) -> pd.DataFrame:
         """Torques and coefficients as a table, one row per point, position and mesh."""
-        from loadshare.study.tables import sweep_frame
-
         return sweep_frame(self)
 
     def to_dataframe(self) -> pd.DataFrame:
         """The table of `to_frame`, with the unit of every column in ``attrs["units"]``."""
-        from loadshare.results.dataset import with_units
-
         return with_units(self.to_frame(), self.dataset)
 
     def to_xarray(self) -> xr.Dataset:

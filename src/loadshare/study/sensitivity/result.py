@@ -9,7 +9,9 @@ from typing import ClassVar, Literal
 from loadshare.array_types import Array
 from loadshare.libraries import pd, xr
 from loadshare.pictures import Figure, picture
+from loadshare.results.dataset import with_units
 from loadshare.study.parameter import Value
+from loadshare.study.tables import sensitivity_dataset
 from loadshare.view import View, Viewed, listed
 
 SIDES = ("falling", "rising")
@@ -129,8 +131,6 @@ class Sensitivity(Viewed):
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The derivatives as labelled arrays, per SI unit of the input."""
-        from loadshare.study.tables import sensitivity_dataset
-
         return sensitivity_dataset(self)
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -138,8 +138,6 @@ class Sensitivity(Viewed):
 
         One row per position, input, side and mesh; ``attrs["units"]`` has the units.
         """
-        from loadshare.results.dataset import with_units
-
         names = [n + e for n in ("torque", "share", "pair_share") for e in ("", "_error")]
         # What an input is, and its factor, belong to the arrays; "error" is that of all torques.
         arrays = self.dataset[names].reset_coords(
