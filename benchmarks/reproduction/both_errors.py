@@ -13,8 +13,7 @@ from benchmarks.reproduction.seed import GEARS, Seed, first
 from loadshare.case import Case
 from loadshare.report.figure import Figure
 from loadshare.results import Position, Result
-from loadshare.study.fit import fit
-from loadshare.study.fitted import Fit
+from loadshare.study.fit import Fit, fit
 
 LAST_DIGIT = 0.0005
 """Half of the printed shares' last digit, taken as their standard deviation."""

@@ -27,8 +27,7 @@ from loadshare.report.figure import Figure
 from loadshare.results import Position
 from loadshare.study.critical import critical
 from loadshare.study.events import Event
-from loadshare.study.fit import fit
-from loadshare.study.fitted import Fit
+from loadshare.study.fit import Fit, fit
 
 CLEARANCES = tuple(0.5 * k for k in range(25))
 """Ring clearances of the picture [µm]."""

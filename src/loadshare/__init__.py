@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from loadshare.results import Result, load_result
     from loadshare.study.compare import Comparison, compare
     from loadshare.study.critical import Critical, critical
-    from loadshare.study.fit import fit
-    from loadshare.study.fitted import Fit
+    from loadshare.study.fit import Fit, fit
     from loadshare.study.march import March, march
     from loadshare.study.named import run_study
     from loadshare.study.sensitivity import Sensitivity, sensitivity
@@ -43,7 +42,7 @@ _LAZY = {
     "Comparison": "loadshare.study.compare",
     "Critical": "loadshare.study.critical",
     "Figure": "loadshare.report.figure",
-    "Fit": "loadshare.study.fitted",
+    "Fit": "loadshare.study.fit",
     "March": "loadshare.study.march",
     "Result": "loadshare.results",
     "Sensitivity": "loadshare.study.sensitivity",

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loadshare.report.numbers import significant
-from loadshare.report.units import NUMBER, Unit, engineering
+from loadshare.report.numbers import NUMBER, Unit, engineering, significant
 
 
 @pytest.mark.parametrize(

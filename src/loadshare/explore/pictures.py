@@ -14,8 +14,8 @@ from loadshare.report.figures.layout import Body, Layout, layout_of
 from loadshare.report.figures.paths import Point, circle
 from loadshare.report.figures.region import Journey
 from loadshare.report.flanks import carrying, reaction_size
+from loadshare.report.numbers import MICROMETRE, MILLIMETRE, read_best
 from loadshare.report.palette import Palette, palette_of
-from loadshare.report.units import MICROMETRE, MILLIMETRE, read_best
 from loadshare.report.words import direction_name
 from loadshare.results import Position, Result
 from loadshare.train import Train, build_train

@@ -7,9 +7,8 @@ from collections.abc import Iterator, Mapping
 
 from loadshare.report import records
 from loadshare.report.flanks import carrying, least_force, reaction_size
-from loadshare.report.numbers import NONE, significant, small
+from loadshare.report.numbers import NONE, engineering, read_best, significant, small
 from loadshare.report.records import Cell, Record, Table, table
-from loadshare.report.units import engineering, read_best
 from loadshare.report.words import advice, rest_lines, spline_lines, undetermined_lines
 from loadshare.results import Result
 from loadshare.results.laws import law_lines

@@ -20,11 +20,10 @@ from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
 from loadshare.results.dataset import dataset, frame, with_units
 from loadshare.results.document import netcdf_content, to_document
-from loadshare.results.elastic import Elastic
 from loadshare.results.figures import Figures
 from loadshare.results.judged import Judged
 from loadshare.results.laws import LawUse, laws_of
-from loadshare.results.loads import Loads
+from loadshare.results.loads import Elastic, Loads
 from loadshare.results.view import position_view, result_view
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium

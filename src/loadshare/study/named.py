@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from loadshare.job import Progress
     from loadshare.study.compare import Comparison
     from loadshare.study.critical import Critical
-    from loadshare.study.fitted import Fit
+    from loadshare.study.fit import Fit
     from loadshare.study.march import March
     from loadshare.study.sensitivity import Sensitivity
     from loadshare.study.sweep import Sweep

@@ -13,8 +13,8 @@ from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
@@ -42,8 +42,6 @@ from loadshare.study.positions import loaded
 from loadshare.study.tables import largest_shares, sweep_dataset, sweep_frame
 from loadshare.train import build_train
 from loadshare.view import View, Viewed, by_name
-
-Array = NDArray[np.float64]
 
 CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
 MOST = 2

@@ -10,8 +10,8 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.exchange.imported import reading, refuse
 from loadshare.exchange.rexs.archive import repacked, unpacked
 from loadshare.exchange.rexs.gearing import Gearing
@@ -30,7 +30,6 @@ FORCE = "custom_loadshare_normal_force"
 ERROR = "custom_loadshare_transmission_error"
 PUSHED = "custom_loadshare_force_on_bearings"
 MOVED = "custom_loadshare_displacement"
-Array = NDArray[np.float64]
 
 
 def export_rexs(result: Result, unit: str | Path) -> str:

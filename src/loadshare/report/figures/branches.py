@@ -15,9 +15,8 @@ from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, heading
-from loadshare.report.numbers import ALIKE, decimals, fixed
+from loadshare.report.numbers import ALIKE, Unit, decimals, engineering, fixed
 from loadshare.report.palette import SOFT, Look, palette_of
-from loadshare.report.units import Unit, engineering
 from loadshare.report.vega_lite import Channel, Drawing, Row, channel, layer, panel
 from loadshare.results import Result
 

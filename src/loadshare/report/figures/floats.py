@@ -14,8 +14,8 @@ from loadshare.report.figures.marks import Panel, hover, path_rows
 from loadshare.report.figures.paths import Point, arrow, circle
 from loadshare.report.figures.region import Journey, Region
 from loadshare.report.flanks import reaction_size
+from loadshare.report.numbers import MICROMETRE, engineering, read_best
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
-from loadshare.report.units import MICROMETRE, engineering, read_best
 from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.report.words import boundary_name, direction_name, places_text
 from loadshare.results import Result

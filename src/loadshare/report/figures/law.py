@@ -10,8 +10,8 @@ from loadshare.report.figures import marks
 from loadshare.report.figures.branches import stages_of
 from loadshare.report.figures.marks import axis, channels, heading, hover
 from loadshare.report.flanks import Flank, carrying
+from loadshare.report.numbers import Unit, engineering
 from loadshare.report.palette import SOFT, palette_of
-from loadshare.report.units import Unit, engineering
 from loadshare.report.vega_lite import Drawing, Row, channel, layer, panel
 from loadshare.results import Result
 from loadshare.train import Train

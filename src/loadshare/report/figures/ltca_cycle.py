@@ -9,9 +9,8 @@ import numpy as np
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, curves, hover, padded
-from loadshare.report.numbers import significant
+from loadshare.report.numbers import MICRORADIAN, Unit, significant
 from loadshare.report.palette import look
-from loadshare.report.units import MICRORADIAN, Unit
 from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.analysis.tables import STIFFNESS_LOADS

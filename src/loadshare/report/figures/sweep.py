@@ -25,8 +25,8 @@ from loadshare.report.figures.marks import (
     padded,
     rules,
 )
+from loadshare.report.numbers import Unit, engineering
 from loadshare.report.palette import WARNING, Look, Palette, ends_from_names, look
-from loadshare.report.units import Unit, engineering
 from loadshare.report.vega_lite import Drawing, Row, channel, joined, layer, panel
 
 Event = tuple[float, str]

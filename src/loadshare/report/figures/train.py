@@ -17,9 +17,8 @@ from loadshare.report.figures.layout import ELASTIC, FIXED, FLOATS, Body, Layout
 from loadshare.report.figures.marks import Panel, heading, hover, path_rows
 from loadshare.report.figures.paths import Point, arrow, corners
 from loadshare.report.flanks import carrying
-from loadshare.report.numbers import significant
+from loadshare.report.numbers import MILLIMETRE, significant
 from loadshare.report.palette import INK, SOFT, WARNING
-from loadshare.report.units import MILLIMETRE
 from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.report.words import direction_name
 from loadshare.results import Position, Result

@@ -8,10 +8,9 @@ from collections.abc import Iterator, Sequence
 from loadshare.case import Case
 from loadshare.case.content import ABOUT
 from loadshare.case.keys import dotted, values_in
-from loadshare.report.numbers import NONE, omega, significant
+from loadshare.report.numbers import NONE, engineering, omega, significant
 from loadshare.report.page.inputs import written
 from loadshare.report.records import FOLDED, Cell, Column, Table
-from loadshare.report.units import engineering
 from loadshare.report.words import rest_lines
 from loadshare.results import Result
 

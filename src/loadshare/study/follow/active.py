@@ -6,17 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, States
 from loadshare.contact.radial import Part, nearest
 from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.numbers import Numbers
 from loadshare.train.equilibrium import Equilibrium
-
-States = NDArray[np.int8]
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,15 +16,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags, States
 from loadshare.contact.arc import rolled
 from loadshare.contact.law import roots
 from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
-from loadshare.study.follow.active import States, WorkingSet
+from loadshare.study.follow.active import WorkingSet
 from loadshare.study.follow.numbers import Numbers
-from loadshare.study.follow.ranges import Flags
 
 
 @dataclass(frozen=True, slots=True, eq=False)

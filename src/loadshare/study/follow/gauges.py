@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.forces import friction_bound, varying_slopes
-from loadshare.study.follow.ranges import Enclosure, Flags, Range, sampled
+from loadshare.study.follow.ranges import Enclosure, Range, sampled
 from loadshare.study.follow.stretches import Stretches
 
 

@@ -12,14 +12,14 @@ from functools import cached_property
 
 import numpy as np
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, States
 from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene.structure import Structure
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
-from loadshare.study.follow.active import States, coordinates, read_states
+from loadshare.study.follow.active import coordinates, read_states
 from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.parameter import Parameter, Value, applied, table_of
 from loadshare.study.positions import certified

@@ -23,13 +23,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import balanced, free_moves
 from loadshare.study.follow.forces import forces
 from loadshare.study.follow.gauges import gauges
-from loadshare.study.follow.ranges import Flags, sampled
+from loadshare.study.follow.ranges import sampled
 from loadshare.study.follow.stretches import Stretches
 
 

@@ -14,11 +14,11 @@ from itertools import compress, pairwise
 
 import numpy as np
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, Flags, States
 from loadshare.errors import Refused
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
-from loadshare.study.follow.active import States, WorkingSet, set_of
+from loadshare.study.follow.active import WorkingSet, set_of
 from loadshare.study.follow.centre import centred
 from loadshare.study.follow.changes import (
     Change,
@@ -34,7 +34,6 @@ from loadshare.study.follow.gauges import gauges_at
 from loadshare.study.follow.line import Line, Missing, Solved
 from loadshare.study.follow.numbers import Numbers
 from loadshare.study.follow.parts import HIDDEN, Prover, between
-from loadshare.study.follow.ranges import Flags
 from loadshare.study.follow.stretches import Stretches
 from loadshare.study.follow.zero import first_zero
 
