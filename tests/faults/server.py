@@ -150,8 +150,8 @@ def _keep_answers() -> None:
     """Let what was solved once be looked up."""
     import loadshare.job
     from loadshare.report import beside
-    from loadshare.results import files, writing
-    from loadshare.study.tolerance import design, figures, omegas, study, worst
+    from loadshare.results import document, files, result
+    from loadshare.study.tolerance import design, figures, statistics, study, worst
 
     def case_key(case: Any, **how: Any) -> str:
         options = {name: value for name, value in how.items() if name != "progress"}
@@ -163,7 +163,7 @@ def _keep_answers() -> None:
     # What was solved once is one object, and says the same.
     beside.start = lambda: None
     beside.begin = _keeping(_drawn, lambda *given, **how: json.dumps([*given, how]))
-    writing.text_of = _keeping(writing.text_of, id)
+    document.to_document = result.to_document = _keeping(document.to_document, id)
     files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
 
     def samples_key(solver: Any, values: Any) -> tuple[object, ...]:
@@ -179,7 +179,7 @@ def _keep_answers() -> None:
     design.uniforms = _keeping(design.uniforms, lambda *given: repr(given))
     study.read_inputs = _keeping(study.read_inputs, inputs_key)
     # Statistics resample a thousand times.
-    for module, names in ((study, ("summary", "shares")), (omegas, ("summary", "exceedance"))):
+    for module, names in ((study, ("summary", "shares")), (statistics, ("summary", "exceedance"))):
         for name in names:
             setattr(module, name, _keeping(getattr(module, name), array_key))
 

@@ -10,9 +10,8 @@ import typer
 
 from loadshare.cli.cases import find_cases, open_case
 from loadshare.cli.console import say
-from loadshare.cli.everywhere import Json
 from loadshare.cli.exits import UNUSABLE, fail
-from loadshare.cli.options import CasePaths, Changes
+from loadshare.cli.options import CasePaths, Changes, Json
 from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError, Problem, ResultError
 from loadshare.json_text import json_text

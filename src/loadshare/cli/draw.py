@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from loadshare.cli.cases import open_case, read_changes
-from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
+from loadshare.cli.exits import fail_of, reporting_problems
 from loadshare.cli.forms import Output, outputs, write_all
 from loadshare.cli.options import CaseFile, Changes
 from loadshare.errors import CaseError, Problem
-from loadshare.report.numbers import counted
 
 if TYPE_CHECKING:
     from loadshare.report.figure import Figure
@@ -38,8 +37,7 @@ def draw(
     makers = {form: partial(figure.content, form) for form in FORMS}
     write_all(file or [Output("svg", Path("drawing.svg"))], makers, err=False)
     if problems:
-        summary = f"{counted(len(problems), 'problem')}; the drawing shows what could be read."
-        fail([*map(str, problems), summary], UNUSABLE)
+        fail_of(problems, "; the drawing shows what could be read.")
 
 
 def _drawn(file: Path, settings: Sequence[str]) -> tuple[Figure, list[Problem]]:

@@ -10,13 +10,12 @@ import typer
 
 from loadshare.cli.cases import open_case
 from loadshare.cli.console import say
-from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems, writing
+from loadshare.cli.exits import REFUSED, fail, fail_of, reporting_problems, writing
 from loadshare.cli.files import keep_inputs, save_text, tell_written
 from loadshare.cli.forms import check_case_file
 from loadshare.cli.options import CaseFile, Changes, Force, output
 from loadshare.input import real
 from loadshare.output import STANDARD, write_whole
-from loadshare.report.numbers import counted
 
 
 def import_machine(
@@ -40,9 +39,7 @@ def import_machine(
 
     known = real(unit) if unit.is_dir() else unit
     target = to or Path(known.name or "case").with_suffix(".toml")
-    check_case_file(target)
-    if target != STANDARD and target.exists() and not force:
-        fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
+    check_case_file(target, force)
     keep_inputs([unit])
     with reporting_problems():
         imported = import_tables(unit) if is_spreadsheet(unit) else import_rexs(unit)
@@ -56,8 +53,7 @@ def import_machine(
         imported.case(str(target))
     except CaseError as error:
         tell_written(target, ". It is no case yet:", err=True)
-        problems = [str(problem) for problem in error.problems]
-        fail([*problems, f"{counted(len(problems), 'problem')}."], UNUSABLE)
+        fail_of(error.problems, ".")
     tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")
 
 

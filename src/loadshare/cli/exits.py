@@ -13,7 +13,7 @@ from typing import NoReturn
 import typer
 
 from loadshare.cli.waiting import echo
-from loadshare.errors import CaseError
+from loadshare.errors import CaseError, Problem
 from loadshare.output import NotWritten
 from loadshare.report.numbers import counted
 
@@ -41,14 +41,25 @@ def fail(lines: Iterable[str], code: int) -> NoReturn:
     raise typer.Exit(code)
 
 
+def fail_of(problems: Iterable[Problem], more: str) -> NoReturn:
+    """Write problems to stderr, one per line, and their count with more words last.
+
+    Raises
+    ------
+    typer.Exit
+        Always.
+    """
+    lines = list(map(str, problems))
+    fail([*lines, f"{counted(len(lines), 'problem')}{more}"], UNUSABLE)
+
+
 @contextmanager
 def reporting_problems() -> Iterator[None]:
     """Turn an invalid case into its list of problems, one per line and their count last."""
     try:
         yield
     except CaseError as error:
-        lines = [str(problem) for problem in error.problems]
-        fail([*lines, f"{counted(len(lines), 'problem')}; nothing was solved."], UNUSABLE)
+        fail_of(error.problems, "; nothing was solved.")
 
 
 @contextmanager

@@ -103,18 +103,22 @@ def read_output(text: str, forms: Sequence[str]) -> Output:
     raise typer.BadParameter(f"{text}: {wrong}. This command writes {can}{more}.")
 
 
-def check_case_file(file: Path) -> None:
-    """Refuse a name for a case that says it is something else.
+def check_case_file(file: Path, force: bool) -> None:
+    """Refuse a name for a case that says it is something else, or that of a file, unless forced.
 
     Raises
     ------
     typer.BadParameter
         If the ending is that of another form.
+    typer.Exit
+        If the file exists.
     """
     ending = file.suffix.lower().removeprefix(".")
     if ending in FORMS and ending != "toml":
         wrong = f"no {FORMS[ending]} comes of this command. This command writes .toml."
         raise typer.BadParameter(f"{file}: {wrong}", param_hint="--output")
+    if file != STANDARD and file.exists() and not force:
+        fail([f"{file}: exists already; --force overwrites it"], UNUSABLE)
 
 
 def _first(forms: Sequence[str]) -> str:

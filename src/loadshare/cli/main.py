@@ -22,12 +22,12 @@ from loadshare.cli.batch.command import batch
 from loadshare.cli.check import check
 from loadshare.cli.command import Command, Commands, Group
 from loadshare.cli.draw import draw
-from loadshare.cli.everywhere import taking
 from loadshare.cli.exchange import export, import_machine
 from loadshare.cli.exits import reporting_lack_of_room
 from loadshare.cli.explore import explore
 from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new, schema
+from loadshare.cli.options import taking
 from loadshare.cli.page import report
 from loadshare.cli.run import run
 from loadshare.cli.study.commands import (

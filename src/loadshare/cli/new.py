@@ -49,9 +49,7 @@ def new(
     if not title:
         raise typer.BadParameter("a case needs a name", param_hint="NAME")
     target = file or Path(name).with_name(f"{title}.toml")
-    check_case_file(target)
-    if target.exists() and not force:
-        fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
+    check_case_file(target, force)
     try:
         text = starter_case(title, kind) if example is None else example_text(example)
     except CaseError as error:

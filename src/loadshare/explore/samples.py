@@ -29,8 +29,7 @@ from loadshare.settings import EXPLORE, JOB, TOLERANCE
 from loadshare.study.parameter import Value, read_value
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.job import SAMPLES, known_job
-from loadshare.study.tolerance.omegas import apart_kinds, omega_statistics
-from loadshare.study.tolerance.result import OmegaStatistics
+from loadshare.study.tolerance.statistics import OmegaStatistics, apart_kinds, omega_statistics
 from loadshare.study.tolerance.study import requested_job
 
 SHOWN = "explorer"

@@ -9,7 +9,7 @@ either side (`loadshare.study.follow`). What cannot be proved is named.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path as FilePath
 
 from loadshare.case import Case
@@ -100,9 +100,7 @@ class Critical(Viewed):
     def to_dataframe(self) -> pd.DataFrame:
         """The events as a table, one row each, by the attributes of `Event`."""
         columns = [f.name for f in fields(Event)]
-        return pd.DataFrame(
-            [[getattr(e, c) for c in columns] for e in self.events], columns=columns
-        )
+        return pd.DataFrame(list(map(astuple, self.events)), columns=columns)
 
     def plot(self) -> Figure:
         """Picture of the events: an element in a row, the input along x."""

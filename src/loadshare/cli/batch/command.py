@@ -23,10 +23,9 @@ from loadshare.cli.batch.work import (
 )
 from loadshare.cli.cases import find_cases, read_changes
 from loadshare.cli.console import progress, say
-from loadshare.cli.everywhere import Json
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
 from loadshare.cli.files import write_document
-from loadshare.cli.options import CasePaths, Changes, Method, Solver, Tolerance
+from loadshare.cli.options import CasePaths, Changes, Json, Method, Solver, Tolerance
 from loadshare.cli.stop import Stop
 from loadshare.cli.waiting import echo
 from loadshare.errors import LoadshareError

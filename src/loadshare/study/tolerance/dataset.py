@@ -10,10 +10,10 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.libraries import xr
 from loadshare.settings import TOLERANCE
-from loadshare.study.tolerance.statistics import Estimate
+from loadshare.study.tolerance.statistics import Estimate, OmegaStatistics
 
 if TYPE_CHECKING:
-    from loadshare.study.tolerance.result import OmegaStatistics, Tolerance
+    from loadshare.study.tolerance.result import Tolerance
 
 
 def dataset(found: Tolerance) -> xr.Dataset:

@@ -15,37 +15,13 @@ from loadshare.pictures import Figure, picture
 from loadshare.study.tolerance.dataset import dataset as labelled
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.inputs import Inputs
-from loadshare.study.tolerance.statistics import Estimate, Share, Summary
+from loadshare.study.tolerance.statistics import OmegaStatistics, Summary
 from loadshare.study.tolerance.worst import WorstCase
 from loadshare.view import View, Viewed, figure, listed
 
 Over: TypeAlias = Literal["stage", "group"]
 OVERS: tuple[Over, ...] = get_args(Over)
 """Over whose mean torque Ω may be."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class OmegaStatistics:
-    """How the largest Ω of a stage scatters.
-
-    Attributes
-    ----------
-    over : {"stage", "group"}
-        Over whose mean torque Ω is.
-    stage : str
-        Stage, or "system".
-    summary : Summary
-    exceedance : Estimate or None
-        P(Ω > limit); None without a limit.
-    shares : tuple of Share
-        Shares of variance; empty if none were requested or Ω does not vary.
-    """
-
-    over: str
-    stage: str
-    summary: Summary
-    exceedance: Estimate | None
-    shares: tuple[Share, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

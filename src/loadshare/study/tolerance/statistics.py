@@ -1,10 +1,14 @@
-"""Moments, quantiles, probabilities and shares of variance, with their confidence intervals."""
+"""Moments, quantiles, probabilities and shares of variance, with their confidence intervals.
+
+How Ω scatters over samples: of every stage and of the system, over both means.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +16,7 @@ from numpy.typing import NDArray
 from loadshare.array_types import Array
 from loadshare.libraries import special, stats
 from loadshare.settings import TOLERANCE
+from loadshare.study.tolerance.figures import KINDS, SYSTEM
 
 ROUND_OFF = 1e-12
 """Deviation over the mean that is round-off."""
@@ -283,3 +288,67 @@ def _ratios(means: Array, units: int, still: float) -> tuple[Array, Array]:
     varies = variance > (0.5 * still) ** 2
     means, variance = means[:, varies], variance[varies]
     return means[4 : 4 + units] / variance, means[4 + units :] / variance
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OmegaStatistics:
+    """How the largest Ω of a stage scatters.
+
+    Attributes
+    ----------
+    over : {"stage", "group"}
+        Over whose mean torque Ω is.
+    stage : str
+        Stage, or "system".
+    summary : Summary
+    exceedance : Estimate or None
+        P(Ω > limit); None without a limit.
+    shares : tuple of Share
+        Shares of variance; empty if none were requested or Ω does not vary.
+    """
+
+    over: str
+    stage: str
+    summary: Summary
+    exceedance: Estimate | None
+    shares: tuple[Share, ...]
+
+
+Columns = Callable[[str], Array]
+"""Gives a column of the samples' figures by its name."""
+
+
+def omega_statistics(
+    column: Columns,
+    stages: Sequence[str],
+    levels: Sequence[float],
+    limit: float | None,
+    replicated: bool,
+) -> Iterator[OmegaStatistics]:
+    """Yield the statistics of Ω, without shares of variance, where any sample has it.
+
+    Parameters
+    ----------
+    column : callable
+        Figures by the name of their column, NaN where a sample has no answer.
+    stages : sequence of str
+        "system" among them.
+    levels : sequence of float
+        Of the quantiles.
+    limit : float or None
+    replicated : bool
+        As for `statistics.summary`.
+    """
+    for (kind, over), stage in product(KINDS.items(), stages):
+        values = column(f"{kind}.{stage}")
+        found = summary(values, levels, replicated)
+        if found is not None:
+            above = None if limit is None else exceedance(values, limit, replicated)
+            yield OmegaStatistics(over, stage, found, above, ())
+
+
+def apart_kinds(column: Columns) -> list[str]:
+    """Kinds of Ω that differ: where groups share alike, as without groups, both are one."""
+    one, other = (column(f"{kind}.{SYSTEM}") for kind in KINDS)
+    same = np.allclose(one, other, rtol=TOLERANCE.same, atol=0.0, equal_nan=True)
+    return list(KINDS)[:1] if same else list(KINDS)

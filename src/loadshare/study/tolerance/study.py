@@ -28,14 +28,17 @@ from loadshare.study.tolerance.folder import WORST as WORST_FILE
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.inputs import read_inputs
 from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
-from loadshare.study.tolerance.omegas import apart_kinds, omega_statistics
-from loadshare.study.tolerance.result import (
-    FloatStatistics,
-    OmegaStatistics,
-    Tolerance,
-)
+from loadshare.study.tolerance.result import FloatStatistics, Tolerance
 from loadshare.study.tolerance.resume import check_part
-from loadshare.study.tolerance.statistics import Share, Summary, shares, summary
+from loadshare.study.tolerance.statistics import (
+    OmegaStatistics,
+    Share,
+    Summary,
+    apart_kinds,
+    omega_statistics,
+    shares,
+    summary,
+)
 from loadshare.study.tolerance.temporary import TemporaryFolder
 from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
 from loadshare.train import build_train
