@@ -23,7 +23,8 @@ from loadshare.exchange.spreadsheet import (
     workbook_of,
     write_tables,
 )
-from loadshare.exchange.spreadsheet.exporting import case_tables
+from loadshare.exchange.spreadsheet.exporting import case_frames
+from loadshare.output import csv_of
 
 OPERATING = "key,value\ninput,a\noutput,b\ntorque [N*m],100\n"
 GEARS = "name,teeth,module [mm],centre [mm],Face width [mm]\na,20,2,0; 0,10\nb,40,2,60; 0,10\n"
@@ -53,8 +54,8 @@ def box(tmp_path):
 @pytest.mark.quick(10)
 def test_a_case_survives_its_tables(name, tmp_path) -> None:
     case = shipped(name)
-    for table, text in case_tables(case.to_dict()):
-        (tmp_path / f"{table}.csv").write_text(text, encoding="utf-8")
+    for table, frame in case_frames(case.to_dict()):
+        (tmp_path / f"{table}.csv").write_text(csv_of(frame), encoding="utf-8")
     again = import_tables(tmp_path).case()
     assert again == case
     assert again.hash == case.hash
@@ -180,7 +181,7 @@ def test_names_that_look_like_formulas_stay_names(box, tmp_path) -> None:
     data["gears"][name] = data["gears"].pop("a")
     data["operating"]["input"] = name
     data["meshes"] = {"m": {"driver": name, "driven": "b", **data["meshes"]["a-b"]}}
-    tables = dict(case_tables(data))
+    tables = {name: csv_of(frame) for name, frame in case_frames(data)}
     assert "\n'=1+1," in tables["gears"]
     cells = [
         cell for text in tables.values() for row in csv.reader(text.splitlines()) for cell in row
@@ -195,7 +196,7 @@ def test_what_cannot_stand_in_a_cell_is_not_written(box) -> None:
     data["meshes"] = {"m;n": {"driver": "a", "driven": "b", **data["meshes"]["a-b"]}}
     data["stages"] = {"I": {"meshes": ["m;n"]}}
     with pytest.raises(CaseError, match="cannot stand in a cell as it is"):
-        dict(case_tables(data))
+        dict(case_frames(data))
 
 
 def test_spaces_at_the_ends_of_a_title_are_named(box) -> None:

@@ -33,7 +33,8 @@ from tests.fuzz.mutations import (
 import loadshare as ls
 from benchmarks.limit import TooLong, limited
 from loadshare.cli.main import main
-from loadshare.exchange.spreadsheet.exporting import case_tables
+from loadshare.exchange.spreadsheet.exporting import case_frames
+from loadshare.output import csv_of
 from loadshare.settings import ALLOWED
 from loadshare.tooth.pair.file import load_pair
 
@@ -282,7 +283,7 @@ def _tables(random: Random, folder: Path) -> tuple[str, ...]:
     _, data = pick(random, plain_cases())
     box = folder / "box"
     box.mkdir()
-    tables = dict(case_tables(data))
+    tables = {name: csv_of(frame) for name, frame in case_frames(data)}
     damaged = pick(random, tuple(tables))
     for name, text in tables.items():
         content = text.encode()

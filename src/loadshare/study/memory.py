@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from itertools import combinations, islice, product
+from itertools import chain, combinations, islice, product
 
 import numpy as np
 
@@ -65,24 +65,21 @@ def stepped(train: Train, index: int) -> Answer:
     # A slip that stood at the end of its clearance mostly stays there.
     ends = [g for g, s in train.splines.items() if _at_end(s, train.slip[g])]
     follows = any(s.friction_force is None for s in train.splines.values())
-    for gears in (*_subsets(ends), ()):
-        steps = MARCH.quick if follows else math.inf
-        answer = _held(train, index, gears, islice(rungs(BACKEND), 1), steps)
-        if answer is not None:
-            return answer
+    sets, steps = (*_subsets(ends), ()), MARCH.quick if follows else math.inf
+    first = (_held(train, index, gears, islice(rungs(BACKEND), 1), steps) for gears in sets)
     # Where friction follows the torque, given bounds lead to those of the torques.
-    for other in (_followed,) if follows else (_all_but_free, _searched, _in_turn):
-        answer = other(train, index)
+    others = (_followed,) if follows else (_all_but_free, _searched, _in_turn)
+    for answer in chain(first, (other(train, index) for other in others)):
         if answer is not None:
             return answer
     try:
         return certified(train, index)
-    except Refused as refusal:
+    except Refused:
         for gears in _subsets(list(train.splines)):
             answer = _held(train, index, gears, rungs(BACKEND))
             if answer is not None:
                 return answer
-        raise refusal from None
+        raise
 
 
 def _followed(train: Train, index: int) -> Answer | None:

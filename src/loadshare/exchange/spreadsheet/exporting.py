@@ -96,8 +96,8 @@ def _cell(value: Any) -> str | float | None:
     return value if is_number else str(value)
 
 
-def case_tables(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Yield the tables of a case as CSV, with their names.
+def case_frames(data: Mapping[str, Any]) -> Iterator[tuple[str, pd.DataFrame]]:
+    """Yield the tables of a case as data frames of texts, with their names.
 
     Parameters
     ----------
@@ -109,12 +109,6 @@ def case_tables(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     CaseError
         As `export_tables`.
     """
-    for name, frame in case_frames(data):
-        yield name, csv_of(frame)
-
-
-def case_frames(data: Mapping[str, Any]) -> Iterator[tuple[str, pd.DataFrame]]:
-    """Yield the tables of `case_tables` as data frames of texts."""
     about = {key: value for key, value in data.items() if not isinstance(value, Mapping)}
     for name in (ABOUT, *Content.model_fields):
         value = about if name == ABOUT else data.get(name)
