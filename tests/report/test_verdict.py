@@ -10,9 +10,12 @@ import pytest
 from tests.support import shipped
 
 import loadshare as ls
+from loadshare.certify import FloatState
+from loadshare.certify.floats import Touch
 from loadshare.report import records
 from loadshare.report.flanks import carrying, reaction_size
 from loadshare.report.verdict import largest_forces, measure_of, sharing
+from loadshare.report.words import rest_lines
 from loadshare.results.share import load_factors
 
 
@@ -94,3 +97,27 @@ def test_a_load_is_that_of_its_position(all_elements):
     assert {row["torque at"].text for row in rows} | {row["bearing at"].text for row in rows} > {
         "–"
     }
+
+
+@pytest.mark.parametrize(("force", "told"), [(1e-5, False), (1.0, True)])
+def test_a_reaction_that_is_as_good_as_none_is_not_told_beside_a_margin(force, told):
+    """A margin of a float that is inside elsewhere is no bound of its reaction."""
+    ways = [("inside", 2e-6, 0.0), ("on boundary", 0.0, force)]
+    rests = [
+        FloatState(
+            gear="4",
+            state=state,
+            boundary=None,
+            margin=margin,
+            normal=None,
+            reaction=(push, 0.0),
+            boundaries=(Touch("ring 4: upper stop", margin, push, (1.0, 0.0), margin == 0.0),),
+            spline=None,
+            spline_force=0.0,
+            friction=None,
+        )
+        for state, margin, push in ways
+    ]
+    lines = rest_lines(rests, [1, 2], least=1e-3)
+    assert any(line.startswith("least margin inside 2 µm") for line in lines)
+    assert any(line.startswith("reaction up to") for line in lines) is told

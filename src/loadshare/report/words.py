@@ -55,8 +55,7 @@ def rest_lines(
             lines.append(f"and {len(where) - 3} other ways")
     margins = [r.margin for r in rests if r.state == "inside" and r.margin is not None]
     if margins:
-        least = min(margins)
-        lines.append(f"least margin inside {read_best(least, 'm', 3)}")
+        lines.append(f"least margin inside {read_best(min(margins), 'm', 3)}")
     forces = [math.hypot(*rest.reaction) for rest in rests]
     most = max(forces)
     if most > least and len(rests) > 1 and most - min(forces) > 1e-6 * most:
