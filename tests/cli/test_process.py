@@ -57,7 +57,7 @@ def test_a_check_and_a_run_import_only_what_they_use(environment, cases):
 @pytest.mark.slow
 def test_a_drawing_solves_nothing(environment, cases, tmp_path):
     words = ["draw", cases / "fgfbstts/limit_ring.toml", "-o", tmp_path / "drawing.svg"]
-    assert imported(words, environment) == {"numpy", "altair", "vl_convert"}
+    assert imported(words, environment) == {"numpy", "vl_convert"}
 
 
 def test_a_pipe_gets_plain_text(process, cases):
