@@ -202,7 +202,7 @@ def test_what_cannot_stand_in_a_cell_is_not_written(box) -> None:
 def test_spaces_at_the_ends_of_a_title_are_named(box) -> None:
     data = import_tables(box()).case().to_dict() | {"title": "A box, which one? "}
     with pytest.raises(CaseError, match="A cell loses the spaces at its ends"):
-        dict(case_tables(data))
+        dict(case_frames(data))
 
 
 def test_the_command_writes_tables_that_the_command_reads(tmp_path) -> None:
