@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import re
 import struct
+import subprocess
+import sys
 
 import pytest
 
@@ -114,3 +116,27 @@ def test_an_altair_chart_keeps_its_rows_and_its_selection_beside_a_picture(pictu
         params = both.get("params") or both["hconcat"][1]["params"]
         assert params[0]["bind"] == "scales"
         assert "<svg" in (figure | drawn).to_svg()
+
+
+@pytest.mark.parametrize("more", ["", "print(type(beside.begin('', None).exception()).__name__)"])
+def test_what_is_interrupted_as_the_thread_of_pictures_starts_comes_to_its_end(more):
+    # Ctrl-C is met where the main thread waits for the new one to run. The pool does not know that
+    # one yet, and the interpreter would wait for it. What begins afterwards has another.
+    script = f"""
+import threading
+from loadshare.report import beside
+begun = threading.Thread.start
+def start(thread):
+    begun(thread)
+    raise KeyboardInterrupt
+threading.Thread.start = start
+try:
+    beside.begin("", None)
+except KeyboardInterrupt:
+    threading.Thread.start = begun
+    {more}
+"""
+    words = [sys.executable, "-c", script]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=30, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ("AttributeError\n" if more else "")

@@ -20,7 +20,15 @@ def start() -> None:
 
 def begin(conversion: str, what: object, **settings: Any) -> Future[Any]:
     """Begin a conversion, by the name of vl-convert, of a specification or of SVG."""
-    return _thread().submit(_convert, conversion, what, settings)
+    thread = _thread()
+    try:
+        return thread.submit(_convert, conversion, what, settings)
+    except BaseException:
+        # Interrupted while the thread starts, it is one that the pool does not know of and never
+        # ends; the interpreter, which does know, would wait for it.
+        thread.shutdown(wait=False)
+        _thread.cache_clear()
+        raise
 
 
 def _convert(conversion: str, what: object, settings: dict[str, Any]) -> Any:
