@@ -14,8 +14,11 @@ import pytest
 
 import loadshare as ls
 from loadshare.cli.batch import work as pool
-from loadshare.cli.batch.work import result_names
+from loadshare.cli.batch.work import engine_for, result_names
+from loadshare.job import engines
 from loadshare.lock import alone_in
+from loadshare.settings import JOB
+from loadshare.solver.hot import compiled, vectorised
 
 
 @pytest.fixture
@@ -29,6 +32,30 @@ def summary(folder):
 
 def outcomes(folder):
     return {case["name"]: case["outcome"] for case in summary(folder)["cases"]}
+
+
+def test_no_digit_of_a_result_hangs_on_what_its_process_has_solved_before(
+    command, star, tmp_path, monkeypatch
+):
+    # Engines round differently, and a process that has compiled code at hand prefers it. Which
+    # cases come before a case depends on the number of processes and on interruptions.
+    used = []
+
+    def settle(*given, **more):
+        used.append(given)
+        return vectorised.settle(*given, **more)
+
+    monkeypatch.setattr(engines, "loaded", lambda: True)
+    monkeypatch.setattr(compiled, "settle", settle)
+    ls.solve(star / "floating_sun_3.toml")
+    assert used
+    used.clear()
+    assert command("batch", star, "-o", tmp_path, "-j", "1").exit_code == 0
+    assert not used
+    # Compiled code is for so many cases that they are worth reading it, and then for all of them.
+    monkeypatch.setattr(engines, "at_hand", lambda: True)
+    assert engine_for(JOB.few) == "vectorised"
+    assert engine_for(JOB.few + 1) == "compiled"
 
 
 def test_a_folder_of_cases_gives_a_result_each(command, star, tmp_path):

@@ -39,6 +39,8 @@ class Task:
     target : Path
         Result file.
     solver, method : str
+    engine : str
+        See `engine_for`.
     tolerance : float
     force : bool
         Solve even if the result is there already.
@@ -51,6 +53,7 @@ class Task:
     target: Path
     solver: str
     method: str
+    engine: str
     tolerance: float
     force: bool
     changes: dict[str, Any]
@@ -128,7 +131,13 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
         kept, notes = (None, ()) if task.force else _kept(task, case)
         if kept is not None:
             return "kept", kept, _warnings(kept)
-        result = solve(case, solver=task.solver, method=task.method, tolerance=task.tolerance)
+        result = solve(
+            case,
+            solver=task.solver,
+            method=task.method,
+            tolerance=task.tolerance,
+            engine=task.engine,
+        )
     except CaseError as error:
         return "invalid", None, tuple(map(str, error.problems))
     except Refused as refusal:
@@ -210,6 +219,22 @@ def result_names(cases: Sequence[Path]) -> list[str]:
         taken.add(name.casefold())
         names.append(name)
     return names
+
+
+def engine_for(count: int) -> str:
+    """Name the engine that solves all cases of a batch.
+
+    Left to itself, a process takes the compiled one once it has solved enough: the last digits of
+    a result would hang on what was solved before it, and change where a batch is taken up again.
+    """
+    from loadshare.settings import JOB
+
+    if count <= JOB.few:
+        # As `chosen` has it, whose modules take longer to load than a small batch to begin.
+        return "vectorised"
+    from loadshare.job.engines import chosen
+
+    return chosen(count)
 
 
 def outcomes(tasks: Sequence[Task], jobs: int, stopped: Callable[[], bool]) -> Iterator[Outcome]:
