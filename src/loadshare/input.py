@@ -38,6 +38,15 @@ def read_file(path: Path, most: int) -> bytes:
     return content
 
 
+def stem(path: Path) -> str:
+    """Return what a file gives its name to: without its ending, and as text that can be written.
+
+    A name may have bytes that are no UTF-8, as of a file from an old archive; each is a question
+    mark, as on the screen.
+    """
+    return path.stem.encode(errors="replace").decode()
+
+
 def real(path: Path) -> Path:
     """Return a path without links; one that leads around in a circle unchanged.
 

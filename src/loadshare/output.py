@@ -18,7 +18,7 @@ STANDARD = Path("-")
 """Means standard output."""
 
 LONG = 100
-"""Letters of a name that the temporary file has as well; file systems allow some 250 bytes."""
+"""Bytes of a name that the temporary file has as well; file systems allow some 250."""
 
 
 class Closed(TextIOWrapper):
@@ -51,13 +51,18 @@ def write_whole(path: Path, content: str | bytes) -> None:
     NotWritten
         If it cannot be written; what was there before is left as it was.
     """
-    held = content.encode() if isinstance(content, str) else content
+    held = _encoded(content) if isinstance(content, str) else content
     with _naming(path):
         if path == STANDARD:
             _print(held)
             return
         with _staged(path, held) as put:
             put()
+
+
+def _encoded(text: str) -> bytes:
+    # What names of files hold that is no UTF-8 is a question mark, as on the screen.
+    return text.encode(errors="replace")
 
 
 def write_together(contents: Mapping[Path, str], without: Iterable[Path], last: Path) -> None:
@@ -86,7 +91,7 @@ def write_together(contents: Mapping[Path, str], without: Iterable[Path], last: 
         puts = {}
         for path, content in contents.items():
             with _naming(path):
-                puts[path] = stack.enter_context(_staged(path, content.encode()))
+                puts[path] = stack.enter_context(_staged(path, _encoded(content)))
         with _naming(last):
             _remove(Path(os.path.realpath(last)))
         for path in without:
@@ -154,7 +159,7 @@ def _staged(path: Path, content: bytes) -> Iterator[Callable[[], None]]:
     place = Path(os.path.realpath(path))
     make_folder(place.parent)
     with _held(place.parent):
-        temporary = place.with_name(f".{place.name[:LONG]}.{os.urandom(8).hex()}")
+        temporary = place.with_name(f".{_begin(place.name)}.{os.urandom(8).hex()}")
 
         def put() -> None:
             temporary.replace(place)
@@ -171,6 +176,11 @@ def _staged(path: Path, content: bytes) -> Iterator[Callable[[], None]]:
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
             raise
+
+
+def _begin(name: str) -> str:
+    """Return as much of a name as the temporary file has, in whole letters."""
+    return name.encode(errors="replace")[:LONG].decode(errors="ignore")
 
 
 def make_folder(folder: Path) -> None:
@@ -193,7 +203,7 @@ def clear(files: Iterable[Path]) -> None:
     """
     names: dict[Path, set[str]] = {}
     for file in files:
-        names.setdefault(file.parent, set()).add(file.name[:LONG])
+        names.setdefault(file.parent, set()).add(_begin(file.name))
     for folder, known in names.items():
         with _held(folder, alone=True) as is_alone:
             if is_alone:

@@ -57,6 +57,40 @@ def test_what_a_killed_process_left_is_cleared(tmp_path):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="no locks of folders on this system")
+def test_a_name_of_wide_letters_may_be_as_long_as_the_file_system_has_it(tmp_path):
+    # Each of these letters is three bytes, and file systems allow 255.
+    file = tmp_path / f"{80 * '歯'}.toml"
+    write_whole(file, "one")
+    assert file.read_text() == "one"
+    cut = 33 * "歯"
+    (tmp_path / f".{cut}.0123456789abcdef").touch()
+    clear([file])
+    assert [one.name for one in tmp_path.iterdir()] == [file.name]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files are texts there")
+def test_a_case_whose_name_is_no_text_is_solved_and_written_with_question_marks(
+    tmp_path, monkeypatch
+):
+    # As archives have it that were packed where letters have another code.
+    monkeypatch.chdir(tmp_path)
+    name = os.fsdecode(b"pr\xfcfstand.toml")
+    Path(name).write_bytes(CASE.read_bytes())
+    files = [f"found.{form}" for form in ("json", "nc", "xlsx", "toml")]
+    # Quiet: what stands for a screen here shows no question mark.
+    done = call("run", name, "-q", *(word for file in files for word in ("-o", file)))
+    assert done.exit_code == 0
+    for file in files[:2]:
+        result = ls.load_result(file)
+        assert result.stamp.case == "pr?fstand"
+        assert result == ls.solve(name)
+    for outcome in ("certified", "kept"):
+        assert call("batch", name, "-o", "out", "-j", "1", "-q").exit_code == 0
+        (of_case,) = json.loads(Path("out/summary.json").read_text(encoding="utf-8"))["cases"]
+        assert (of_case["name"], of_case["outcome"]) == ("pr?fstand", outcome)
+    assert {file.name for file in Path("out").iterdir()} == {f"{name[:-5]}.json", "summary.json"}
+
+
 def test_what_another_is_writing_is_left_alone(tmp_path, monkeypatch):
     """Both write the same file: each has its own next to it until it is whole."""
     file = tmp_path / "file.txt"

@@ -23,7 +23,7 @@ from loadshare.case.recognise import KINDS, near_names, what_folder_is, what_is
 from loadshare.case.revise import change, revise, still_assumed
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
-from loadshare.input import Unreadable, read_file, real
+from loadshare.input import Unreadable, read_file, real, stem
 from loadshare.outside import OUTSIDE
 from loadshare.settings import ALLOWED
 
@@ -84,7 +84,7 @@ def load_case(
     path = FilePath(path)
     data, origin, problems = _changed(path, _origin(path, allow_outside), changes)
     try:
-        case = Case(data, name=path.stem, origin=origin)
+        case = Case(data, name=stem(path), origin=origin)
     except CaseError as error:
         raise CaseError((*problems, *error.problems)) from None
     if problems:

@@ -28,6 +28,7 @@ from loadshare.exchange.rexs.meshing import first_number, meshes_of, stages_of
 from loadshare.exchange.rexs.model import BEARINGS, COUPLINGS, GEARS, READ, Component
 from loadshare.exchange.rexs.quantities import torque_of
 from loadshare.exchange.rexs.reading import read_model
+from loadshare.input import stem
 
 ON_AXIS = 1e-6
 """How far from the axis of its shaft a gear may be unreported [m]."""
@@ -92,7 +93,7 @@ class _Importer:
         for name in self.links.held:
             gears[name]["held"] = True
         data: Data = {
-            "title": f"{self.path.stem}, from REXS {self.of.model.version}",
+            "title": f"{stem(self.path)}, from REXS {self.of.model.version}",
             "source": f"REXS file {self.path.name}",
             "notes": "; ".join(self._name_notes()),
             "operating": {

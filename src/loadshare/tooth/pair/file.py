@@ -19,6 +19,7 @@ from loadshare.case.recognise import TAKEN_BY, is_case
 from loadshare.case.translate import translate
 from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
+from loadshare.input import stem
 from loadshare.one_thread import one_thread
 from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
@@ -218,7 +219,7 @@ def load_pair(path: str | Path) -> PairFile:
         geometry = built(content)
     except CaseError as error:
         raise CaseError([_placed(problem, data, origin) for problem in error.problems]) from None
-    return PairFile(path.stem, content, geometry)
+    return PairFile(stem(path), content, geometry)
 
 
 def _content(
