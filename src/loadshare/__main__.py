@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import gc
+import signal
 import sys
 
 KEPT = 200_000
 """Objects after which cycles among them are looked for: more than a short command makes. What it
 imports and reads stays to its end, and looking through it takes a tenth of its time."""
+
+STOPPED = (130, 143)
+"""Exit codes of `loadshare.cli.exits`, which is not loaded to end: interrupted, and terminated."""
 
 
 def main() -> None:
@@ -26,6 +30,13 @@ def main() -> None:
         run()
     except KeyboardInterrupt:
         sys.exit(130)
+    except SystemExit as end:
+        if end.code in STOPPED:
+            # Python hands signals back to the system before its very end; whoever presses Ctrl-C
+            # again would have it end by that one, without its exit code.
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, signal.SIG_IGN)
+        raise
 
 
 if __name__ == "__main__":

@@ -12,7 +12,10 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
+
+from loadshare.errors import LoadshareError
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -55,6 +58,8 @@ def side_by_side(
 
     Raises
     ------
+    LoadshareError
+        If the folder in which this process works is gone, without which none can be started.
     Exception
         What `work` raises. Processes that are at work then, or when the caller asks for no more or
         is interrupted, are killed.
@@ -63,6 +68,11 @@ def side_by_side(
 
     from loky import BrokenProcessPool
 
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        message = "the current folder is gone, and processes are started in one; change to another"
+        raise LoadshareError(message) from None
     waiting = deque((item, False) for item in items)
     crew = [Worker() for _ in range(min(workers, len(waiting)))]
     free = list(crew)

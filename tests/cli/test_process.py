@@ -149,6 +149,26 @@ main(["run", {str(cases / "fgfbstts/base.toml")!r}])
     assert done.stderr.endswith("ZeroDivisionError: a bug\n")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize("code", [130, 143])
+@pytest.mark.parametrize("number", ["SIGINT", "SIGTERM"])
+def test_a_signal_at_the_very_end_of_a_stopped_command_leaves_its_code(code, number):
+    # What modules hold goes when Python has handed signals back already.
+    script = f"""
+import os, signal, sys
+from loadshare import __main__
+from loadshare.cli import main
+class Last:
+    def __del__(self, kill=os.kill, own=os.getpid(), number=signal.{number}):
+        kill(own, number)
+kept = Last()
+main.main = lambda: sys.exit({code})
+__main__.main()
+"""
+    done = subprocess.run([sys.executable, "-c", script], check=False)
+    assert done.returncode == code
+
+
 INTERRUPTED = """
 import sys
 from loadshare.cli.stop import Stop

@@ -10,12 +10,23 @@ import time
 import psutil
 import pytest
 
+from loadshare.errors import LoadshareError
 from loadshare.processes import side_by_side
 
 
 def test_every_item_is_done_once():
     assert sorted(side_by_side(lambda n: n * n, range(7), 2)) == [(n, n * n) for n in range(7)]
     assert list(side_by_side(abs, [], 2)) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a folder in use stays there")
+def test_without_a_current_folder_no_process_can_be_started_and_that_is_said(tmp_path, monkeypatch):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    with pytest.raises(LoadshareError, match="the current folder is gone"):
+        list(side_by_side(abs, [1], 2))
 
 
 def test_only_what_kills_its_process_is_lost():
