@@ -27,6 +27,8 @@ def read_file(path: Path, most: int) -> bytes:
     Unreadable
         If it is no regular file, or larger.
     """
+    if "\0" in str(path):
+        raise Unreadable("has a name that no file can have")
     with open(path, "rb", opener=_without_waiting) as file:
         known = os.fstat(file.fileno())
         if not stat.S_ISREG(known.st_mode):

@@ -197,6 +197,10 @@ def test_what_is_no_file(tmp_path):
             load_case(path)
     with pytest.raises(ls.CaseError, match="is a folder; name a case in it"):
         load_case(tmp_path)
+    with pytest.raises(ls.CaseError, match="has a name that no file can have"):
+        load_case(f"{tmp_path}/a\0.toml")
+    with pytest.raises(ls.ResultError, match="has a name that no file can have"):
+        ls.load_result(f"{tmp_path}/a\0.json")
 
 
 def test_a_long_chain(tmp_path):

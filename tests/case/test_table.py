@@ -29,7 +29,7 @@ def test_tables_of_a_result_refuse_to_be_changed(case: ls.Case) -> None:
     result = ls.solve(case, positions=[1])
     position = result.positions[0]
     tables = (
-        *(result.omega, result.pair_omega, result.stages, result.frames),
+        *(result.omega, result.pair_omega, result.stages, result.frames, result.laws),
         *(position.torque, position.share, position.displacement, position.claim.flank_force),
     )
     for table in (*tables, position.floats):
@@ -37,6 +37,23 @@ def test_tables_of_a_result_refuse_to_be_changed(case: ls.Case) -> None:
             table["4"] = None  # type: ignore[index]
     for copied in (copy.copy(result), copy.deepcopy(result)):
         assert copied == result
+
+
+def test_the_copy_that_pydantic_makes_is_none_with_changes(case: ls.Case) -> None:
+    # It had the hash of the case before: a file of its result was refused when it was read.
+    assert case.model_copy() == case.model_copy(deep=True) == case
+    with pytest.raises(TypeError, match=r"Case\.replace"):
+        case.model_copy(update={"title": 3})
+
+
+def test_arrays_of_a_study_are_a_copy_to_add_to_that_cannot_be_written_to(case: ls.Case) -> None:
+    found = ls.sweep(case, {"rings.*.float": ["2 um", "4 um"]}, positions=[1])
+    for study in (found, ls.sensitivity(case, "rings.4.float", positions=[1])):
+        arrays = study.dataset
+        with pytest.raises(ValueError, match="read-only"):
+            arrays["torque"] *= 1e-3
+        arrays["mine"] = arrays["torque"] / 2.0
+        assert "mine" not in study.dataset
 
 
 def test_copies_are_cases_too(case: ls.Case) -> None:

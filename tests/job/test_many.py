@@ -344,6 +344,8 @@ def test_what_is_not_there_is_reported():
     case = shipped(LIMIT_RING)
     with pytest.raises(ValueError, match=r"no variable torques; allowed: torque, share"):
         ls.solve_many(case, RINGS, keep=["torques"])
+    with pytest.raises(ValueError, match=r"no variable 1; allowed: torque, share"):
+        ls.solve_many(case, RINGS, keep=[1])
     with pytest.raises(ValueError, match="positions 9: this case has positions 1 to 5"):
         ls.solve_many(case, RINGS, positions=[9])
     with pytest.raises(ValueError, match="unknown engine 'fast'"):

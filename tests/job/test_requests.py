@@ -1,6 +1,7 @@
 """What may be requested: a tolerance that certifies something, and positions that exist."""
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -43,6 +44,12 @@ SAMPLES = {"rings.4.float [um]": [4.0]}
 def test_a_tolerance_that_certifies_nothing_is_refused(ask, tolerance):
     with pytest.raises(ValueError, match=r"allowed: a number above 0 and up to 0\.001"):
         ask(shipped("fgfbstts/limit_ring"), tolerance)
+
+
+@pytest.mark.parametrize("given", [10**400, Fraction(1, 10**400)], ids=["large", "small"])
+def test_a_tolerance_that_no_double_holds_is_none(given):
+    with pytest.raises(ValueError, match="cannot be certified by"):
+        checked_tolerance(given)
 
 
 def test_any_other_tolerance_is_taken():

@@ -213,3 +213,8 @@ def test_values_take_the_first_unit():
 
 def test_signs_in_quotes_do_not_split():
     assert split_outside('meshes."a=b".gap=x = 1', "=") == ['meshes."a=b".gap', "x", "1"]
+
+
+def test_what_is_no_mapping_of_inputs_is_told_what_is():
+    with pytest.raises(TypeError, match=r"inputs by key path are wanted, .* not str"):
+        ls.sweep(shipped("fgfbstts/limit_ring"), "rings.4.float")  # type: ignore[arg-type]

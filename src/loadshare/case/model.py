@@ -7,7 +7,7 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import PrivateAttr
 
@@ -167,6 +167,18 @@ class Case(Content):
         changed = type(self).__new__(type(self))
         changed._take(data, origin, self._name, self)
         return changed
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy, as pydantic does; what is to be changed in it, `replace` changes.
+
+        Raises
+        ------
+        TypeError
+            If there is something: it would be checked by nobody, and written to no file.
+        """
+        if update:
+            raise TypeError("cases do not change: Case.replace makes one of other values")
+        return super().model_copy(deep=deep)
 
     def differences(self, before: Case) -> Iterator[tuple[Path, Any, Any]]:
         """Yield where the case differs from another: the key, and its value in both.

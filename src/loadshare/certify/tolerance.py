@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from contextlib import suppress
 from numbers import Real
 
 from loadshare.settings import CERTIFY
@@ -22,9 +22,10 @@ def checked_tolerance(given: object) -> float:
         If it is no number above 0 and up to `CERTIFY.largest`.
     """
     if isinstance(given, Real) and not isinstance(given, bool):
-        value = float(given)
-        if math.isfinite(value) and 0.0 < value <= CERTIFY.largest:
-            return value
+        with suppress(OverflowError):
+            value = float(given)
+            if 0.0 < value <= CERTIFY.largest:
+                return value
     raise ValueError(
         f"tolerance {given!r} cannot be certified by; allowed: a number above 0 and up to "
         f"{CERTIFY.largest:g}, such as 1e-9"

@@ -50,7 +50,7 @@ def checked(names: Iterable[str]) -> tuple[str, ...]:
     names = (names,) if isinstance(names, str) else tuple(names)
     unknown = [name for name in names if name not in KEPT]
     if unknown:
-        raise ValueError(f"no variable {', '.join(unknown)}; allowed: {', '.join(KEPT)}")
+        raise ValueError(f"no variable {', '.join(map(str, unknown))}; allowed: {', '.join(KEPT)}")
     return names
 
 

@@ -103,6 +103,16 @@ VARIABLES = {
 """Every variable of a result, an attribute of `Figures`; samples and studies take theirs here."""
 
 
+def unchanging(arrays: xr.Dataset) -> xr.Dataset:
+    """Return labelled arrays whose variables can be written to no more.
+
+    Pictures and files are made from them, whatever a user does with a copy.
+    """
+    for variable in arrays.data_vars.values():
+        variable.values.flags.writeable = False
+    return arrays
+
+
 def dataset(result: Result) -> xr.Dataset:
     """Build the labelled arrays of a result.
 
@@ -118,10 +128,8 @@ def dataset(result: Result) -> xr.Dataset:
     names = {**positions[0].figures.names, "measure": measures}
     data = {}
     for name, variable in VARIABLES.items():
-        values = _stacked(result, name, names)
-        values.flags.writeable = False
-        data[name] = variable.labelled(values, "position")
-    return xr.Dataset(
+        data[name] = variable.labelled(_stacked(result, name, names), "position")
+    arrays = xr.Dataset(
         data,
         coords={"position": [p.position for p in positions], **names},
         attrs={
@@ -134,6 +142,7 @@ def dataset(result: Result) -> xr.Dataset:
             "tolerance": stamp.tolerance,
         },
     )
+    return unchanging(arrays)
 
 
 def _groups(result: Result) -> Iterator[tuple[Figures, list[int]]]:

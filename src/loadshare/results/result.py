@@ -340,7 +340,7 @@ class Result:
     @cached_property
     def laws(self) -> Mapping[str, LawUse]:
         """What the law of every mesh is from, and under which loads it was used."""
-        return laws_of(self.solved, [p.torque for p in self.positions])
+        return Table(laws_of(self.solved, [p.torque for p in self.positions]))
 
     @property
     def floats(self) -> tuple[Mapping[str, FloatState], ...]:

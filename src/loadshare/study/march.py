@@ -25,6 +25,7 @@ from loadshare.libraries import pd, xr
 from loadshare.one_thread import one_thread
 from loadshare.pictures import Figure, picture
 from loadshare.results import Result
+from loadshare.results.dataset import unchanging
 from loadshare.settings import CERTIFY, MARCH
 from loadshare.study.memory import stepped
 from loadshare.study.positions import BACKEND
@@ -89,7 +90,7 @@ class March(Viewed):
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The result's labelled arrays, with slips, dissipation and revolutions by position."""
-        return march_dataset(self)
+        return unchanging(march_dataset(self))
 
     def to_dataframe(self) -> pd.DataFrame:
         """Torques and coefficients, one row per step and mesh, with the revolutions."""

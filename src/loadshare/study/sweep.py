@@ -25,7 +25,7 @@ from loadshare.libraries import pd, xr
 from loadshare.output import csv_of, netcdf_of, write_whole
 from loadshare.pictures import Figure, picture
 from loadshare.results import Result
-from loadshare.results.dataset import with_units
+from loadshare.results.dataset import unchanging, with_units
 from loadshare.settings import ALLOWED
 from loadshare.study.parameter import (
     STUDY,
@@ -114,7 +114,7 @@ class Sweep(Viewed):
     @cached_property
     def dataset(self) -> xr.Dataset:
         """Everything found as labelled arrays: one dimension per parameter, then position."""
-        return sweep_dataset(self)
+        return unchanging(sweep_dataset(self))
 
     def largest(self, kind: str, point: int) -> dict[str, float | None]:
         """Return the largest Ω of every stage and of the system at a point, given by its number.
@@ -244,6 +244,8 @@ def sweep(
         If a key, its values, or the number of parameters cannot be used.
     ValueError
         If a position does not exist.
+    TypeError
+        If `parameters` is no mapping.
 
     Examples
     --------
@@ -253,6 +255,9 @@ def sweep(
     >>> found.dataset["pair_omega"].sel(stage="II").values.round(4).tolist()
     [1.0471, 1.0189, 1.0]
     """
+    if not isinstance(parameters, Mapping):
+        wanted = "inputs by key path are wanted, as in {'rings.4.float': '0 um:12 um:61'}"
+        raise TypeError(f"{wanted}, not {type(parameters).__name__}")
     case = loaded(case, map(named, parameters))
     if not 1 <= len(parameters) <= MOST:
         message = f"a sweep has 1 or {MOST} parameters, not {len(parameters)}"

@@ -195,7 +195,8 @@ def _with(part: Any, values: Mapping[Path, Any]) -> Any:
         named = {field.alias or name: name for name, field in type(part).model_fields.items()}
         names = {named[str(step)]: inner for step, inner in below.items()}
         changes = {name: _with(getattr(part, name), inner) for name, inner in names.items()}
-        return part.model_copy(update=changes)
+        # A case too, which by itself is changed by nobody unchecked.
+        return Element.model_copy(part, update=changes)
     if isinstance(part, Mapping):
         return {**part, **{step: _with(part[step], inner) for step, inner in below.items()}}
     return tuple(_with(v, below[k]) if k in below else v for k, v in enumerate(part))

@@ -9,7 +9,7 @@ from typing import ClassVar, Literal
 from loadshare.array_types import Array
 from loadshare.libraries import pd, xr
 from loadshare.pictures import Figure, picture
-from loadshare.results.dataset import with_units
+from loadshare.results.dataset import unchanging, with_units
 from loadshare.study.parameter import Value
 from loadshare.study.tables import sensitivity_dataset
 from loadshare.view import View, Viewed, listed
@@ -131,7 +131,7 @@ class Sensitivity(Viewed):
     @cached_property
     def dataset(self) -> xr.Dataset:
         """The derivatives as labelled arrays, per SI unit of the input."""
-        return sensitivity_dataset(self)
+        return unchanging(sensitivity_dataset(self))
 
     def to_dataframe(self) -> pd.DataFrame:
         """Derivatives of torques and shares with their stated errors, per SI unit of the input.

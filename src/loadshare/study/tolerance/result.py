@@ -12,6 +12,7 @@ from loadshare.case.words import count
 from loadshare.errors import LoadshareError
 from loadshare.libraries import pd, xr
 from loadshare.pictures import Figure, picture
+from loadshare.results.dataset import unchanging
 from loadshare.study.tolerance.dataset import dataset as labelled
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.inputs import Inputs
@@ -137,7 +138,7 @@ class Tolerance(Viewed):
     @cached_property
     def dataset(self) -> xr.Dataset:
         """Statistics of Ω as labelled arrays: over (over, stage), level, input, bin."""
-        return labelled(self)
+        return unchanging(labelled(self))
 
     def plot(self, stage: str = "system", over: Over = "stage") -> Figure:
         """Picture of how Ω of a stage scatters, and from which inputs it comes.
