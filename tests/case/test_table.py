@@ -46,14 +46,11 @@ def test_the_copy_that_pydantic_makes_is_none_with_changes(case: ls.Case) -> Non
         case.model_copy(update={"title": 3})
 
 
-def test_arrays_of_a_study_are_a_copy_to_add_to_that_cannot_be_written_to(case: ls.Case) -> None:
+def test_arrays_of_a_study_cannot_be_written_to(case: ls.Case) -> None:
     found = ls.sweep(case, {"rings.*.float": ["2 um", "4 um"]}, positions=[1])
     for study in (found, ls.sensitivity(case, "rings.4.float", positions=[1])):
-        arrays = study.dataset
         with pytest.raises(ValueError, match="read-only"):
-            arrays["torque"] *= 1e-3
-        arrays["mine"] = arrays["torque"] / 2.0
-        assert "mine" not in study.dataset
+            study.dataset["torque"].values[:] = 0.0
 
 
 def test_copies_are_cases_too(case: ls.Case) -> None:

@@ -106,7 +106,7 @@ VARIABLES = {
 def unchanging(arrays: xr.Dataset) -> xr.Dataset:
     """Return labelled arrays whose variables can be written to no more.
 
-    Pictures and files are made from them, whatever a user does with a copy.
+    Pictures and files are made from them.
     """
     for variable in arrays.data_vars.values():
         variable.values.flags.writeable = False
