@@ -157,15 +157,37 @@ def test_a_case_without_a_march_is_reported():
 def test_a_refused_step_leaves_those_before_it(monkeypatch):
     from loadshare.study import march as room
 
-    def fails(train, index):
+    def fails(train, index, ways):
         if index > 2:
             raise ls.Refused(f"position {index}: for the test")
-        return stepped(train, index)
+        return stepped(train, index, ways)
 
     monkeypatch.setattr(room, "stepped", fails)
     with pytest.raises(ls.Refused, match="position 3") as caught:
         ls.march(floating())
     assert [p.position for p in caught.value.partial.positions] == [1, 2]
+
+
+def test_what_solved_the_step_before_does_not_change_a_step(monkeypatch):
+    """It is tried first; each step is that which is found without it."""
+    from loadshare.study import march as room
+
+    rungs = []
+
+    def both(train, index, ways):
+        found = stepped(train, index, ways)
+        rungs.append(found.rung)
+        alone = stepped(train, index).equilibrium
+        scale = max(alone.flank_force.values())
+        for name, force in alone.flank_force.items():
+            assert abs(found.equilibrium.flank_force[name] - force) <= 1e-10 * scale
+        for name, place in alone.displacement.items():
+            assert np.allclose(found.equilibrium.displacement[name], place, rtol=0, atol=1e-12)
+        return found
+
+    monkeypatch.setattr(room, "stepped", both)
+    ls.march(CASES / "fgfbstts/all_elements.toml", steps=5)
+    assert any("friction followed" in rung for rung in rungs)
 
 
 def test_arrays_and_progress():

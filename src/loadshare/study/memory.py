@@ -10,9 +10,10 @@ given bounds lead to those that belong to the torques. The certificate judges it
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
-from itertools import chain, combinations, islice, product
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import combinations, islice, product
 
 import numpy as np
 
@@ -42,8 +43,27 @@ from loadshare.train.memory import SlipStop, slip_of
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
+_ENDLESS = math.inf, math.inf
+"""Newton steps in all, and for every plan, where neither has a limit."""
 
-def stepped(train: Train, index: int) -> Answer:
+
+@dataclass(slots=True)
+class Ways:
+    """What solved the step before, which is tried first at the next.
+
+    Attributes
+    ----------
+    held : dict of tuple of str to tuple of str
+        Gears whose slip was held, by those whose slip stood at an end.
+    bounds : dict of gear to float
+        Friction [N] that belonged to the torques, where it was found by way of fixed bounds.
+    """
+
+    held: dict[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
+    bounds: dict[str, float] = field(default_factory=dict)
+
+
+def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
     """Solve and certify a position of a train whose splines remember their slip.
 
     Parameters
@@ -52,6 +72,8 @@ def stepped(train: Train, index: int) -> Answer:
         One that remembers (`Train.remembering`).
     index : int
         1-based.
+    ways : Ways, optional
+        Of the step before, renewed.
 
     Raises
     ------
@@ -63,26 +85,35 @@ def stepped(train: Train, index: int) -> Answer:
         return certified(replace(train, slip=None), index)
     assert train.slip is not None
     # A slip that stood at the end of its clearance mostly stays there.
-    ends = [g for g, s in train.splines.items() if _at_end(s, train.slip[g])]
-    follows = any(s.friction_force is None for s in train.splines.values())
-    sets, steps = (*_subsets(ends), ()), MARCH.quick if follows else math.inf
-    first = (_held(train, index, gears, islice(rungs(BACKEND), 1), steps) for gears in sets)
+    ends = tuple(g for g, s in train.splines.items() if _at_end(s, train.slip[g]))
+    follows, ways = any(s.friction_force is None for s in train.splines.values()), ways or Ways()
     # Where friction follows the torque, given bounds lead to those of the torques.
-    others = (_followed,) if follows else (_all_but_free, _searched, _in_turn)
-    for answer in chain(first, (other(train, index) for other in others)):
+    if ways.bounds and (answer := _followed(train, index, ways)) is not None:
+        return answer
+    sets = sorted((*_subsets(ends), ()), key=lambda gears: gears != ways.held.get(ends))
+    # What a plan does not find soon, a wider one mostly does, or another set.
+    limits = ((MARCH.quick, math.inf),) if follows else ((math.inf, MARCH.quick_plan), _ENDLESS)
+    for (steps, each), gears in product(limits, sets):
+        answer = _held(train, index, gears, islice(rungs(BACKEND), 1), steps, (each,))
+        if answer is not None:
+            ways.held[ends] = gears
+            return answer
+    followed = partial(_followed, ways=ways)
+    for other in (followed,) if follows else (_all_but_free, _searched, _in_turn):
+        answer = other(train, index)
         if answer is not None:
             return answer
     try:
         return certified(train, index)
     except Refused:
-        for gears in _subsets(list(train.splines)):
+        for gears in _subsets([*train.splines]):
             answer = _held(train, index, gears, rungs(BACKEND))
             if answer is not None:
                 return answer
         raise
 
 
-def _followed(train: Train, index: int) -> Answer | None:
+def _followed(train: Train, index: int, ways: Ways) -> Answer | None:
     r"""Return a certified answer where friction follows the torque, by way of fixed bounds.
 
     With bounds F that are given the step is convex and its torques T are unique, so they depend on
@@ -92,11 +123,13 @@ def _followed(train: Train, index: int) -> Answer | None:
     gears = [g for g, s in train.splines.items() if s.friction_force is None]
     rate = np.array([train.splines[g].friction_per_torque for g in gears])
     drive = float(np.abs(situation_of(train, index).torque).max(initial=0.0))
-    bounds, inverse, least = np.zeros(len(gears)), np.eye(len(gears)), math.inf
+    bounds = np.array([ways.bounds.pop(g, 0.0) for g in gears])
+    inverse, least = np.eye(len(gears)), math.inf
     before: tuple[Array, Array] | None = None
     for _ in range(MARCH.passes):
         try:
-            answer = stepped(_bounded(train, dict(zip(gears, bounds.tolist(), strict=True))), index)
+            fixed = _bounded(train, dict(zip(gears, bounds.tolist(), strict=True)))
+            answer = stepped(fixed, index, ways)
         except Refused:
             return None
         found = answer.equilibrium
@@ -112,7 +145,10 @@ def _followed(train: Train, index: int) -> Answer | None:
             inverse = _broyden(inverse, bounds - before[0], off - before[1])
         before = bounds, off
         bounds = np.maximum(bounds + inverse @ off, 0.0)
-    return _judged(train, found, answer.record, f"{answer.rung}, friction followed")
+    judged = _judged(train, found, answer.record, f"{answer.rung}, friction followed")
+    if judged is not None:
+        ways.bounds.update(zip(gears, bounds.tolist(), strict=True))
+    return judged
 
 
 def _judged(train: Train, found: Equilibrium, record: Record, rung: str) -> Answer | None:
@@ -261,7 +297,7 @@ def _slip_at(spline: Spline, place: Vector, before: Vector) -> Vector:
     return np.asarray(slip)
 
 
-def _subsets(gears: list[str]) -> Iterator[tuple[str, ...]]:
+def _subsets(gears: Sequence[str]) -> Iterator[tuple[str, ...]]:
     """Yield all sets of gears but the empty one, the largest first."""
     for count in range(len(gears), 0, -1):
         yield from combinations(gears, count)
@@ -281,14 +317,16 @@ def _held(
     gears: tuple[str, ...],
     tries: Iterable[tuple[str, Options]],
     steps: float = math.inf,
+    plans: Sequence[float] = (MARCH.quick_plan, math.inf),
 ) -> Answer | None:
-    """Return a certified answer with the slip of some splines held, if there is one."""
+    """Return a certified answer with the slip of some splines held, if there is one.
+
+    Within so many Newton steps in all, and for every plan; with each of several limits of a plan.
+    """
     scene = whole = assemble(train, index)
     if gears:
         scene = _without_slip(whole, gears, _before(train))
-    # What a plan does not find soon, a wider one mostly does.
-    each = (math.inf,) if math.isfinite(steps) else (MARCH.quick_plan, math.inf)
-    for (rung, options), few in product(tries, each):
+    for (rung, options), few in product(tries, plans):
         known = Known(work=Work(steps), each=few)
         try:
             found, record = solve_scene(scene, options, known)
