@@ -52,10 +52,11 @@ def test_no_digit_of_a_result_hangs_on_what_its_process_has_solved_before(
     used.clear()
     assert command("batch", star, "-o", tmp_path, "-j", "1").exit_code == 0
     assert not used
-    # Compiled code is for so many cases that they are worth reading it, and then for all of them.
+    # Compiled code is for so many positions that they are worth reading it, and then for all.
     monkeypatch.setattr(engines, "at_hand", lambda: True)
-    assert engine_for(JOB.few) == "vectorised"
-    assert engine_for(JOB.few + 1) == "compiled"
+    case = ls.load_case(star / "floating_sun_3.toml").replace({"operating.positions": 10})
+    assert engine_for(case, JOB.few // 10) == "vectorised"
+    assert engine_for(case, JOB.few // 10 + 1) == "compiled"
 
 
 def test_a_folder_of_cases_gives_a_result_each(command, star, tmp_path):

@@ -79,9 +79,7 @@ def test_a_case_too_large_for_memory_costs_the_others_nothing(monkeypatch, tmp_p
         raise MemoryError("Unable to allocate 8.00 GiB")
 
     monkeypatch.setattr(pool, "_attempt", fails)
-    task = pool.Task(
-        RING, "ring", tmp_path / "ring.json", "auto", "newton", "auto", 1e-9, False, {}
-    )
+    task = pool.Task(RING, "ring", tmp_path / "ring.json", "auto", "newton", 1, 1e-9, False, {})
     found = pool.work(task)
     assert found.outcome == "crashed"
     assert found.messages[0].startswith(f"{MESSAGE} (Unable to allocate 8.00 GiB)")

@@ -18,7 +18,6 @@ from loadshare.cli.batch.work import (
     UNWRITTEN,
     Outcome,
     Task,
-    engine_for,
     outcomes,
     result_names,
 )
@@ -71,7 +70,7 @@ def batch(
         raise typer.BadParameter(message, param_hint="--output")
     changes = read_changes(change or ())
     found = find_cases(cases)
-    how = solver, method, engine_for(len(found)), tolerance, force, changes
+    how = solver, method, len(found), tolerance, force, changes
     tasks = [
         Task(case, name, folder / f"{name}.json", *how)
         for case, name in zip(found, result_names(found), strict=True)

@@ -39,8 +39,8 @@ class Task:
     target : Path
         Result file.
     solver, method : str
-    engine : str
-        See `engine_for`.
+    together : int
+        Cases of the batch; see `engine_for`.
     tolerance : float
     force : bool
         Solve even if the result is there already.
@@ -53,7 +53,7 @@ class Task:
     target: Path
     solver: str
     method: str
-    engine: str
+    together: int
     tolerance: float
     force: bool
     changes: dict[str, Any]
@@ -136,7 +136,7 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
             solver=task.solver,
             method=task.method,
             tolerance=task.tolerance,
-            engine=task.engine,
+            engine=engine_for(case, task.together),
         )
     except CaseError as error:
         return "invalid", None, tuple(map(str, error.problems))
@@ -221,20 +221,21 @@ def result_names(cases: Sequence[Path]) -> list[str]:
     return names
 
 
-def engine_for(count: int) -> str:
-    """Name the engine that solves all cases of a batch.
+def engine_for(case: Case, together: int) -> str:
+    """Name the engine that solves a case of a batch of so many.
 
     Left to itself, a process takes the compiled one once it has solved enough: the last digits of
     a result would hang on what was solved before it, and change where a batch is taken up again.
     """
     from loadshare.settings import JOB
 
-    if count <= JOB.few:
+    positions = case.operating.positions if case.march is None else case.march.steps
+    if positions * together <= JOB.few:
         # As `chosen` has it, whose modules take longer to load than a small batch to begin.
         return "vectorised"
     from loadshare.job.engines import chosen
 
-    return chosen(count)
+    return chosen(positions * together)
 
 
 def outcomes(tasks: Sequence[Task], jobs: int, stopped: Callable[[], bool]) -> Iterator[Outcome]:
