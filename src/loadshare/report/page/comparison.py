@@ -84,7 +84,7 @@ def _differing_figures(names: Sequence[str], results: Sequence[Result]) -> Table
     columns += [Column(against.format(name), True) for name in names[1:]]
     notes = [
         "The largest over the positions; changes are parts of the first case's figure. "
-        f" {len(shared) - len(rows)} other figures agree to round-off."
+        f"{len(shared) - len(rows)} other figures agree to round-off."
     ]
     return Table("Figures that differ", columns, [cells for _, _, cells in rows], notes)
 
