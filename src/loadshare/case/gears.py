@@ -446,6 +446,13 @@ class Gear(Element):
         )
 
     @property
+    def teeth_and_width(self) -> tuple[Tooth, float]:
+        """The teeth, and their face width [m], of a gear that says both."""
+        if self.tooth is None or self.face_width is None:
+            raise ValueError("a gear without teeth or face width")
+        return self.tooth, self.face_width.si
+
+    @property
     def rim_depth(self) -> float | None:
         """Thickness of an internal gear's body beyond its teeth [m], where anything tells it."""
         if self.rim is not None:

@@ -164,6 +164,21 @@ def covers(pattern: Path, path: Path) -> bool:
     )
 
 
+@lru_cache(maxsize=16)
+def unmatched(patterns: tuple[str, ...], known: tuple[Path, ...]) -> list[tuple[int, bool]]:
+    """Return the numbers of patterns that cover no key, and whether each is a key path at all."""
+    found = []
+    for number, pattern in enumerate(patterns):
+        try:
+            wanted = parse(pattern)
+        except ValueError:
+            found.append((number, False))
+        else:
+            if not any(covers(wanted, key) for key in known):
+                found.append((number, True))
+    return found
+
+
 def ends_of(name: str, gears: Iterable[str]) -> tuple[str, str] | None:
     """Return the two gears that a name a-b tells; a gear's own name may hold dashes.
 

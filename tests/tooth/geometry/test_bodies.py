@@ -12,7 +12,6 @@ from tests.tooth.geometry.samples import face_gear, face_pair, gear, pair
 from loadshare.tooth.cylindrical.body import HelicoidBody, root_curve
 from loadshare.tooth.face.body import FaceBody
 from loadshare.tooth.geometry.body import turned
-from loadshare.tooth.unloaded.positions import positions
 
 BODIES = [
     HelicoidBody(gear()),
@@ -122,7 +121,7 @@ def to_space(body, points, rotation):
 def test_contact_lines_lie_on_the_outlines(made):
     mesh = made()
     # Ties frames, rotations, tooth numbers, sides and flank coordinates together.
-    at = positions(mesh, [0.3], 7)[0]
+    at = mesh.positions([0.3], 7)[0]
     for line in at.lines:
         for body, rotation, uw, side, step, gap in (
             (mesh.driver, at.driver_rotation, line.driver_uw, 1, 1, 0.0),

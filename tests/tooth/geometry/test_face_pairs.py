@@ -19,13 +19,13 @@ from loadshare.tooth.face.flank import (
 )
 from loadshare.tooth.face.gear import FaceGear, Shaper
 from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
-from loadshare.tooth.unloaded.positions import positions, transmission_error
+from loadshare.tooth.unloaded.positions import transmission_error
 from loadshare.tooth.unloaded.touch import contact_points
 
 
 @pytest.mark.parametrize("angle", [90.0, 85.0])
 def test_pinion_like_the_shaper_touches_along_lines_without_error(angle):
-    for at in positions(face_pair(28, angle=angle), 5, 15):
+    for at in face_pair(28, angle=angle).positions(5, 15):
         assert abs(at.transmission_error) < 1e-13
         for line in at.lines:
             np.testing.assert_allclose(line.gap, 0.0, atol=1e-15)
@@ -39,7 +39,7 @@ def test_pinion_with_fewer_teeth_runs_without_error_too(teeth):
     # An involute pinion rolls inside the imaginary shaper at one pressure angle, so that the
     # aligned pair stays conjugate (Litvin & Fuentes, ch. 18). The secant that finds the least gap
     # leaves some 1e-11 rad.
-    for at in positions(face_pair(teeth), 5, 5):
+    for at in face_pair(teeth).positions(5, 5):
         assert abs(at.transmission_error) < 1e-9
 
 
@@ -74,7 +74,7 @@ def test_gap_grows_with_the_relative_curvature():
     # along the major axis; the next term is of relative size s over a radius.
     mesh = face_pair()
     point = next(p for p in contact_points(mesh, 0.1) if p.pair == 0)
-    at = positions(mesh, [0.1], 201)[0]
+    at = mesh.positions([0.1], 201)[0]
     line = next(x for x in at.lines if x.pair == 0)
     way = (line.points - point.point) @ point.major
     near = np.abs(way) < 4e-3
@@ -134,7 +134,7 @@ def test_offset_and_gear_shift_turn_the_gear_as_kinematics_says():
 
 def test_pinion_shift_moves_nothing_but_the_bearing_on_the_pinion():
     plain, moved = face_pair(), face_pair(off=FaceMisalignment(pinion_shift=2e-3))
-    for one, two in zip(positions(plain, 3, 7), positions(moved, 3, 7), strict=True):
+    for one, two in zip(plain.positions(3, 7), moved.positions(3, 7), strict=True):
         assert abs(two.transmission_error - one.transmission_error) < 1e-9
     points = [contact_points(mesh, 0.1)[1].point[2] for mesh in (plain, moved)]
     assert points[1] - points[0] == pytest.approx(-2e-3, abs=1e-11)
@@ -178,8 +178,8 @@ def test_turning_by_one_pitch_gives_the_same_position():
 
 def test_many_positions_at_once_are_those_one_by_one():
     mesh = face_pair(off=FaceMisalignment(shaft_angle=3e-4, offset=50e-6))
-    for at in positions(mesh, 4, 9):
-        one = positions(mesh, [at.phase], 9)[0]
+    for at in mesh.positions(4, 9):
+        one = mesh.positions([at.phase], 9)[0]
         assert at.transmission_error == pytest.approx(one.transmission_error, abs=1e-14)
         assert [line.pair for line in at.lines] == [line.pair for line in one.lines]
         for two, line in zip(one.lines, at.lines, strict=True):

@@ -13,7 +13,7 @@ from loadshare.involute import inv
 from loadshare.tooth.cylindrical.gear import Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
 from loadshare.tooth.geometry.gap import least_gap
-from loadshare.tooth.unloaded.positions import positions, transmission_error
+from loadshare.tooth.unloaded.positions import transmission_error
 from loadshare.tooth.unloaded.touch import contact_points
 
 PAIRS = {
@@ -35,7 +35,7 @@ ALL = pytest.mark.parametrize("data", PAIRS.values(), ids=PAIRS.keys())
 
 
 def round_the_cycle(mesh, points=11, count=7):
-    return positions(mesh, count, points)
+    return mesh.positions(count, points)
 
 
 @ALL
@@ -76,7 +76,7 @@ def test_relative_curvature_is_that_of_two_cylinders(data):
     mesh = pair(**data)
     one, two = mesh.driver_gear, mesh.driven_gear
     cosine = math.cos(one.base_helix_angle)
-    at = positions(mesh, [0.4], 9)[0]
+    at = mesh.positions([0.4], 9)[0]
     centre = mesh.driven.placement.origin
     for line in at.lines:
         total = 0.0
@@ -134,7 +134,7 @@ def test_gap_of_a_lead_crowned_pair(crowning, phase, helix):
     # Closed form: C_β (2ζ/b)², less its least value on the lines. The ray leaves along the crowned
     # normal, whose slope of up to 4 C_β/b makes it longer by half the slope squared.
     mesh = pair(helix=helix, modification=Modification(lead_crowning=crowning))
-    at = positions(mesh, [phase], 31)[0]
+    at = mesh.positions([phase], 31)[0]
     found = mesh.extents(np.array([at.driver_rotation]), np.array([at.driven_rotation]))
     nearest = min(
         0.0 if low <= 0.0 <= high else min(abs(low), abs(high))
@@ -190,7 +190,7 @@ def test_gap_under_tip_relief(exponent):
 def test_gap_of_misaligned_spur_gears(off, slope):
     # A tilt out of the plane of axes opens the mesh by cos α, one in it by sin α of its angle.
     mesh = pair(off=off)
-    at = positions(mesh, [0.4], 40)[0]
+    at = mesh.positions([0.4], 40)[0]
     # One end is nearer by slope × b/2 and touches before the ideal pair would. Second order in the
     # tilt times the distances involved, 1e-8 × 50 mm.
     assert at.transmission_error * mesh.arm == pytest.approx(-slope * 10e-3, abs=2e-9)
@@ -223,8 +223,8 @@ def test_mirror_image_has_the_same_gaps():
     image = replace(
         off, inclination=-off.inclination, deviation=-off.deviation, axial_shift=-off.axial_shift
     )
-    one = positions(pair(helix=0.3, off=off, modification=RELIEVED), [0.2], 20)[0]
-    two = positions(pair(helix=-0.3, off=image, modification=RELIEVED), [0.2], 20)[0]
+    one = pair(helix=0.3, off=off, modification=RELIEVED).positions([0.2], 20)[0]
+    two = pair(helix=-0.3, off=image, modification=RELIEVED).positions([0.2], 20)[0]
     assert two.transmission_error == pytest.approx(one.transmission_error, abs=1e-12)
     for first, second in zip(one.lines, two.lines, strict=True):
         np.testing.assert_allclose(second.gap[::-1], first.gap, atol=1e-13)
@@ -240,7 +240,7 @@ def test_a_herringbone_half_is_a_helical_pair():
     )
     assert both.helices == 2
     assert both.driver_gear.total_width == pytest.approx(45e-3)
-    one, two = positions(half, [0.3], 5)[0], positions(both, [0.3], 5)[0]
+    one, two = half.positions([0.3], 5)[0], both.positions([0.3], 5)[0]
     for first, second in zip(one.lines, two.lines, strict=True):
         np.testing.assert_array_equal(first.points, second.points)
 
@@ -266,9 +266,9 @@ def test_contact_equations_agree_with_the_least_gap(phase):
 @pytest.mark.parametrize("phase", [-0.1, 1.0])
 def test_phase_out_of_range(phase):
     with pytest.raises(ValueError, match="0 ≤ phase < 1"):
-        positions(pair(), [phase], 5)[0]
+        pair().positions([phase], 5)[0]
     with pytest.raises(ValueError, match="at least 1"):
-        positions(pair(), [0.0], 0)[0]
+        pair().positions([0.0], 0)[0]
 
 
 def test_tooth_thickness_by_the_tabled_formula():

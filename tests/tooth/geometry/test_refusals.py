@@ -16,7 +16,6 @@ from loadshare.tooth.face.gear import FaceGear, Shaper
 from loadshare.tooth.face.pair import FaceMisalignment
 from loadshare.tooth.geometry.gap import NoContactError
 from loadshare.tooth.pair.findings import edge_contacts, findings
-from loadshare.tooth.unloaded.positions import positions
 
 PINION = HelicoidGear(6.35e-3, 25, 90e-3, math.radians(25.0), tip_radius=0.3)
 
@@ -158,7 +157,7 @@ def test_no_contact_at_a_position():
     with pytest.raises(
         NoContactError, match=r"in contact at phase 0\.5 .* mm at the driv(er|en) tip"
     ):
-        positions(mesh, [0.5], 5)[0]
+        mesh.positions([0.5], 5)[0]
 
 
 @pytest.mark.parametrize(

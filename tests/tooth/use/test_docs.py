@@ -5,7 +5,7 @@ import re
 from tests.tooth.use.pairs import PAIRS, written
 
 from loadshare.case.described import schema_of
-from loadshare.tooth import load_pair
+from loadshare.tooth.pair.file import load_pair
 from loadshare.tooth.pair.model import CONTENTS
 
 PAGE = (PAIRS.parents[2] / "docs/ltca.md").read_text(encoding="utf-8")

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
 
 from loadshare.case.content import ABOUT, ENDS, FLOATS
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar
-from loadshare.case.keys import Path, covers, dotted, ends_of, look_up, parse, walk
+from loadshare.case.keys import Path, dotted, ends_of, look_up, unmatched, walk
 from loadshare.case.measured import COEFFICIENTS
 from loadshare.case.words import choices, did_you_mean
 from loadshare.errors import Problem
@@ -231,28 +230,11 @@ def check_measured_positions(draft: Draft) -> Iterator[Problem]:
 def check_assumed_patterns(draft: Draft) -> Iterator[Problem]:
     """Yield patterns of `assumed` that match no key of the case."""
     known = tuple(path for path in walk(draft.data) if path[0] not in ABOUT)
-    for number, wrong in _unmatched(draft.assumed, known):
+    for number, is_path in unmatched(draft.assumed, known):
         path = ("assumed", number)
-        if wrong == NO_PATH:
-            yield draft.problem(path, wrong, 'a text such as "gears.*.base_radius"')
+        if not is_path:
+            allowed = 'a text such as "gears.*.base_radius"'
+            yield draft.problem(path, "is not a key path", allowed)
         else:
             hint = did_you_mean(draft.assumed[number], [dotted(key) for key in known])
-            yield draft.problem(path, wrong, hint=hint)
-
-
-NO_PATH = "is not a key path"
-
-
-@lru_cache(maxsize=16)
-def _unmatched(assumed: tuple[str, ...], known: tuple[Path, ...]) -> list[tuple[int, str]]:
-    """Patterns, by number, that match no key, and what is wrong with each."""
-    found = []
-    for number, pattern in enumerate(assumed):
-        try:
-            wanted = parse(pattern)
-        except ValueError:
-            found.append((number, NO_PATH))
-        else:
-            if not any(covers(wanted, key) for key in known):
-                found.append((number, "matches no key of the case"))
-    return found
+            yield draft.problem(path, "matches no key of the case", hint=hint)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import lru_cache
 
 import numpy as np
 
@@ -63,15 +63,7 @@ class MiddleSurface:
         z, w = zw[:, 0], zw[:, 1]
         top = self.between(np.maximum(z, self.waist), w)
         below = np.clip((self.waist - z) / (1.0 + self.waist), 0.0, None)
-        return top + below[:, None] * (self.under(top) - top)
-
-    def under(self, points: Array) -> Array:
-        """Points (..., 3) of the rim's free side that lie under `points` [m]."""
-        return under(self.body, points, self._floor)
-
-    @cached_property
-    def _floor(self) -> float | None:
-        return floor_of(self.body) if self.body.shape == "face" else None
+        return top + below[:, None] * (under(self.body, top) - top)
 
     def surface(self, zw: Array) -> tuple[Array, Array, Array]:
         """Points (n, 3) [m] of the middle surface, and their derivatives over z and w."""
@@ -128,14 +120,11 @@ def both_sides(body: ToothBody, u: Array, w: Array) -> tuple[Array, Array]:
     return first, body.outline(u, w, -1)
 
 
-def under(body: ToothBody, points: Array, floor: float | None = None) -> Array:
-    """Points (..., 3) of the rim's free side that lie under `points` [m].
-
-    `floor` is what `floor_of` finds for the body of a face gear, where it is known.
-    """
+def under(body: ToothBody, points: Array) -> Array:
+    """Points (..., 3) of the rim's free side that lie under `points` [m]."""
     if body.shape == "face":
         moved = points.copy()
-        moved[..., 2] = (floor_of(body) if floor is None else floor) - body.rim
+        moved[..., 2] = _floor_of(body) - body.rim
         return moved
     radius = np.hypot(points[..., 0], points[..., 1])
     scale = np.ones_like(points)
@@ -143,7 +132,8 @@ def under(body: ToothBody, points: Array, floor: float | None = None) -> Array:
     return points * scale
 
 
-def floor_of(body: ToothBody) -> float:
+@lru_cache(maxsize=64)
+def _floor_of(body: ToothBody) -> float:
     """The z of the deepest root of a face gear [m]."""
     return float(np.min(body.outline(np.zeros(3), np.array([0.0, 0.5, 1.0]), 1)[..., 2]))
 

@@ -25,7 +25,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from loadshare.tooth.compliance.interface import Compliance, Flank
-from loadshare.tooth.compliance.middle import waist_of
+from loadshare.tooth.compliance.middle import under, waist_of
 from loadshare.tooth.compliance.plate import ROOT_TANGENT, Plate, root_compliance
 from loadshare.tooth.compliance.ring import Ring
 from loadshare.tooth.compliance.sheet import Sheet
@@ -118,7 +118,7 @@ class Slices(Compliance):
         middle = np.array([[self.middle.waist, 0.5]])
         root = self.middle.points(middle)
         radius = float(np.hypot(root[0, 0], root[0, 1]))
-        depth = float(np.linalg.norm(self.middle.under(root) - root))
+        depth = float(np.linalg.norm(under(self.body, root) - root))
         loaded = ROUND * depth if self.body.shape == "face" else radius
         return Ring(
             loaded=loaded,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from loadshare.tooth.compliance.middle import MiddleSurface, both_sides
+from loadshare.tooth.compliance.middle import MiddleSurface, both_sides, under
 from loadshare.tooth.geometry.body import Array, ToothBody
 from loadshare.tooth.geometry.flank import cross
 
@@ -115,7 +115,7 @@ class SmoothMiddle(MiddleSurface):
         below = np.maximum(self.waist - z, 0.0) / (1.0 + self.waist)
         if not below.any():
             return at.middle, at.middle_u, at.middle_w
-        down = self.under(at.middle) - at.middle
+        down = under(self.body, at.middle) - at.middle
         sunk = below[:, None]
         over_z = np.where(sunk > 0.0, -down / (1.0 + self.waist), at.middle_u)
         return at.middle + sunk * down, over_z, at.middle_w

@@ -145,10 +145,7 @@ class ContactBatch:
             for number, (line, part) in enumerate(zip(problem.lines, problem.parts, strict=True)):
                 strips[:, k, part] = _strips(number, line)
         series = np.empty((positions, TEETH.terms + 1, points, points))
-        lines, place, half, scale, square, alone, level = strips
-        self.strips = Strips(
-            lines, place, half, scale, square, alone, level, series, TEETH.far, strip_table()
-        )
+        self.strips = Strips._make([*strips, series, TEETH.far, strip_table()])
         expand(self.strips, COEFFICIENTS, series)
 
     def rows(self, chosen: NDArray[np.int64]) -> ContactBatch:

@@ -131,29 +131,13 @@ def _settle(strips: Strips, of: _Batch, found: _Found, linear: _Linear, answered
     from loadshare.tooth.contact.compiled import settle
 
     try:
-        return int(settle(strips, of, found, linear, _limits(), answered))
+        # Limits are handed over: compiled code would keep an old one.
+        return int(settle(strips, of, found, linear, TEETH, answered))
     except np.linalg.LinAlgError as error:
         raise Refused(
             "the compliance of a contact is singular or not a number; gap, lengths, curvatures and "
             "elasticity of the teeth must be finite"
         ) from error
-
-
-class _Limits(NamedTuple):
-    """When compiled code stops; handed over, for it would keep an old limit."""
-
-    passes: int
-    exchanges: int
-    settled: float
-    round_off: float
-    band: float
-    faint: float
-
-
-def _limits() -> _Limits:
-    return _Limits(
-        TEETH.passes, TEETH.exchanges, TEETH.settled, TEETH.round_off, TEETH.band, TEETH.faint
-    )
 
 
 class _Batch(NamedTuple):
@@ -253,7 +237,7 @@ def exchange(matrix: Array, gap: Array, load: float, closed: Mask) -> Array | No
     from loadshare.tooth.contact.compiled import exchange as exchanged
 
     force, compliance = np.empty(len(gap)), np.ascontiguousarray(matrix, float)
-    found = exchanged(compliance, gap, float(load), closed.copy(), _limits(), force)
+    found = exchanged(compliance, gap, float(load), closed.copy(), TEETH, force)
     return force if found else None
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -159,11 +159,7 @@ def pointing_limit(gear: FaceGear) -> float:
 
     Solved on the true surface: both flanks of a tooth meet at tip depth.
     """
-    flank = FaceFlank(gear)
-
-    def margin(length: float) -> float:
-        return tip_half_angle(flank, length)
-
+    margin = partial(tip_half_angle, FaceFlank(gear))
     # The plane section is within a percent or two of the answer.
     planar = planar_pointing_limit(gear)
     return root_of(margin, max(undercut_limit(gear), 0.9 * planar), 1.2 * planar)

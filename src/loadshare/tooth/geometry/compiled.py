@@ -134,7 +134,7 @@ def find(flanks, start, turns, known, stations, last, limits, found):  # type: i
                 if not np.isfinite(at[k]):
                     at[k] = slope[k] * stations[i, j] + (here[k] if k < 4 else 0.0)
             before, done = np.inf, False
-            for number in range(limits.steps):
+            for number in range(limits.from_anchor):
                 moved = _newton(
                     flanks, start, i, turns[i], stations[i, j], at, own, other, work, step
                 )

@@ -112,12 +112,7 @@ def cross(first: Array, second: Array) -> Array:
     product[0] = b * f - c * e
     product[1] = c * d - a * f
     product[2] = a * e - b * d
-    return _last(product)
-
-
-def _last(vectors: Array) -> Array:
-    """Components (3, ...) as the last axis."""
-    return vectors.transpose(*range(1, vectors.ndim), 0)
+    return product.transpose(*range(1, product.ndim), 0)
 
 
 def solve_2(

@@ -59,15 +59,8 @@ class Trace:
         slope: Array = -dot(moving, across) / dot(self.driver.normal, across)
         return slope
 
-    def at(self, stations: slice) -> Trace:
-        """The trace at some of the stations."""
-        return self._part(np.s_[:, stations])
-
-    def lines(self, chosen: NDArray[np.int64]) -> Trace:
-        """The trace of some of the lines."""
-        return self._part(np.s_[chosen, :])
-
-    def _part(self, part: tuple[Any, Any]) -> Trace:
+    def part(self, part: tuple[Any, Any]) -> Trace:
+        """The trace of some of the lines and at some of the stations."""
         own, other = (Patch(f.components[..., *part]) for f in (self.driver, self.driven))
         (a, b), (c, d) = self.driver_at, self.driven_at
         return Trace(
@@ -113,7 +106,7 @@ class Extents:
             middles = 0.5 * (self.start + self.end)
             every = np.repeat(middles[:, None], stations.shape[1], axis=1)
             every[chosen] = stations
-            return self.trace(every).lines(chosen)
+            return self.trace(every).part(np.s_[chosen, :])
 
         named = ("position", "pairs", "start", "end", "driver", "driven")
         return replace(self, trace=trace, **{name: getattr(self, name)[chosen] for name in named})
@@ -147,7 +140,7 @@ def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace
     row = np.arange(len(lines.pairs))
     stations, wanted = lines.spread(points)
     trace = lines.trace(stations)
-    middles = trace.at(wanted)
+    middles = trace.part(np.s_[:, wanted])
     for last in (False, True):
         if not np.isfinite(trace.gap).all():
             raise NoContactError(

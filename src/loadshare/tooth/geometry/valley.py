@@ -62,13 +62,6 @@ class Known(NamedTuple):
         return Known(self.stations[chosen], self.found[chosen])
 
 
-class _Limits(NamedTuple):
-    """When compiled code stops; handed over, for it would keep an old limit."""
-
-    steps: int
-    sure: int
-
-
 def anchor(
     driver_at: tuple[Array, Array], driven_at: tuple[Array, Array], flanks: tuple[Patch, Patch]
 ) -> Anchor:
@@ -148,8 +141,9 @@ class Valleys:
         """Unknowns (m, n, 5)."""
         from loadshare.tooth.geometry.compiled import find
 
-        found, limits = np.empty((*stations.shape, 5)), _Limits(TEETH.from_anchor, TEETH.sure)
-        find(self.flanks, self.start, self.turns, self.known, stations, last, limits, found)
+        found = np.empty((*stations.shape, 5))
+        # Limits are handed over: compiled code would keep an old one.
+        find(self.flanks, self.start, self.turns, self.known, stations, last, TEETH, found)
         return found
 
 

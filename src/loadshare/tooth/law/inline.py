@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from loadshare.case.keys import dotted
 from loadshare.case.line_of_action import centre_distance, facing
 from loadshare.case.place import minus
 from loadshare.errors import CaseError, Problem
@@ -86,16 +85,12 @@ def assumed_of(case: Case, name: str, pair: PairFile) -> tuple[str, ...]:
 
 
 def _rated(driver: Gear, driven: Gear) -> float:
-    if driver.tooth is None or driver.face_width is None or driven.face_width is None:
-        raise ValueError("a gear without teeth or face width")
-    width = min(driver.face_width.si, driven.face_width.si)
-    return LOAD * width * driver.tooth.module * driver.tooth.radius
+    (tooth, width), (_, other) = driver.teeth_and_width, driven.teeth_and_width
+    return LOAD * min(width, other) * tooth.module * tooth.radius
 
 
 def _gear(gear: Gear) -> dict[str, Any]:
-    tooth = gear.tooth
-    if tooth is None or gear.face_width is None:
-        raise ValueError("a gear without teeth or face width")
+    tooth, width = gear.teeth_and_width
     content: dict[str, Any] = {
         "module": f"{tooth.module!r} m",
         "teeth": tooth.teeth,
@@ -104,7 +99,7 @@ def _gear(gear: Gear) -> dict[str, Any]:
         "addendum": tooth.addendum,
         "dedendum": tooth.dedendum,
         "internal": tooth.internal,
-        "face_width": f"{gear.face_width.si!r} m",
+        "face_width": f"{width!r} m",
     }
     if gear.helix_angle is not None:
         content["helix_angle"] = f"{tooth.helix_angle!r} rad"
@@ -120,7 +115,7 @@ def _too_deep(case: Case, name: str, gear: Gear) -> Iterator[Problem]:
     if gear.tooth is not None and radius is not None and radius <= 0.0:
         what = "leaves no bore in the body below the teeth"
         allowed = f"less than the root radius, {millimetres(gear.tooth.root, down)}"
-        yield case.problem(dotted(("gears", name, "rim")), what, allowed)
+        yield case.problem(("gears", name, "rim"), what, allowed)
 
 
 def _rim(gear: Gear) -> float | None:
@@ -146,7 +141,6 @@ def _in_case(case: Case, name: str, problem: Problem) -> Problem:
     gear = case.gears[ends[which]]
     if key == "rim":
         key = next(iter(gear.given("rim", "bore", "outside_diameter")), "module")
-    found = case.problem(
-        dotted(("gears", ends[which], key)), problem.message, problem.allowed, problem.hint
-    )
+    path = ("gears", ends[which], key)
+    found = case.problem(path, problem.message, problem.allowed, problem.hint)
     return found if found.given else replace(found, given=problem.given)

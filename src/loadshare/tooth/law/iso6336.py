@@ -146,14 +146,11 @@ def basis_of(gears: tuple[Gear, Gear], distance: float, *, measured: bool) -> st
     gears, distance, measured
         As for `mesh_stiffness`.
     """
-    width = min(gear.face_width.si for gear in gears if gear.face_width is not None)
-    blank = 0.5 * sum(_blank(gear, width) for gear in gears)
+    (one, width), (two, other) = (gear.teeth_and_width for gear in gears)
+    blank = 0.5 * sum(_blank(gear, min(width, other)) for gear in gears)
     with_measured = "with" if measured else "without"
     body = "solid bodies" if blank == 1.0 else f"C_R {blank:.3g} for thin webs"
     basis = f"ISO 6336-1 method B, {with_measured} C_M, {body}"
-    one, two = (gear.tooth for gear in gears)
-    assert one is not None
-    assert two is not None
     ratio = contact_ratio(one, two, distance)
     if ratio < LEAST_RATIO and one.helix_angle == 0.0:
         return f"{basis}; for spur gears it holds from ε_α = {LEAST_RATIO:g}, here {ratio:.3g}"
@@ -169,10 +166,8 @@ def least_torque(gears: tuple[Gear, Gear]) -> float:
 
     Source: ISO 6336-1, single stiffness c'.
     """
-    first, width = gears[0].tooth, [g.face_width.si for g in gears if g.face_width is not None]
-    if first is None or len(width) < len(gears):
-        raise ValueError("a gear without teeth or face width")
-    return LEAST_LOAD * min(width) * first.radius
+    (first, width), (_, other) = (gear.teeth_and_width for gear in gears)
+    return LEAST_LOAD * min(width, other) * first.radius
 
 
 def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool = True) -> float:
@@ -193,15 +188,9 @@ def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool 
         If a value is outside what the formulas were fitted to.
     """
     # The formula's first gear is the one with fewer teeth; an internal gear is a rack to it.
-    first, second = sorted(gears, key=_as_pinion)
-    teeth, widths = [], []
-    for gear in (first, second):
-        if gear.tooth is None or gear.face_width is None:
-            raise ValueError("a gear without teeth or face width")
-        teeth.append(gear.tooth)
-        widths.append(gear.face_width.si)
-    width = min(widths)
-    one, two = teeth
+    pair = sorted(gears, key=_as_pinion)
+    (one, width), (two, other) = (gear.teeth_and_width for gear in pair)
+    width = min(width, other)
     ratio = contact_ratio(one, two, distance)
     if ratio < 1.0:
         raise ValueError(f"ε_α = {ratio:.4g}: a pair must take over before the one before it ends")
@@ -212,7 +201,7 @@ def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool 
         contact_ratio=ratio,
         pressure_angle=one.pressure_angle,
         helix_angle=one.helix_angle,
-        blank_factor=0.5 * sum(_blank(gear, width) for gear in (first, second)),
+        blank_factor=0.5 * sum(_blank(gear, width) for gear in pair),
         measured_factor=MEASURED if measured else 1.0,
     )
     return found.mesh * width

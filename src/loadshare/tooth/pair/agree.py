@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, TypeAlias
 
-from loadshare.case.keys import dotted
 from loadshare.case.line_of_action import facing, line_of_action
 from loadshare.errors import Problem
 from loadshare.settings import TEETH
@@ -15,6 +14,8 @@ if TYPE_CHECKING:
     from loadshare.case import Case, Gear
     from loadshare.tooth.pair.gears import PairGear, PairGears
 
+Tell: TypeAlias = Callable[[str, str, str], Problem]
+"""From a key of a gear, what the file has of it, and what is allowed, to a problem."""
 OF_RADIUS = {"module", "teeth", "pressure_angle", "helix_angle"}
 """Keys from which a base radius follows."""
 OF_SHAPE = ("profile_shift", "dedendum", "tip_radius")
@@ -36,14 +37,19 @@ def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Itera
     """
     mesh = case.meshes[name]
     here = f"{source} has"
+    source_of = ("meshes", name, "law_file" if mesh.geometry is None else "geometry")
     if gears.shaft_angle is not None:
         message = f"{here} axes {degrees(gears.shaft_angle.si)} apart"
         hint = "The axes of a face gear and its pinion are at right angles in a case."
-        yield case.problem(_source_of(case, name), message, "a pair of axes at 90 deg", hint)
+        yield case.problem(source_of, message, "a pair of axes at 90 deg", hint)
     cut = facing(mesh, case.gears, case.centres())
-    for gear, facing_it, own in zip(mesh.ends, cut, (gears.driver, gears.driven), strict=True):
-        yield from _gear(case, gear, here, gears, own)
-        yield from _face_width(case, gear, facing_it, here, gears, own)
+    for end, facing_it, own in zip(mesh.ends, cut, (gears.driver, gears.driven), strict=True):
+
+        def tell(key: str, message: str, allowed: str, end: str = end) -> Problem:
+            return case.problem(("gears", end, key), f"{here} {message}", allowed)
+
+        yield from _gear(case.gears[end], gears, own, tell)
+        yield from _face_width(case.gears[end], facing_it, gears, own, tell)
     line = line_of_action(mesh, case.gears, case.centres())
     if line is None:
         return
@@ -52,51 +58,38 @@ def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Itera
         # The helix is not needed for the law; a case that leaves it out says nothing of it.
         angles.append(("helix_angle", line.helix_angle, gears.base_helix_angle.si))
     for key, found, wanted in angles:
-        if abs(abs(found) - wanted) > TEETH.angle:
-            given = getattr(mesh, key) is not None
-            path = dotted(("meshes", name, key)) if given else _source_of(case, name)
-            message = f"{here} {degrees(wanted)}"
-            if not given:
-                message = (
-                    f"{here} the {key} {degrees(wanted)}; by the centres it is {degrees(found)}"
-                )
-            yield case.problem(path, message, degrees(wanted) if given else "")
+        if abs(abs(found) - wanted) <= TEETH.angle:
+            continue
+        if getattr(mesh, key) is not None:
+            path, message = ("meshes", name, key), f"{here} {degrees(wanted)}"
+            yield case.problem(path, message, degrees(wanted))
+        else:
+            message = f"{here} the {key} {degrees(wanted)}; by the centres it is {degrees(found)}"
+            yield case.problem(source_of, message)
 
 
-def _source_of(case: Case, name: str) -> str:
-    """Key by which a mesh names the file of its law."""
-    key = "geometry" if case.meshes[name].geometry is not None else "law_file"
-    return dotted(("meshes", name, key))
-
-
-def _gear(case: Case, name: str, here: str, gears: PairGears, own: PairGear) -> Iterator[Problem]:
-    gear: Gear = case.gears[name]
+def _gear(gear: Gear, gears: PairGears, own: PairGear, tell: Tell) -> Iterator[Problem]:
     if gear.type != own.type:
-        path = dotted(("gears", name, "type"))
-        yield case.problem(path, f"{here} a gear of type {own.type}", own.type)
+        yield tell("type", f"a gear of type {own.type}", own.type)
         return
     found = set()
     if gear.teeth is not None and gear.teeth != own.teeth:
         found.add("teeth")
-        path = dotted(("gears", name, "teeth"))
-        yield case.problem(path, f"{here} {own.teeth} teeth", str(own.teeth))
+        yield tell("teeth", f"{own.teeth} teeth", str(own.teeth))
     for key, given, wanted in _dimensions(gear, gears, own):
         if abs(given - wanted) > _allowed(key, wanted):
             found.add(key)
             text = written(key, wanted)
-            yield case.problem(
-                dotted(("gears", name, key)), f"{here} the {key.replace('_', ' ')} {text}", text
-            )
-    yield from _tip(case, name, here, own)
+            yield tell(key, f"the {key.replace('_', ' ')} {text}", text)
+    yield from _tip(gear, own, tell)
     radius = own.base_radius.si
     keys = gear.given("base_radius", "inner_radius", "module")
     follows = keys == ["module"] and found & OF_RADIUS
     if not follows and abs(gear.acting_radius - radius) > TEETH.radius * radius:
-        message = f"{here} the base radius {millimetres(radius)}"
+        message = f"the base radius {millimetres(radius)}"
         if keys == ["inner_radius"]:
             message += f", and (L1 + L2)/2 is {millimetres(gear.acting_radius)}"
-        path = dotted(("gears", name, keys[0]))
-        yield case.problem(path, message, f'base_radius = "{millimetres(radius)}"')
+        yield tell(keys[0], message, f'base_radius = "{millimetres(radius)}"')
 
 
 def _dimensions(gear: Gear, gears: PairGears, own: PairGear) -> Iterator[tuple[str, float, float]]:
@@ -120,25 +113,22 @@ def _allowed(key: str, wanted: float) -> float:
     return TEETH.radius * (abs(wanted) if key == "module" else 1.0)
 
 
-def _tip(case: Case, name: str, here: str, own: PairGear) -> Iterator[Problem]:
+def _tip(gear: Gear, own: PairGear, tell: Tell) -> Iterator[Problem]:
     """Yield the addendum that, with the alteration of the tip, is not that of the pair."""
-    gear: Gear = case.gears[name]
     keys = gear.given("tip_alteration", "addendum")
     if not keys or gear.tooth is None or own.addendum is None:
         return
     if abs(gear.tooth.addendum - own.addendum) > TEETH.radius:
-        message = f"{here} the addendum {digits(own.addendum)}"
+        message = f"the addendum {digits(own.addendum)}"
         if keys[0] == "tip_alteration":
             message += f"; with the alteration it is {digits(gear.tooth.addendum)}"
-        allowed = digits(own.addendum) if keys[0] == "addendum" else ""
-        yield case.problem(dotted(("gears", name, keys[0])), message, allowed)
+        yield tell(keys[0], message, digits(own.addendum) if keys[0] == "addendum" else "")
 
 
 def _face_width(
-    case: Case, name: str, facing_it: Gear, here: str, gears: PairGears, own: PairGear
+    gear: Gear, facing_it: Gear, gears: PairGears, own: PairGear, tell: Tell
 ) -> Iterator[Problem]:
     """Yield a face width that is neither that of the pair nor cut to it where the faces overlap."""
-    gear: Gear = case.gears[name]
     if gear.face_width is None or facing_it.face_width is None or own.face_width is None:
         return
     least = own.face_width.si
@@ -146,8 +136,7 @@ def _face_width(
     slack = TEETH.radius * least
     widths = gear.face_width.si, facing_it.face_width.si
     if not any(least - slack <= width <= most + slack for width in widths):
-        message = f"{here} the face width {millimetres(least)}"
+        message = f"the face width {millimetres(least)}"
         if gears.helices == 2:
             message += f" in two halves, {millimetres(most)} with their gap"
-        path = dotted(("gears", name, "face_width"))
-        yield case.problem(path, message, millimetres(least))
+        yield tell("face_width", message, millimetres(least))

@@ -12,7 +12,7 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from loadshare.case.keys import covers, parse, walk
+from loadshare.case.keys import parse, unmatched, walk
 from loadshare.case.origin import Origin
 from loadshare.case.reader import read_toml
 from loadshare.case.recognise import TAKEN_BY, is_case
@@ -245,18 +245,13 @@ def _content(
 def _unmatched(data: Mapping[str, Any], origin: Origin) -> list[Problem]:
     """Patterns of `assumed` that match no key of the file."""
     assumed = data.get("assumed")
-    known = [path for path in walk(data) if path[0] not in ABOUT]
-    found = []
-    for number, pattern in enumerate(assumed if isinstance(assumed, list) else ()):
-        try:
-            fits = any(covers(parse(pattern), key) for key in known)
-        except (ValueError, TypeError):
-            fits = False
-        if not fits:
-            path = ("assumed", number)
-            allowed = 'a key path such as "driver.module"'
-            found.append(origin.problem(data, path, "matches no key of the file", allowed, ""))
-    return found
+    patterns = tuple(map(str, assumed)) if isinstance(assumed, list) else ()
+    known = tuple(path for path in walk(data) if path[0] not in ABOUT)
+    what, allowed = "matches no key of the file", 'a key path such as "driver.module"'
+    return [
+        origin.problem(data, ("assumed", number), what, allowed, "")
+        for number, _ in unmatched(patterns, known)
+    ]
 
 
 def _placed(problem: Problem, data: Mapping[str, Any], origin: Origin) -> Problem:

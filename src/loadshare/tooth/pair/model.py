@@ -272,22 +272,21 @@ class PairContent(Element):
     driver: Cylindrical
     """The driving gear."""
 
+    driven: Body
+    """The driven gear."""
+
     analysis: Analysis = Analysis()
     """How the pair is analysed."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what the driver must say for both gears."""
+        """Yield what the driver must say for both gears, and a model with too many teeth."""
         for key, allowed in (("module", LENGTH.allowed), ("pressure_angle", ANGLE.allowed)):
             if getattr(self.driver, key) is None:
                 yield Rule("is missing", ("driver", key), allowed)
-
-
-def _model_beyond_gears(content: HelicoidContent | FaceGearContent) -> Iterator[Rule]:
-    """Yield a finite-element model with more teeth than a gear of the pair has to give."""
-    few, asked = min(content.driver.teeth, content.driven.teeth), content.analysis.teeth
-    if asked is not None and asked >= few:
-        message = f"is too many for a gear of {few} teeth"
-        yield Rule(message, ("analysis", "teeth"), f"odd numbers below {few}, or left out")
+        few, asked = min(self.driver.teeth, self.driven.teeth), self.analysis.teeth
+        if asked is not None and asked >= few:
+            message = f"is too many for a gear of {few} teeth"
+            yield Rule(message, ("analysis", "teeth"), f"odd numbers below {few}, or left out")
 
 
 class HelicoidContent(PairContent):
@@ -311,11 +310,6 @@ class HelicoidContent(PairContent):
     misalignment: Parallel = Parallel()
     """How far the axes are off."""
 
-    def rules(self) -> Iterator[Rule]:
-        """Yield what does not fit between the gears and their model."""
-        yield from super().rules()
-        yield from _model_beyond_gears(self)
-
 
 class FaceGearContent(PairContent):
     """A spur pinion that drives a face gear."""
@@ -328,11 +322,6 @@ class FaceGearContent(PairContent):
 
     misalignment: Crossed = Crossed()
     """How far the pair is off."""
-
-    def rules(self) -> Iterator[Rule]:
-        """Yield what does not fit between the gears and their model."""
-        yield from super().rules()
-        yield from _model_beyond_gears(self)
 
 
 CONTENTS: dict[str, type[HelicoidContent] | type[FaceGearContent]] = {

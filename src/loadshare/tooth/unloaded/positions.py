@@ -140,6 +140,11 @@ class GearPair(ABC):
         """Driver's angle of roll over which both flanks are active [rad]."""
 
     @property
+    @abstractmethod
+    def overlap_ratio(self) -> float:
+        """Overlap ratio ε_β of one half; 0 for spur teeth and face gears."""
+
+    @property
     def driven_step(self) -> int:
         """+1 or −1: two external gears' teeth are met in opposite order, from pair to pair."""
         return -self.driven_side
@@ -164,11 +169,6 @@ class GearPair(ABC):
         """Transverse contact ratio ε_α without load."""
         first, last = self.roll_range
         return (last - first) * self.driver.teeth / (2.0 * math.pi)
-
-    @property
-    @abstractmethod
-    def overlap_ratio(self) -> float:
-        """Overlap ratio ε_β of one half; 0 for spur teeth and face gears."""
 
     def openings(self, pairs: Array) -> Array:
         """How far pitch deviations part the flanks of pairs (m,) along their normals [m].
@@ -244,62 +244,53 @@ class GearPair(ABC):
     def positions(
         self, phases: int | Sequence[float], points_per_line: int
     ) -> tuple[MeshPosition, ...]:
-        """Unloaded contact at phases of the mesh cycle; see :func:`positions`."""
-        return positions(self, phases, points_per_line)
+        """Unloaded contact at several phases, all at once.
 
+        Parameters
+        ----------
+        phases : int or sequence of float
+            Number of equal steps of the mesh cycle, or phases of it, 0 ≤ phase < 1.
+        points_per_line : int
+            Points on every contact line.
 
-def positions(
-    pair: GearPair, phases: int | Sequence[float], points_per_line: int
-) -> tuple[MeshPosition, ...]:
-    """Unloaded contact at several phases, all at once.
-
-    Parameters
-    ----------
-    pair : GearPair
-        The two gears.
-    phases : int or sequence of float
-        Number of equal steps of the mesh cycle, or phases of it, 0 ≤ phase < 1.
-    points_per_line : int
-        Points on every contact line.
-
-    Raises
-    ------
-    ValueError
-        If a phase or `points_per_line` is out of range.
-    NoContactError
-        If no pair of teeth is within both active flanks at one of the phases.
-    """
-    if isinstance(phases, int):
-        phases = [index / phases for index in range(phases)]
-    wrong = [phase for phase in phases if not 0.0 <= phase < 1.0]
-    if wrong:
-        raise ValueError(f"phase = {wrong[0]} is not within the mesh cycle: give 0 ≤ phase < 1")
-    if points_per_line < 1:
-        raise ValueError(f"points_per_line = {points_per_line}: give at least 1")
-    error, found, trace = touching(pair, phases, points_per_line)
-    part = (found.end - found.start) / points_per_line
-    along = unit(trace.tangent)
-    across = cross(trace.driver.normal, along)
-    length = part[:, None] * np.sqrt(dot(trace.tangent, trace.tangent))
-    columns = (
-        trace.driver.point,
-        trace.driver.normal,
-        length,
-        trace.gap + pair.openings(found.pairs)[:, None],
-        relative_curvature(trace.driver, trace.driven, across),
-        relative_curvature(trace.driver, trace.driven, along),
-        _located(pair.driver, trace.driver.point, found.driver),
-        _located(pair.driven, trace.driven.point, found.driven),
-    )
-    rows = zip(found.pairs, *columns, strict=True)
-    lines = [ContactLine(int(number), *parts) for number, *parts in rows]
-    made = []
-    for k, phase in enumerate(phases):
-        own = np.flatnonzero(found.position == k)
-        rotations = float(found.driver[own[0]]), float(found.driven[own[0]])
-        own_lines = tuple(lines[i] for i in own)
-        made.append(MeshPosition(k, phase, *rotations, float(error[k]), own_lines))
-    return tuple(made)
+        Raises
+        ------
+        ValueError
+            If a phase or `points_per_line` is out of range.
+        NoContactError
+            If no pair of teeth is within both active flanks at one of the phases.
+        """
+        if isinstance(phases, int):
+            phases = [index / phases for index in range(phases)]
+        wrong = [phase for phase in phases if not 0.0 <= phase < 1.0]
+        if wrong:
+            raise ValueError(f"phase = {wrong[0]} is not within the mesh cycle: give 0 ≤ phase < 1")
+        if points_per_line < 1:
+            raise ValueError(f"points_per_line = {points_per_line}: give at least 1")
+        error, found, trace = touching(self, phases, points_per_line)
+        part = (found.end - found.start) / points_per_line
+        along = unit(trace.tangent)
+        across = cross(trace.driver.normal, along)
+        length = part[:, None] * np.sqrt(dot(trace.tangent, trace.tangent))
+        columns = (
+            trace.driver.point,
+            trace.driver.normal,
+            length,
+            trace.gap + self.openings(found.pairs)[:, None],
+            relative_curvature(trace.driver, trace.driven, across),
+            relative_curvature(trace.driver, trace.driven, along),
+            _located(self.driver, trace.driver.point, found.driver),
+            _located(self.driven, trace.driven.point, found.driven),
+        )
+        rows = zip(found.pairs, *columns, strict=True)
+        lines = [ContactLine(int(number), *parts) for number, *parts in rows]
+        made = []
+        for k, phase in enumerate(phases):
+            own = np.flatnonzero(found.position == k)
+            rotations = float(found.driver[own[0]]), float(found.driven[own[0]])
+            own_lines = tuple(lines[i] for i in own)
+            made.append(MeshPosition(k, phase, *rotations, float(error[k]), own_lines))
+        return tuple(made)
 
 
 def transmission_error(pair: GearPair, phase: float) -> float:
