@@ -39,6 +39,17 @@ def rides_on(gears: Mapping[str, Gear], *names: str) -> str | None:
     return next((carrier for carrier in riding if carrier), None)
 
 
+def on_one_shaft(gears: Iterable[str], shafts: Iterable[tuple[str, str]]) -> list[tuple[str, ...]]:
+    """Return the gears that shafts join, in their order, and each of the others by itself."""
+    order = {name: k for k, name in enumerate(gears)}
+    together = {name: {name} for name in order}
+    for one, other in shafts:
+        joined = together[one] | together[other]
+        together |= dict.fromkeys(joined, joined)
+    groups = {id(group): group for group in together.values()}
+    return [tuple(sorted(group, key=order.__getitem__)) for group in groups.values()]
+
+
 def reach(sources: Iterable[str], taken: Steps, avoiding: str | None = None) -> set[str]:
     """Return the gears that steps lead to, the sources among them, through all gears but one."""
     ahead: dict[str, list[str]] = {}

@@ -10,9 +10,10 @@ from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from loadshare.case.power_flow import on_one_shaft
 from loadshare.train.gear import Gear
 from loadshare.train.mesh import MeshGeometryError, contact_of
-from loadshare.train.planetary import members, on_one_shaft
+from loadshare.train.planetary import members
 
 RATIO_TOLERANCE = 1e-3
 """Largest relative difference between two paths' speed ratios that rounding of radii explains."""
@@ -33,14 +34,14 @@ class Kinematics:
     Attributes
     ----------
     gears : mapping of str to Gear
-    conflicts : tuple of Conflict
     determined : bool
         Whether all speeds follow from that of the input.
+    conflicts : tuple of Conflict
     """
 
     gears: Mapping[str, Gear]
-    conflicts: tuple[Conflict, ...]
     determined: bool = True
+    conflicts: tuple[Conflict, ...] = ()
 
 
 def settle(
@@ -112,22 +113,12 @@ def settle(
                 elif not planetary:
                     conflicts += _compare(key, known, found)
     if planetary and not conflicts:
-        return _of_sets(_as_shafts_turn(settled, shafts), meshes, shafts, first)
-    return Kinematics(settled, tuple(conflicts))
-
-
-def _of_sets(
-    gears: Mapping[str, Gear],
-    meshes: Mapping[str, tuple[str, str]],
-    shafts: Mapping[str, tuple[str, str]],
-    first: str,
-) -> Kinematics:
-    """Settle a train with planetary sets, whose senses were walked."""
-    try:
-        found, determined = members(gears, meshes, shafts, first)
-    except ValueError as error:
-        return Kinematics(gears, (Conflict("operating.input", str(error)),))
-    return Kinematics(found, (), determined)
+        try:
+            turning = _as_shafts_turn(settled, shafts)
+            return Kinematics(*members(turning, meshes, shafts, first))
+        except ValueError as error:
+            conflicts.append(Conflict("operating.input", str(error)))
+    return Kinematics(settled, conflicts=tuple(conflicts))
 
 
 def _as_shafts_turn(
@@ -139,7 +130,7 @@ def _as_shafts_turn(
     a rotation in: the meshes tell (see `Mesh.along`), shafts need not.
     """
     found = dict(gears)
-    for first, *others in on_one_shaft(gears, shafts):
+    for first, *others in on_one_shaft(gears, shafts.values()):
         for other in others:
             along = 1 if gears[other].axis @ gears[first].axis > 0.0 else -1
             found[other] = replace(gears[other], sense=along * gears[first].sense)

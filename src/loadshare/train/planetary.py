@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from loadshare.case.power_flow import on_one_shaft
 from loadshare.train.gear import Gear, cross
 from loadshare.train.ring import transverse
 from loadshare.train.seen import seen_from, speed_on
@@ -52,7 +53,7 @@ def members(
             both = speeds[name], speeds[frame]
             relative[name] = speed_on(gears[name], gears[frame], both)
     found = dict(gears)
-    for group in on_one_shaft(gears, shafts):
+    for group in on_one_shaft(gears, shafts.values()):
         # What stands still in the housing has no sense there.
         seen = [(speeds if relative[n] and not gears[n].carrier else relative)[n] for n in group]
         seen += [relative[name] for name in group]
@@ -72,17 +73,6 @@ def members(
             pins = [float(np.linalg.norm(g.seat)) for g in found.values() if g.carrier == name]
             found[name] = replace(gear, base_radius=max(pins or radii))
     return found, determined
-
-
-def on_one_shaft(
-    gears: Iterable[str], shafts: Mapping[str, tuple[str, str]]
-) -> Iterator[tuple[str, ...]]:
-    """Yield the gears that shafts join, in their order, and each of the others by itself."""
-    together: dict[str, set[str]] = {name: {name} for name in gears}
-    for one, other in shafts.values():
-        joined = together[one] | together[other]
-        together |= dict.fromkeys(joined, joined)
-    yield from dict.fromkeys(tuple(n for n in together if n in together[g]) for g in together)
 
 
 def _on_pin(planet: Gear, gears: Mapping[str, Gear]) -> Gear:

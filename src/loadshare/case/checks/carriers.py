@@ -12,7 +12,7 @@ from loadshare.case.gears import Gear
 from loadshare.case.keys import Path
 from loadshare.case.line_of_action import centre_distance
 from loadshare.case.place import Vector, minus
-from loadshare.case.power_flow import rides_on
+from loadshare.case.power_flow import backwards, reach, rides_on
 from loadshare.case.words import choices
 from loadshare.errors import Problem
 
@@ -188,12 +188,8 @@ def check_planet_errors(draft: Draft) -> Iterator[Problem]:
 
 
 def _on_rigid_shafts(draft: Draft, start: str) -> set[str]:
-    reached, fresh = {start}, {start}
-    while fresh:
-        ends = [set(s.ends) for s in draft.shafts.values() if s.stiffness == "rigid"]
-        fresh = set().union(*(pair for pair in ends if pair & fresh)) - reached
-        reached |= fresh
-    return reached
+    rigid = [shaft.ends for shaft in draft.shafts.values() if shaft.stiffness == "rigid"]
+    return reach([start], [*rigid, *backwards(rigid)])
 
 
 def _coaxial(carrier: Gear, gear: Gear, offset: Vector) -> bool:

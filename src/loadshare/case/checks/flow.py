@@ -14,6 +14,7 @@ from loadshare.case.power_flow import (
     backwards,
     from_the_other_end,
     has_sets,
+    on_one_shaft,
     reach,
     steps,
 )
@@ -102,19 +103,11 @@ def _leading_back(
 
 def _goes_round(draft: Draft) -> bool:
     """Tell whether meshes, driver to driven, lead back to a gear or to another on its shaft."""
-    leader = {gear: gear for gear in draft.gears}
-
-    def leading(gear: str) -> str:
-        while leader[gear] != gear:
-            leader[gear] = gear = leader[leader[gear]]
-        return gear
-
-    for shaft in draft.shafts.values():
-        one, other = shaft.ends
-        leader[leading(one)] = leading(other)
-    follows: dict[str, set[str]] = {}
+    joined = on_one_shaft(draft.gears, [shaft.ends for shaft in draft.shafts.values()])
+    group = {gear: together for together in joined for gear in together}
+    follows: dict[tuple[str, ...], set[tuple[str, ...]]] = {}
     for mesh in draft.meshes.values():
-        follows.setdefault(leading(mesh.driven), set()).add(leading(mesh.driver))
+        follows.setdefault(group[mesh.driven], set()).add(group[mesh.driver])
     try:
         TopologicalSorter(follows).prepare()
     except CycleError:
