@@ -31,26 +31,21 @@ def schema_of(model: type[Element], **settings: Any) -> dict[str, Any]:
     **settings
         As for `pydantic.BaseModel.model_json_schema`.
     """
-    for each in _within(model):
+    for each in _within(model, {model}):
         for name, about in each.model_fields.items():
             about.description = description(each, name) or about.description
         each.model_rebuild(force=True)
     return model.model_json_schema(**settings)
 
 
-def _within(model: type[Element]) -> Iterator[type[Element]]:
-    """Yield the elements that an element may hold, and at last itself."""
-    seen: dict[type[Element], None] = {}
-
-    def visit(one: type[Element]) -> None:
-        for about in one.model_fields.values():
-            for inner in elements_in(about.annotation):
-                if inner not in seen:
-                    visit(inner)
-        seen[one] = None
-
-    visit(model)
-    yield from seen
+def _within(model: type[Element], seen: set[type[Element]]) -> Iterator[type[Element]]:
+    """Yield the elements that an element may hold, except those seen, and at last itself."""
+    for about in model.model_fields.values():
+        for inner in elements_in(about.annotation):
+            if inner not in seen:
+                seen.add(inner)
+                yield from _within(inner, seen)
+    yield model
 
 
 @cache

@@ -119,7 +119,7 @@ def read_draft(
     return draft
 
 
-def as_data(given: Any, file: str = "case") -> Any:
+def as_data(given: Any, file: str = "case", path: Path = ()) -> Any:
     """Return what a user built in Python as plain data, the same that a file would give.
 
     Parameters
@@ -128,6 +128,7 @@ def as_data(given: Any, file: str = "case") -> Any:
         Elements, tables, lists, arrays, physical values; names may be numbers, None means left
         out.
     file : str
+    path : tuple of str or int
         Where it is, for messages.
 
     Returns
@@ -140,10 +141,6 @@ def as_data(given: Any, file: str = "case") -> Any:
     CaseError
         If it is nested too deeply, or a table has too many entries.
     """
-    return _as_data(given, (), file)
-
-
-def _as_data(given: Any, path: Path, file: str) -> Any:
     if len(path) > ALLOWED.depth:
         allowed = f"at most {ALLOWED.depth} tables and lists within one another"
         raise CaseError([Problem(file, "", "", "is nested too deeply", allowed)])
@@ -154,13 +151,13 @@ def _as_data(given: Any, path: Path, file: str) -> Any:
             message, allowed = f"has {len(given)} entries", f"at most {ALLOWED.entries}"
             raise CaseError([Problem(file, dotted(path), "", message, allowed)])
         named = ((str(k), item) for k, item in given.items() if item is not None)
-        return {key: _as_data(item, (*path, key), file) for key, item in named}
+        return {key: as_data(item, file, (*path, key)) for key, item in named}
     given = as_text(given)
     if hasattr(given, "dtype") and hasattr(given, "tolist"):
         # An array of NumPy or a column of pandas, neither of which is imported for this.
         given = given.tolist()
     if isinstance(given, list | tuple | range | Iterator):
-        return [_as_data(item, (*path, k), file) for k, item in enumerate(given)]
+        return [as_data(item, file, (*path, k)) for k, item in enumerate(given)]
     return given
 
 

@@ -217,9 +217,9 @@ Count = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.samples)]
 Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
 Steps = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.steps)]
 
+OneOrMore = Annotated[T, Tag(VALUE)] | Annotated[tuple[T, ...], Field(min_length=1), Tag(LIST)]
 PerPosition = Annotated[
-    Annotated[T, Tag(VALUE)] | Annotated[tuple[T, ...], Field(min_length=1), Tag(LIST)],
-    shaped("a value with its unit, or a list of them, one per position"),
+    OneOrMore[T], shaped("a value with its unit, or a list of them, one per position")
 ]
 """A value that may be given once, or once per position."""
 

@@ -14,6 +14,7 @@ from loadshare.case.element import (
     TABLE,
     VALUE,
     Element,
+    OneOrMore,
     Rule,
     T,
     shaped,
@@ -40,15 +41,14 @@ from loadshare.case.rolling import BALL, ROLLER, bearing_coefficient
 from loadshare.case.words import count
 from loadshare.settings import ALLOWED
 
-PerSection = Annotated[
-    Annotated[T, Tag(VALUE)] | Annotated[tuple[T, ...], Field(min_length=1), Tag(LIST)],
-    shaped("a length, or a list of them, one per section"),
-]
+PerSection = Annotated[OneOrMore[T], shaped("a length, or a list of them, one per section")]
 """A length of a shaft, or those of its sections."""
 
 BEARING_LAWS = ("stiffness", "ball_stiffness", "roller_stiffness", "rolling")
 """Keys of the law of a bearing beyond its clearance."""
 STEEPEST_CONTACT = Quantity("75 deg", math.radians(75.0))
+RigidOr = Quantity | Literal["rigid"]
+TORSION, WALL = (s.bounded(above=0).or_words("rigid") for s in (TORSIONAL_STIFFNESS, STIFFNESS))
 Load = Annotated[Quantity, FORCE.bounded(at_least=0)]
 
 
@@ -58,13 +58,7 @@ class Shaft(Element):
     ends: tuple[str, str] = Field(default=("", ""), json_schema_extra=without_default)
     """The two gears that it joins; taken from the shaft's name when left out."""
 
-    stiffness: (
-        Annotated[
-            Quantity | Literal["rigid"],
-            TORSIONAL_STIFFNESS.bounded(above=0).or_words("rigid"),
-        ]
-        | None
-    ) = None
+    stiffness: Annotated[RigidOr, TORSION] | None = None
     """Torsional stiffness [torque/angle], or rigid; else it follows from diameter and length."""
 
     diameter: PerSection[Radius] | None = None
@@ -94,8 +88,7 @@ class Shaft(Element):
             return
         if not sizes:
             hint = "Or give diameter and length."
-            allowed = TORSIONAL_STIFFNESS.or_words("rigid").allowed
-            yield Rule("is missing", ("stiffness",), allowed, hint)
+            yield Rule("is missing", ("stiffness",), TORSION.allowed, hint)
             return
         for key in {"diameter", "length"} - set(sizes):
             yield Rule("is missing", (key,), LENGTH.allowed, f"It goes with {sizes[0]}.")
@@ -232,9 +225,7 @@ class Ring(Element):
     offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))
     """Circle: middle of the disc, from the gear's centre [length]."""
 
-    stiffness: Annotated[
-        Quantity | Literal["rigid"], STIFFNESS.bounded(above=0).or_words("rigid")
-    ] = "rigid"
+    stiffness: Annotated[RigidOr, WALL] = "rigid"
     """Stiffness of the ring [force/length], or rigid."""
 
     measured: Literal["assembled", "nominal"] = "assembled"
@@ -311,13 +302,7 @@ class Bearing(Element):
     clearance: Distance
     """Radial clearance [length]: how far the centre moves before the bearing holds it."""
 
-    stiffness: (
-        Annotated[
-            Quantity | Literal["rigid"],
-            STIFFNESS.bounded(above=0).or_words("rigid"),
-        ]
-        | None
-    ) = None
+    stiffness: Annotated[RigidOr, WALL] | None = None
     """Stiffness from there on [force/length], or rigid."""
 
     ball_stiffness: Annotated[Quantity, BALL_STIFFNESS.bounded(above=0)] | None = None

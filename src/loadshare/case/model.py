@@ -251,8 +251,6 @@ def _view(case: Case) -> View:
 
 def _operating(case: Case) -> str:
     point = case.operating
-    if point is None:
-        return ""
     given = case.to_dict()["operating"]
     load = ", ".join(f"{k} {given[k]}" for k in ("torque", "power", "speed") if k in given)
     return f"{point.input} → {point.output}, {load}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, Strict, Tag
@@ -61,13 +61,9 @@ class Spread(Element):
     def rules(self) -> Iterator[Rule]:
         """Yield numbers that the distribution lacks, or does not know."""
         needed = NUMBERS[self.distribution]
-        for key in needed:
-            if getattr(self, key) is None:
-                yield Rule("is missing", (key,), hint=f"A {self.distribution} input needs it.")
-        for key in self.given("mean", "deviation", "low", "high", "scale"):
-            if key not in needed:
-                allowed = ", ".join(("distribution", *needed))
-                yield Rule(f"does not apply to a {self.distribution} input", (key,), allowed)
+        given = self.given("mean", "deviation", "low", "high", "scale")
+        allowed = "distribution", *needed
+        yield from _fitting(self, f"{self.distribution} input", needed, given, allowed)
 
 
 class Group(Element):
@@ -165,11 +161,18 @@ class Study(Element):
     def rules(self) -> Iterator[Rule]:
         """Yield keys that the kind lacks, or does not know."""
         needed, possible = KEYS[self.kind]
-        for key in needed:
-            if getattr(self, key) is None:
-                yield Rule("is missing", (key,), hint=f"A {self.kind} needs it.")
-        known = (*needed, *possible)
-        for key in OWN:
-            if key in self.model_fields_set and key not in known:
-                allowed = ", ".join((*known, "positions"))
-                yield Rule(f"does not apply to a {self.kind}", (key,), allowed)
+        given = [key for key in OWN if key in self.model_fields_set]
+        allowed = *needed, *possible, "positions"
+        yield from _fitting(self, self.kind, needed, given, allowed)
+
+
+def _fitting(
+    element: Element, kind: str, needed: Iterable[str], given: Iterable[str], allowed: Sequence[str]
+) -> Iterator[Rule]:
+    """Yield keys that an element of some kind needs and lacks, and those that it does not know."""
+    for key in needed:
+        if getattr(element, key) is None:
+            yield Rule("is missing", (key,), hint=f"A {kind} needs it.")
+    for key in given:
+        if key not in allowed:
+            yield Rule(f"does not apply to a {kind}", (key,), ", ".join(allowed))

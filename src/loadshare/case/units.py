@@ -102,17 +102,16 @@ FACTORS: dict[str, dict[str, float]] = {
     "N*m": {"N*m": 1.0, "kN*m": 1e3},
     "W": {"W": 1.0, "kW": 1e3, "MW": 1e6},
     "N/m": {"N/m": 1.0, "N/mm": 1e3, "N/um": 1e6},
-    "N/m^1.5": {"N/m^1.5": 1.0},
-    "N/m^(10/9)": {"N/m^(10/9)": 1.0},
-    "N*m/rad": {"N*m/rad": 1.0},
-    "rad/(N*m)": {"rad/(N*m)": 1.0},
-    "rad/(N*m)^(2/3)": {"rad/(N*m)^(2/3)": 1.0},
     "kg": {"kg": 1.0, "g": 1e-3},
-    "kg/m^3": {"kg/m^3": 1.0},
     "Pa": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
-    "K": {"K": 1.0},
     "1/K": {"1/K": 1.0, "/K": 1.0},
-    "m/s^2": {"m/s^2": 1.0},
+    **{
+        si: {si: 1.0}
+        for si in (
+            *("N/m^1.5", "N/m^(10/9)", "N*m/rad", "rad/(N*m)", "rad/(N*m)^(2/3)"),
+            *("kg/m^3", "K", "m/s^2"),
+        )
+    },
 }
 """What the registry says of the commonest spellings, by SI unit: starting it takes as long as a
 solve."""
