@@ -161,7 +161,7 @@ class _Open:
             there[:, chunk.columns] = self.by_sample(values)
         self.chunks.append(chunk)
         for start in range(0, len(found.passed), count):
-            self.equilibria.append(found.equilibria.part(slice(start, start + count)))
+            self.equilibria.append(found.equilibria.take(slice(start, start + count)))
 
     def answer(self, row: int, p: int, found: Answer) -> None:
         """Write what the ladder found for a sample at a position."""

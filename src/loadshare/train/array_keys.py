@@ -20,6 +20,11 @@ _SPLINE = {
     "friction": "",
     "normal_force": "N",
 }
+_BEARING = {
+    "stiffness": "N/m",
+    "ball_stiffness": "N/m^1.5",
+    "roller_stiffness": "N/m^(10/9)",
+}
 _MESH = {
     ("stiffness",): "N*m/rad",
     ("gap",): "rad",
@@ -65,17 +70,11 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
         case ("rings", gear, "float") | ("rings", gear, "float", "up" | "down"):
             derived = isinstance(case.rings[str(gear)].float_, spec.Backlashes)
             return None if derived else _LENGTH
-        case ("rings", _, "clearance") | ("rings", _, "clearance", int()) | ("rings", _, "radius"):
+        case ("rings" | "bearings", _, "clearance", *_) | ("rings", _, "radius"):
             return _LENGTH
-        case ("bearings", _, "clearance"):
-            return _LENGTH
-        case ("bearings", bearing, "stiffness"):
+        case ("bearings", bearing, key) if key in _BEARING:
             words = isinstance(case.bearings[str(bearing)].stiffness, str)
-            return "N/m" if column.is_positive and not words else None
-        case ("bearings", _, "ball_stiffness"):
-            return "N/m^1.5" if column.is_positive else None
-        case ("bearings", _, "roller_stiffness"):
-            return "N/m^(10/9)" if column.is_positive else None
+            return _BEARING[str(key)] if column.is_positive and not words else None
         case ("splines", _, key):
             return _SPLINE.get(str(key))
         case ("meshes", mesh, *tail):

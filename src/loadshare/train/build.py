@@ -158,22 +158,15 @@ def _kept(
     return {name for name in now if (section, name) not in changed}
 
 
-def _support(case: spec.Case, name: str) -> Vector | None:
-    support = case.gears[name].support
-    if support is None:
-        return np.zeros(2) if case.floats(name) else None
-    if isinstance(support, str):
-        return np.zeros(2) if support == "free" else None
-    both = support if isinstance(support, tuple) else (support, support)
-    return np.stack([k.si for k in both if isinstance(k, spec.Quantity)], axis=-1)
-
-
 def _supported(case: spec.Case, gear: Gear) -> Gear:
     """Return a gear on its support: of a full matrix, seen from the principal directions."""
-    given = case.gears[gear.name].support
-    if not isinstance(given, tuple) or not isinstance(given[0], tuple):
-        return replace(gear, support=_support(case, gear.name))
-    matrix = np.array([[k.si for k in row] for row in given if isinstance(row, tuple)])
+    given = case.gears[gear.name].support or ("free" if case.floats(gear.name) else "rigid")
+    if isinstance(given, str):
+        return replace(gear, support=np.zeros(2) if given == "free" else None)
+    rows = given if isinstance(given, tuple) else (given, given)
+    if alike := [k.si for k in rows if isinstance(k, spec.Quantity)]:
+        return replace(gear, support=np.stack(alike, axis=-1))
+    matrix = np.array([[k.si for k in row] for row in rows if isinstance(row, tuple)])
     stiffness, _ = np.linalg.eigh(0.5 * (matrix + matrix.T))
     twice = math.atan2(matrix[0, 1] + matrix[1, 0], matrix[0, 0] - matrix[1, 1])
     # The directions must jump somewhere as the entries change: not where an entry off the diagonal

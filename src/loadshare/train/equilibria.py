@@ -128,12 +128,8 @@ class Equilibria:
         """Return the answers with a function applied to each of their arrays."""
         return Equilibria(self.names, *map(function, self.arrays))
 
-    def part(self, samples: slice) -> Equilibria:
-        """Return some of the samples, as a view."""
-        return self.mapped(lambda array: array[samples])
-
-    def take(self, samples: Numbers) -> Equilibria:
-        """Return some of the samples, as a copy."""
+    def take(self, samples: Numbers | slice) -> Equilibria:
+        """Return some of the samples: as a copy, those of a slice as a view."""
         return self.mapped(lambda array: array[samples])
 
     def one(self, sample: int, index: int) -> Equilibrium:

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from loadshare.array_types import Array, Numbers
 from loadshare.contact.arc import Arc
 from loadshare.contact.law import Law, PowerLaw, TableLaw
+from loadshare.train.elements import Spline
 from loadshare.train.ring import DrumRing, transverse
 from loadshare.train.train import Train
 
@@ -209,13 +210,13 @@ def _lasting(train: Train) -> dict[str, Array]:
         "clocking": _table([s.clocking for s in train.shafts.values()]),
         "torsion": _table([s.stiffness for s in train.shafts.values()]),
         "support": _table([_support(g.support) for g in train.gears.values()], 2),
-        "arc_clearance": _pairs([r.clearances for r in drums]),
-        "stop": _pairs([(r.up, r.down) for r in drums]),
+        "arc_clearance": _rows([r.clearances for r in drums], 2),
+        "stop": _rows([(r.up, r.down) for r in drums], 2),
         "wall": _table([0.0 if math.isinf(r.stiffness) else 1.0 / r.stiffness for r in drums]),
         "round_radius": _table([r.radius for r in rounds]),
         "round_stiffness": _table([r.stiffness for r in rounds]),
         "round_power": _table([r.power for r in rounds]),
-        "spline": _splines(train),
+        "spline": _rows([_spline(s) for s in train.splines.values()], 5),
     }
     if not any(mesh.changes for mesh in train.meshes.values()):
         found |= _of_flanks(train)
@@ -326,10 +327,10 @@ def _table(values: Sequence[ArrayLike], *inner: int) -> Array:
     return table
 
 
-def _pairs(values: Sequence[tuple[float, float]]) -> Array:
-    """Put pairs of numbers side by side, shape (S or 1, pairs, 2)."""
-    table = _table([number for pair in values for number in pair])
-    return table.reshape(len(table), len(values), 2)
+def _rows(rows: Sequence[tuple[float, ...]], length: int) -> Array:
+    """Put rows of numbers of one length side by side, shape (S or 1, rows, length)."""
+    table = _table([number for row in rows for number in row])
+    return table.reshape(len(table), len(rows), length)
 
 
 def _torques(train: Train, index: Any) -> Array:
@@ -340,19 +341,11 @@ def _torques(train: Train, index: Any) -> Array:
     return _table(found)
 
 
-def _splines(train: Train) -> Array:
-    rows = [
-        (
-            s.bending_stiffness,
-            math.nan if s.stick_limit is None else s.stick_limit,
-            s.clearance,
-            math.nan if s.friction_force is None else s.friction_force,
-            s.friction_per_torque,
-        )
-        for s in train.splines.values()
-    ]
-    table = _table([number for row in rows for number in row])
-    return table.reshape(len(table), len(rows), 5)
+def _spline(spline: Spline) -> tuple[float, ...]:
+    stick = math.nan if spline.stick_limit is None else spline.stick_limit
+    friction = math.nan if spline.friction_force is None else spline.friction_force
+    per_torque = spline.friction_per_torque
+    return spline.bending_stiffness, stick, spline.clearance, friction, per_torque
 
 
 def _support(support: Array | None) -> Array:

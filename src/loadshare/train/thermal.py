@@ -45,15 +45,12 @@ def flank_growth(case: spec.Case, pair: Pair) -> float:
     way = transverse(driven.centre - driver.centre, driver.axis)
     way = way / np.linalg.norm(way)
     # From a centre to the pitch point: in an internal mesh both point away from the ring's centre.
-    to_pitch = {"driver": way, "driven": -way}
-    if driven.kind == "internal":
-        to_pitch["driver"] = -way
-    elif driver.kind == "internal":
-        to_pitch["driven"] = way
+    ahead = -way if driven.kind == "internal" else way
+    back = way if driver.kind == "internal" else -way
     total = 0.0
-    for gear, toward, sign in ((driver, "driver", 1.0), (driven, "driven", -1.0)):
+    for gear, to_pitch, sign in ((driver, ahead, 1.0), (driven, back, -1.0)):
         radius = gear.base_radius / np.cos(pair.line.pressure_angle)
-        total += sign * growth_of(case, gear.name) * radius * float(normal @ to_pitch[toward])
+        total += sign * growth_of(case, gear.name) * radius * float(normal @ to_pitch)
     return total
 
 
