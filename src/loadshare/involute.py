@@ -55,6 +55,8 @@ class InvoluteTooth:
         Profile shift coefficient x.
     addendum : float
         Height of the tip above the datum line, in modules, alteration of the tip included.
+    dedendum : float
+        Depth of the root below it, in modules; the cutter of a face gear needs none.
     internal : bool
         Whether the teeth point to the axis.
     thickness_allowance : float
@@ -67,6 +69,7 @@ class InvoluteTooth:
     pressure_angle: float
     profile_shift: float
     addendum: float
+    dedendum: float
     helix_angle: float = 0.0
     internal: bool = False
     thickness_allowance: float = 0.0
@@ -95,6 +98,11 @@ class InvoluteTooth:
     def tip(self) -> float:
         """Tip radius [m]."""
         return self.radius + self.kind * (self.addendum + self.profile_shift) * self.module
+
+    @property
+    def root(self) -> float:
+        """Root radius, as the rack leaves it [m]."""
+        return self.radius - self.kind * (self.dedendum - self.profile_shift) * self.module
 
     @cached_property
     def tip_roll(self) -> float:
@@ -211,14 +219,12 @@ def tip_limit(gear: InvoluteTooth, other: InvoluteTooth, distance: float) -> flo
     return math.hypot(other.base_radius, distance * math.sin(working_angle(gear, other, distance)))
 
 
-def root_clearance(
-    gear: InvoluteTooth, root: float, other: InvoluteTooth, distance: float
-) -> float:
-    """Clearance between the root of a gear, at a radius [m], and the tip of another [m]."""
+def root_clearance(gear: InvoluteTooth, other: InvoluteTooth, distance: float) -> float:
+    """Clearance between the root of a gear and the tip of another [m]."""
     if other.internal:
         # Inside an internal gear the centres are nearer one another than the circles.
-        return other.tip - distance - root
-    return gear.kind * (distance - root) - other.tip
+        return other.tip - distance - gear.root
+    return gear.kind * (distance - gear.root) - other.tip
 
 
 def tips_pass(pinion: InvoluteTooth, ring: InvoluteTooth, distance: float) -> bool:

@@ -94,7 +94,7 @@ Components = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3), Ta
 
 @dataclass(frozen=True, kw_only=True)
 class Tooth(InvoluteTooth):
-    """The teeth of a cylindrical gear, as `InvoluteTooth` has them, and their dedendum [-]."""
+    """The teeth of a cylindrical gear, as `InvoluteTooth` has them."""
 
     module: float
     teeth: int
@@ -105,11 +105,6 @@ class Tooth(InvoluteTooth):
     dedendum: float
     internal: bool
     thickness_allowance: float = 0.0
-
-    @property
-    def root(self) -> float:
-        """Root radius, as the rack leaves it [m]."""
-        return self.radius - self.kind * (self.dedendum - self.profile_shift) * self.module
 
 
 AXES = "x, y, z, or a list of 3 numbers"

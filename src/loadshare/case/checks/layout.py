@@ -97,7 +97,7 @@ def check_tips(draft: Draft) -> Iterator[Problem]:
 
 def _room(gear: Tooth, other: Tooth, distance: float) -> float:
     """Tip radius of the other gear that a gear leaves room for [m]: at most, if it is external."""
-    touches = other.tip + other.kind * root_clearance(gear, gear.root, other, distance)
+    touches = other.tip + other.kind * root_clearance(gear, other, distance)
     if gear.internal:
         return touches
     begins = tip_limit(gear, other, distance)

@@ -171,7 +171,7 @@ def _tip_problems(
         largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
         cuts = f"the tip of this gear cuts into the root fillet of the {name}"
         yield problem(key, other.addendum, cuts, f"at most {digits(down(largest))}")
-    clearance = root_clearance(gear, gear.root, other, pair.actual_distance)
+    clearance = root_clearance(gear, other, pair.actual_distance)
     if clearance <= 0.0:
         allowed = f"less than {digits(down(other.addendum + clearance / other.module))}"
         runs = f"the tip of this gear runs into the root of the {name}"

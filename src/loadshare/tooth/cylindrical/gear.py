@@ -134,11 +134,6 @@ class HelicoidGear(InvoluteTooth, Gear):
         """Width over both halves and their gap [m]."""
         return self.helices * self.face_width + self.helix_gap * (self.helices - 1)
 
-    @property
-    def root(self) -> float:
-        """Root radius [m]."""
-        return self.radius + self.kind * (self.profile_shift - self.dedendum) * self.module
-
     @cached_property
     def twist(self) -> float:
         """Turn of the transverse section per axial length, tan β / r [rad/m]."""

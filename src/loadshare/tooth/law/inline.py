@@ -122,8 +122,7 @@ def _rim(gear: Gear) -> float | None:
     """Radius at which the body ends, where the gear says so [m]; the rim on a web counts first."""
     tooth = gear.tooth
     if gear.rim is not None and tooth is not None:
-        inward = tooth.kind * (tooth.dedendum - tooth.profile_shift) * tooth.module
-        return tooth.radius - inward - tooth.kind * gear.rim.si
+        return tooth.root - tooth.kind * gear.rim.si
     ends = gear.bore or gear.outside_diameter
     return 0.5 * ends.si if ends else None
 
