@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -11,8 +12,12 @@ from pydantic_core import ErrorDetails
 from loadshare.case.described import description
 from loadshare.case.element import MARK, Element, Rule, elements_in
 from loadshare.case.keys import Path
+from loadshare.case.origin import Origin
 from loadshare.case.words import choices, count, did_you_mean
+from loadshare.errors import CaseError
 from loadshare.settings import ALLOWED
+
+Read = TypeVar("Read", bound=Element)
 
 # What each kind of finding is called; the braces are filled from pydantic's context.
 WANTED = {
@@ -126,6 +131,29 @@ def translate(error: ValidationError, model: type[Element]) -> list[Rule]:
     # No element knows how many there are of its kind; each looks at all others.
     found = error.errors(include_url=False)[: ALLOWED.problems]
     return [_rule(one, model) for one in found if not _follows(one, found)]
+
+
+def validated(model: type[Read], data: Mapping[str, Any], origin: Origin) -> Read:
+    """Return plain data as an element.
+
+    Parameters
+    ----------
+    model : type of Element
+    data : mapping
+    origin : Origin
+        Where its keys are.
+
+    Raises
+    ------
+    CaseError
+        With all that is wrong.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        found = translate(error, model)
+        problems = [origin.problem(data, f.path, f.message, f.allowed, f.hint) for f in found]
+        raise CaseError(problems) from None
 
 
 def _follows(one: ErrorDetails, found: list[ErrorDetails]) -> bool:

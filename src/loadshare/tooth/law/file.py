@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, Strict, ValidationError
+from pydantic import Field, Strict
 
 from loadshare._version import __version__
 from loadshare.case.element import Element, Rule, written
@@ -18,7 +18,7 @@ from loadshare.case.meshes import Bending, Hertz
 from loadshare.case.origin import Origin
 from loadshare.case.quantity import Angle, Length
 from loadshare.case.reader import read_toml
-from loadshare.case.translate import translate
+from loadshare.case.translate import validated
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Refused
 from loadshare.settings import CERTIFY
@@ -356,9 +356,4 @@ def _law(data: dict[str, Any], origin: Origin) -> MeshLaw:
     if data.get("kind") != "law":
         hint = "The command loadshare ltca writes law files."
         raise CaseError([origin.problem(data, ("kind",), "is no law file", "law", hint)])
-    try:
-        return MeshLaw.model_validate(data)
-    except ValidationError as error:
-        found = translate(error, MeshLaw)
-        problems = [origin.problem(data, f.path, f.message, f.allowed, f.hint) for f in found]
-        raise CaseError(problems) from None
+    return validated(MeshLaw, data, origin)

@@ -10,13 +10,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter, ValidationError
-
 from loadshare.case.keys import parse, unmatched, walk
 from loadshare.case.origin import Origin
 from loadshare.case.reader import read_toml
 from loadshare.case.recognise import TAKEN_BY, is_case
-from loadshare.case.translate import translate
+from loadshare.case.translate import validated
 from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.input import stem
@@ -120,22 +118,20 @@ class PairFile:
         compliance: Model | None = None,
     ) -> PairFile:
         """Return the pair under another torque [N·m], or analysed in another way."""
-        content = self.content
+        content, follows = self.content, "points" not in self.analysis.model_fields_set
+        asked = {"positions": positions, "compliance": compliance}
+        analysis: dict[str, Any] = {key: value for key, value in asked.items() if value is not None}
+        if compliance == "slices":
+            analysis |= {"teeth": None, "layers": None}
+        if compliance is not None and follows:
+            analysis["points"] = POINTS[compliance]
+        changed = self.analysis.model_copy(update=analysis)
+        if follows:
+            changed.model_fields_set.discard("points")
+        update: dict[str, Any] = {"analysis": changed}
         if torque is not None:
-            load = {"torque": type(content.torque)(f"{torque!r} N*m", torque)}
-            content = content.model_copy(update=load)
-        analysis: dict[str, Any] = {}
-        if positions is not None:
-            analysis["positions"] = positions
-        if compliance is not None:
-            analysis["compliance"] = compliance
-            if compliance == "slices":
-                analysis |= {"teeth": None, "layers": None}
-        changed = content.analysis.model_copy(update=analysis)
-        if compliance is not None and "points" not in content.analysis.model_fields_set:
-            changed = changed.model_copy(update={"points": POINTS[compliance]})
-            changed.model_fields_set.discard("points")  # it follows the model
-        return replace(self, content=content.model_copy(update={"analysis": changed}))
+            update["torque"] = type(content.torque)(f"{torque!r} N*m", torque)
+        return replace(self, content=content.model_copy(update=update))
 
     @one_thread()
     def analyse(self, progress: Tick | None = None) -> Ltca:
@@ -211,9 +207,12 @@ def load_pair(path: str | Path) -> PairFile:
     path = Path(path)
     data = read_toml(path)
     origin = Origin(str(path))
-    content, problems = _content(data, origin)
-    problems += _unmatched(data, origin)
-    if content is None or problems:
+    problems = _unmatched(data, origin)
+    try:
+        content = _content(data, origin)
+    except CaseError as error:
+        raise CaseError([*error.problems, *problems]) from None
+    if problems:
         raise CaseError(problems)
     try:
         geometry = built(content)
@@ -222,24 +221,16 @@ def load_pair(path: str | Path) -> PairFile:
     return PairFile(stem(path), content, geometry)
 
 
-def _content(
-    data: dict[str, Any], origin: Origin
-) -> tuple[HelicoidContent | FaceGearContent | None, list[Problem]]:
+def _content(data: dict[str, Any], origin: Origin) -> HelicoidContent | FaceGearContent:
     kind = data.get("kind")
     model = CONTENTS.get(kind) if isinstance(kind, str) else None
     if kind is None and is_case(data):
-        return None, [Problem(origin.file, "", "", TAKEN_BY["case"])]
+        raise CaseError([Problem(origin.file, "", "", TAKEN_BY["case"])])
     if model is None:
         what = "is missing" if kind is None else "is not a kind of pair"
         hint = did_you_mean(kind, CONTENTS)
-        return None, [origin.problem(data, ("kind",), what, choices(CONTENTS), hint)]
-    try:
-        return TypeAdapter(model).validate_python(data), []
-    except ValidationError as error:
-        return None, [
-            origin.problem(data, one.path, one.message, one.allowed, one.hint)
-            for one in translate(error, model)
-        ]
+        raise CaseError([origin.problem(data, ("kind",), what, choices(CONTENTS), hint)])
+    return validated(model, data, origin)
 
 
 def _unmatched(data: Mapping[str, Any], origin: Origin) -> list[Problem]:
