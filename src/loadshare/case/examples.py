@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path, PurePath
 from typing import overload
 
+from loadshare.case.meshes import SOURCES
 from loadshare.case.model import Case
 from loadshare.case.reader import load_case
 from loadshare.errors import CaseError, Problem
@@ -89,12 +90,11 @@ def example_text(name: str) -> str:
     if len(case.files) == 1:
         return file.read_text(encoding="utf-8")
     for mesh, law in case.meshes.items():
-        for key in ("law_file", "geometry"):
-            if getattr(law, key) is not None:
-                message = "reads another file, so it cannot be copied alone"
-                hint = "Copy its folder from the source, or open it with ls.examples()."
-                at = f'meshes."{mesh}".{key}'
-                raise CaseError([Problem(name, at, "", message, hint=hint)])
+        for key in law.given(*SOURCES):
+            message = "reads another file, so it cannot be copied alone"
+            hint = "Copy its folder from the source, or open it with ls.examples()."
+            at = f'meshes."{mesh}".{key}'
+            raise CaseError([Problem(name, at, "", message, hint=hint)])
     return case.to_toml()
 
 

@@ -37,6 +37,8 @@ from loadshare.case.quantity import (
 )
 from loadshare.case.words import count
 
+SOURCES = ("geometry", "law_file")
+"""Keys that name a file from which the law follows."""
 LAWS = ("stiffness", "law", "table", "law_file", "geometry")
 
 MeshStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS.bounded(above=0)]

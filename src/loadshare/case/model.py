@@ -105,11 +105,10 @@ class Case(Content):
     @property
     def law_files(self) -> tuple[FilePath, ...]:
         """Files that mesh laws are read from, or computed from."""
-        named = [(n, key) for n in self.meshes for key in ("law_file", "geometry")]
         return tuple(
-            FilePath(self._origin.of(("meshes", name, key))).parent / file
-            for name, key in named
-            if (file := getattr(self.meshes[name], key)) is not None
+            FilePath(self._origin.of(("meshes", name, key))).parent / getattr(mesh, key)
+            for name, mesh in self.meshes.items()
+            for key in mesh.given("law_file", "geometry")
         )
 
     def to_dict(self) -> dict[str, Any]:

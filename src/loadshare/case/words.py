@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from difflib import SequenceMatcher, get_close_matches
 from typing import Any
 
-from loadshare.case.keys import BARE
+from loadshare.case.keys import dotted
 from loadshare.settings import ALLOWED
 
 LONGEST = 72
@@ -111,7 +111,7 @@ def as_given(value: Any) -> str:
 
 def _toml(value: Any) -> str:
     if isinstance(value, Mapping):
-        pairs = (f"{_key(key)} = {_toml(item)}" for key, item in value.items())
+        pairs = (f"{dotted((str(key),))} = {_toml(item)}" for key, item in value.items())
         return f"{{ {', '.join(pairs)} }}" if value else "{}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_toml, value))}]"
@@ -121,7 +121,3 @@ def _toml(value: Any) -> str:
         # Python writes no numbers of thousands of digits; the last of them do not matter here.
         return hex(value >> max(value.bit_length() - BITS, 0))
     return str(value)
-
-
-def _key(key: object) -> str:
-    return str(key) if BARE.fullmatch(str(key)) else json.dumps(str(key), ensure_ascii=False)

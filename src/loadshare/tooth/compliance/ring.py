@@ -15,9 +15,8 @@ thick, external and internal bodies alike, and says how far a loaded tooth moves
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from math import ceil, pi
 
 import numpy as np
@@ -65,7 +64,7 @@ class Ring:
             In units of (1 − ν²)/E over the face width. Rows are deflection along the tooth's side
             +1, lean that way times t, and lift; columns Q, M/t and N in the same senses.
         """
-        here, beside = self._felt(abs(k))
+        here, beside = self._sums(abs(k))
         found = (here - beside if k < 0 else here + beside).reshape(3, 3)
         twisted, swollen = self._mean
         found[0, 0] += 0.5 * twisted
@@ -77,10 +76,6 @@ class Ring:
             found[0, 1:] *= -1.0
             found[1:, 0] *= -1.0
         return np.asarray(found / pi)
-
-    @cached_property
-    def _felt(self) -> Callable[[int], tuple[Array, Array]]:
-        return cache(self._sums)
 
     def _sums(self, k: int) -> tuple[Array, Array]:
         """Sums (9,) over the orders at `k` teeth from the load: even and odd in k."""

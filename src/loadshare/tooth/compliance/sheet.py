@@ -36,17 +36,13 @@ class Sheet:
         i, j = np.nonzero(self.present)
         return np.column_stack([self.levels[i], self.stations[j]])
 
-    @cached_property
-    def _number(self) -> NDArray[np.int64]:
-        """Numbers of the grid nodes, meaningful for those present."""
-        return np.asarray(np.cumsum(self.present).reshape(self.present.shape) - 1)
-
     def weights(self, points: Array) -> Array:
         """Weights (n, nodes) that interpolate values of the nodes present to points (n, 2).
 
         Points beyond the sheet take the value of its edge.
         """
-        number = self._number
+        # Of the grid nodes, meaningful for those present.
+        number = np.cumsum(self.present).reshape(self.present.shape) - 1
         a, x = _cell(self.levels, points[:, 0])
         b, y = _cell(self.stations, points[:, 1])
         rows = np.arange(len(points))

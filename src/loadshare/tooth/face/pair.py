@@ -172,7 +172,8 @@ class FaceGearPair(GearPair):
         patches = self.driver_patch(pairs, own, driver), self.driven_patch(pairs, other, driven)
         turns = np.stack(self.turns(pairs, driver, driven), axis=-1)
         start = anchor(own, other, patches)
-        return Valleys(self._numbers, turns, start, Known.nothing(len(pairs)))
+        nothing = Known(np.empty((len(pairs), 0)), np.empty((len(pairs), 0, 5)))
+        return Valleys(self._numbers, turns, start, nothing)
 
     @cached_property
     def _numbers(self) -> Flanks:

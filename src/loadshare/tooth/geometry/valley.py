@@ -41,25 +41,12 @@ class Anchor(NamedTuple):
     major: Array  # (m, 3): direction of least relative curvature
     minor: Array  # (m, 3): direction of greatest relative curvature
 
-    def rows(self, chosen: Index) -> Anchor:
-        """Anchors of some lines."""
-        return Anchor(*(part[chosen] for part in self))
-
 
 class Known(NamedTuple):
     """Evenly spaced stations with what was found there; none where nothing was."""
 
     stations: Array  # (m, g)
     found: Array  # (m, g, 5)
-
-    @classmethod
-    def nothing(cls, lines: int) -> Known:
-        """Of lines of which nothing is known."""
-        return cls(np.empty((lines, 0)), np.empty((lines, 0, 5)))
-
-    def rows(self, chosen: Index) -> Known:
-        """What is known of some lines."""
-        return Known(self.stations[chosen], self.found[chosen])
 
 
 def anchor(
@@ -103,8 +90,8 @@ class Valleys:
 
     def rows(self, chosen: Index) -> Valleys:
         """The valleys of some pairs."""
-        parts = self.turns[chosen], self.start.rows(chosen), self.known.rows(chosen)
-        return Valleys(self.flanks, *parts)
+        start, known = ([part[chosen] for part in parts] for parts in (self.start, self.known))
+        return Valleys(self.flanks, self.turns[chosen], Anchor(*start), Known(*known))
 
     def knowing(self, stations: Array, found: Array) -> Valleys:
         """The same valleys with what was found (5, m, g) at evenly spaced stations (m, g)."""

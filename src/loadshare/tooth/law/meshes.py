@@ -13,6 +13,7 @@ from loadshare.case.checks.law_origin import teeth_digest
 from loadshare.case.keys import Path as KeyPath
 from loadshare.case.keys import dotted, parse
 from loadshare.case.line_of_action import centre_distance, facing
+from loadshare.case.meshes import SOURCES
 from loadshare.case.place import minus
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
@@ -28,10 +29,6 @@ Tick = Callable[[int, int], None]
 
 APART = 0.1
 """How far centres may be from where teeth mesh without backlash and need no word, in modules."""
-SOURCES = ("geometry", "law_file")
-"""Keys of a mesh that name a file its law follows from."""
-
-
 OF_A_MESH = ("rated_torque", "pressure_angle", "helix_angle")
 """Keys of a mesh that bear on its law."""
 
@@ -76,8 +73,8 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     sources = {
         name: source
         for name, mesh in case.meshes.items()
-        for source in SOURCES
-        if getattr(mesh, source) is not None and name not in leave
+        for source in mesh.given(*SOURCES)
+        if name not in leave
     }
     words = [n for n, m in case.meshes.items() if isinstance(m.law, str) and n not in leave]
     if not sources and not words:
@@ -127,12 +124,11 @@ def written_in(case: Case, folders: Iterable[Path] | None = None) -> Case:
     places = None if folders is None else list(folders)
 
     def lost(name: str) -> bool:
-        for source in SOURCES:
+        for source in case.meshes[name].given(*SOURCES):
+            own = Path(case.problem(("meshes", name, source), "").file).parent
             named = getattr(case.meshes[name], source)
-            if named is not None:
-                own = Path(case.problem(dotted(("meshes", name, source)), "").file).parent
-                files = {real(place / named) for place in places or ()}
-                return places is None or files != {real(own / named)}
+            files = {real(place / named) for place in places or ()}
+            return places is None or files != {real(own / named)}
         return False
 
     return resolve(case, leave={name for name in case.meshes if not lost(name)})
