@@ -24,82 +24,52 @@ from loadshare.errors import Problem
 from loadshare.settings import ALLOWED
 
 Rule: TypeAlias = Callable[[Draft], Iterator[Problem]]
-CHECKS: tuple[Rule, ...] = (
-    names.check_gear_names,
-    names.check_mesh_names,
-    names.check_about_circles,
-    names.check_pairs,
-    meshing.check_list_lengths,
-    layout.check_distances,
-    fit.check_tooth_kinds,
-    fit.check_racks,
-    fit.check_fit,
-    fit.check_formula_laws,
-    law_origin.check_law_origins,
-    loads.check_masses,
-    loads.check_temperatures,
-    fit.check_backlash_of_teeth,
-    fit.check_tolerance_classes,
-    layout.check_tips,
-    layout.check_neighbours,
-    layout.check_shafts,
-    carriers.check_carriers,
-    carriers.check_planet_meshes,
-    carriers.check_names_of_planet_meshes,
-    carriers.check_planet_shafts,
-    carriers.check_held,
-    carriers.check_twisted_shafts,
-    carriers.check_clockings,
-    carriers.check_planet_errors,
-    floats.check_support,
-    floats.check_spline_law,
-    floats.check_ring_neighbours,
-    floats.check_float_backlashes,
-    names.check_stage_groups,
-    names.check_measured_names,
-    names.check_measured_positions,
-    flow.check_taken_part,
-    flow.check_output_reached,
-    flow.check_loaded_meshes,
-    flow.check_pressed_flanks,
-    meshing.check_teeth_fit,
-    meshing.check_turning,
-    meshing.check_march_teeth,
-    floats.check_idle_inputs,
-    names.check_assumed_patterns,
-)
-
-LOOK_AT_VALUES: Mapping[Rule, frozenset[str]] = {
-    carriers.check_names_of_planet_meshes: frozenset({"meshes"}),
-    carriers.check_clockings: frozenset({"shafts"}),
-    fit.check_fit: frozenset({"meshes"}),
-    floats.check_spline_law: frozenset({"splines"}),
-    floats.check_idle_inputs: frozenset({"meshes"}),
-    flow.check_pressed_flanks: frozenset({"operating"}),
-    meshing.check_turning: frozenset({"errors"}),
-    meshing.check_march_teeth: frozenset({"meshes"}),
+CHECKS: Mapping[Rule, tuple[str, ...]] = {
+    names.check_gear_names: (),
+    names.check_mesh_names: (),
+    names.check_about_circles: (),
+    names.check_pairs: (),
+    meshing.check_list_lengths: (),
+    layout.check_distances: ("gears",),
+    fit.check_tooth_kinds: ("gears",),
+    fit.check_racks: ("gears",),
+    fit.check_fit: ("gears", "meshes"),
+    fit.check_formula_laws: ("gears",),
+    law_origin.check_law_origins: ("gears",),
+    loads.check_masses: ("gears",),
+    loads.check_temperatures: ("gears",),
+    fit.check_backlash_of_teeth: ("gears",),
+    fit.check_tolerance_classes: ("gears",),
+    layout.check_tips: ("gears",),
+    layout.check_neighbours: ("gears",),
+    layout.check_shafts: ("gears",),
+    carriers.check_carriers: ("gears",),
+    carriers.check_planet_meshes: ("gears",),
+    carriers.check_names_of_planet_meshes: ("gears", "meshes"),
+    carriers.check_planet_shafts: ("gears",),
+    carriers.check_held: ("gears",),
+    carriers.check_twisted_shafts: ("gears",),
+    carriers.check_clockings: ("gears", "shafts"),
+    carriers.check_planet_errors: ("gears",),
+    floats.check_support: ("gears",),
+    floats.check_spline_law: ("gears", "splines"),
+    floats.check_ring_neighbours: ("gears",),
+    floats.check_float_backlashes: ("gears",),
+    names.check_stage_groups: (),
+    names.check_measured_names: (),
+    names.check_measured_positions: (),
+    flow.check_taken_part: (),
+    flow.check_output_reached: (),
+    flow.check_loaded_meshes: (),
+    flow.check_pressed_flanks: ("operating",),
+    meshing.check_teeth_fit: ("gears",),
+    meshing.check_turning: ("gears", "errors"),
+    meshing.check_march_teeth: ("gears", "meshes"),
+    floats.check_idle_inputs: ("gears", "meshes"),
+    names.check_assumed_patterns: (),
 }
-"""Rules for which physical values of sections other than the gears matter, and of which."""
-
-LOOK_AT_NO_GEAR: frozenset[Rule] = frozenset(
-    {
-        names.check_gear_names,
-        names.check_mesh_names,
-        names.check_about_circles,
-        names.check_pairs,
-        names.check_stage_groups,
-        names.check_measured_names,
-        names.check_measured_positions,
-        names.check_assumed_patterns,
-        meshing.check_list_lengths,
-        flow.check_taken_part,
-        flow.check_output_reached,
-        flow.check_loaded_meshes,
-        flow.check_pressed_flanks,
-    }
-)
-"""Rules for which no physical value of a gear matters: of gears, they look at names, words and
-counts, and at what is given, as all rules do."""
+"""Sections whose physical values matter to each rule. At names, words and counts, and at what is
+given, all rules look."""
 
 
 def check(draft: Draft, before: Content | None = None) -> Iterator[Problem]:
@@ -134,10 +104,4 @@ def _concerned(draft: Draft, before: Content) -> Collection[Rule]:
         if not same_but_for_values(now, then):
             return CHECKS
         changed.add(name)
-    return [rule for rule in CHECKS if changed & _values_for(rule)]
-
-
-def _values_for(rule: Rule) -> frozenset[str]:
-    """Sections whose physical values matter to a rule."""
-    gears = frozenset() if rule in LOOK_AT_NO_GEAR else frozenset({"gears"})
-    return gears | LOOK_AT_VALUES.get(rule, frozenset())
+    return [rule for rule, sections in CHECKS.items() if not changed.isdisjoint(sections)]
