@@ -9,31 +9,13 @@ from __future__ import annotations
 
 from loadshare import case as spec
 from loadshare.case.checks.meshing import turning_is_given
+from loadshare.case.counts import unit_of
 from loadshare.train.columns import Column
 
-_LENGTH = "m"
-_SPLINE = {
-    "bending_stiffness": "N/m",
-    "stick_limit": _LENGTH,
-    "clearance": _LENGTH,
-    "friction_force": "N",
-    "friction": "",
-    "normal_force": "N",
-}
-_BEARING = {
-    "stiffness": "N/m",
-    "ball_stiffness": "N/m^1.5",
-    "roller_stiffness": "N/m^(10/9)",
-}
-_MESH = {
-    ("stiffness",): "N*m/rad",
-    ("gap",): "rad",
-    ("law", "a"): "rad",
-    ("law", "b"): "rad/(N*m)",
-    ("law", "c"): "rad/(N*m)^(2/3)",
-    ("backlash",): _LENGTH,
-    ("normal_backlash",): _LENGTH,
-}
+_OF_SPLINES = (
+    *("bending_stiffness", "stick_limit", "clearance"),
+    *("friction_force", "friction", "normal_force"),
+)
 
 
 def array_unit(case: spec.Case, column: Column) -> str | None:
@@ -46,59 +28,49 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
     column : Column
         Loads may press other flanks than those of the case: see `pressed_flanks`.
     """
+    return unit_of(column.path) if _becomes_array(case, column) else None
+
+
+def _becomes_array(case: spec.Case, column: Column) -> bool:
     match column.path:
-        case ("operating", "external", _):
-            return "N*m"
-        case ("operating", "forces", _, int()):
-            return "N"
-        case ("operating", "gravity", int()):
-            return "m/s^2"
-        case ("operating", "torque" | "power" as what):
-            return {"torque": "N*m", "power": "W"}[what]
-        case ("errors", gear, "installation", "amount" | "direction" as what):
-            polar = isinstance(case.errors[str(gear)].installation, spec.Offset)
-            return (_LENGTH if what == "amount" else "rad") if polar else None
-        case ("errors", _, "pin", "angular"):
-            return "rad"
+        case ("operating", "torque" | "power") | ("operating", "external", _):
+            return True
+        case ("operating", "forces", _, int()) | ("operating", "gravity", int()):
+            return True
+        case ("errors", gear, "installation", "amount" | "direction"):
+            return isinstance(case.errors[str(gear)].installation, spec.Offset)
         case ("errors", _, "installation", int()) | ("errors", _, "pin", _):
-            return _LENGTH
+            return True
         case ("errors", _, "eccentricity", "amount"):
             # Where it is not known how far gears turn, only an eccentricity of 0 has an answer.
-            return _LENGTH if turning_is_given(case.operating, case.march, case.gears) else None
+            return turning_is_given(case.operating, case.march, case.gears)
         case ("errors", _, "eccentricity", "direction" | "phase"):
-            return "rad"
+            return True
         case ("rings", gear, "float") | ("rings", gear, "float", "up" | "down"):
-            derived = isinstance(case.rings[str(gear)].float_, spec.Backlashes)
-            return None if derived else _LENGTH
-        case ("rings" | "bearings", _, "clearance", *_) | ("rings", _, "radius"):
-            return _LENGTH
-        case ("bearings", bearing, key) if key in _BEARING:
+            return not isinstance(case.rings[str(gear)].float_, spec.Backlashes)
+        case ("rings", _, "clearance") | ("rings", _, "clearance", int()) | ("rings", _, "radius"):
+            return True
+        case ("bearings", _, "clearance"):
+            return True
+        case ("bearings", bearing, "stiffness" | "ball_stiffness" | "roller_stiffness"):
             words = isinstance(case.bearings[str(bearing)].stiffness, str)
-            return _BEARING[str(key)] if column.is_positive and not words else None
+            return column.is_positive and not words
         case ("splines", _, key):
-            return _SPLINE.get(str(key))
-        case ("meshes", mesh, *tail):
-            return _mesh_unit(case, str(mesh), tuple(map(str, tail)), column)
+            return key in _OF_SPLINES
+        case ("meshes", _, "stiffness" | "gap") | ("meshes", _, "law", "b"):
+            return True
+        case ("meshes", mesh, "law", "a"):
+            return case.meshes[str(mesh)].gap is None
+        case ("meshes", _, "law", "c"):
+            # Without a Hertz part the law is linear: a set of its own.
+            return column.is_positive or not column.has_numbers
+        case ("meshes", _, "backlash" | "normal_backlash"):
+            return not any(isinstance(r.float_, spec.Backlashes) for r in case.rings.values())
         case ("shafts", shaft, "stiffness"):
             words = isinstance(case.shafts[str(shaft)].stiffness, str)
-            return "N*m/rad" if column.has_numbers and not words else None
+            return column.has_numbers and not words
         case ("shafts", shaft, "clocking"):
-            return None if isinstance(case.shafts[str(shaft)].stiffness, str) else "rad"
+            return not isinstance(case.shafts[str(shaft)].stiffness, str)
         case ("gears", gear, "support"):
-            words = isinstance(case.gears[str(gear)].support, str)
-            return "N/m" if column.is_positive and not words else None
-    return None
-
-
-def _mesh_unit(case: spec.Case, mesh: str, tail: tuple[str, ...], column: Column) -> str | None:
-    """Unit of a mesh's key; None where it decides which elements there are."""
-    unit = _MESH.get(tail)
-    if tail[0] in ("backlash", "normal_backlash"):
-        derived = any(isinstance(r.float_, spec.Backlashes) for r in case.rings.values())
-        return None if derived else unit
-    if tail == ("law", "c") and column.has_numbers:
-        # Without a Hertz part the law is linear: a set of its own.
-        return unit if column.is_positive else None
-    if tail == ("law", "a") and case.meshes[mesh].gap is not None:
-        return None
-    return unit
+            return column.is_positive and not isinstance(case.gears[str(gear)].support, str)
+    return False
