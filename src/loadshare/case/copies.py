@@ -76,9 +76,7 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
         made[section] = after
         return became
 
-    became = {"gears": spread("gears", lambda name, _: (name,))}
-    for section in (*FLOATS, "errors"):
-        became[section] = spread(section, lambda name, _: (name,))
+    became = {s: spread(s, lambda name, _: (name,)) for s in ("gears", *FLOATS, "errors")}
     for section, keys in ENDS.items():
         became[section] = spread(section, partial(_ends, keys=keys, gears=names))
     _rename_in_stages(made, became["meshes"])

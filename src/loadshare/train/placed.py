@@ -10,14 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TypeVar
 from weakref import WeakKeyDictionary
 
-from loadshare.train.gear import Gear, Vector
+from loadshare.train.gear import Gear
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import turned_about
-from loadshare.train.ring import RoundRing
+from loadshare.train.ring import DrumRing, RoundRing
 from loadshare.train.seen import seen_from
 from loadshare.train.train import Train
+
+Limit = TypeVar("Limit", bound=DrumRing | RoundRing)
 
 
 def train_at(train: Train, index: int) -> Train:
@@ -42,23 +45,19 @@ def _placed(train: Train, index: int) -> Train:
     angle = {name: train.frame_angle(name, rotation) for name in train.gears}
     gears = {name: _gear(gear, train.gears, angle[name]) for name, gear in train.gears.items()}
 
-    def shift(ring: RoundRing) -> Vector:
-        gear = train.gears[ring.gear]
-        turned = 0.0 if gear.carrier is None else angle[ring.gear]
-        return turned_about(gear, ring.offset, turned)
+    def shifted(limit: Limit) -> Limit:
+        if not isinstance(limit, RoundRing):
+            return limit
+        gear = train.gears[limit.gear]
+        turned = 0.0 if gear.carrier is None else angle[limit.gear]
+        return replace(limit, offset=turned_about(gear, limit.offset, turned))
 
     return replace(
         train,
         gears=gears,
         meshes={name: _mesh(mesh, train.gears, angle) for name, mesh in train.meshes.items()},
-        rings={
-            name: replace(ring, offset=shift(ring)) if isinstance(ring, RoundRing) else ring
-            for name, ring in train.rings.items()
-        },
-        bearings={
-            name: replace(bearing, offset=shift(bearing))
-            for name, bearing in train.bearings.items()
-        },
+        rings={name: shifted(ring) for name, ring in train.rings.items()},
+        bearings={name: shifted(bearing) for name, bearing in train.bearings.items()},
         placed=index,
     )
 

@@ -53,6 +53,8 @@ def cells(count: int, changes: Sequence[float]) -> Cells:
     changes : sequence of float
         Phases at which the number of pairs in contact changes, or the course of their lines.
     """
+    from scipy.linalg import block_diag
+
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     places: list[Array] = []
     shares: list[Array] = []
@@ -65,9 +67,4 @@ def cells(count: int, changes: Sequence[float]) -> Cells:
         half = 0.5 * np.diff(ends)
         places.append((0.5 * (ends[1:] + ends[:-1])[:, None] + half[:, None] * nodes).ravel())
         shares.append((half[:, None] * weights).ravel() * count)
-    weight = np.zeros((count, sum(map(len, places))))
-    start = 0
-    for k, share in enumerate(shares):
-        weight[k, start : start + len(share)] = share
-        start += len(share)
-    return Cells(np.concatenate(places) % 1.0, weight)
+    return Cells(np.concatenate(places) % 1.0, np.asarray(block_diag(*shares)))

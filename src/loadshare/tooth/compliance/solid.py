@@ -83,13 +83,10 @@ class Solid:
     free : array (m·layers, 3) of int
         Place of each node's displacements among the free ones; −1 where it is clamped or where
         the element has no node.
-    layers : int
-        Node layers over the width.
     """
 
     factor: LayeredFactor
     free: Index
-    layers: int
 
     @property
     def size(self) -> int:
@@ -148,7 +145,7 @@ def build_solid(mesh: BlockMesh, modulus: float, poisson: float) -> Solid:
     free[nodes[kept]] = np.arange(3 * len(kept)).reshape(-1, 3)
     places = (3 * kept[:, None] + np.arange(3)).ravel()
     matrix = _stiffness(basis, modulus, poisson)[places][:, places]
-    return Solid(LayeredFactor(matrix, np.repeat(layer[kept] // 2, 3)), free, mesh.layers)
+    return Solid(LayeredFactor(matrix, np.repeat(layer[kept] // 2, 3)), free)
 
 
 def _lexicographic(cells: Index, places: Array) -> Index:

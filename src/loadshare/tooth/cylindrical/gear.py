@@ -191,6 +191,11 @@ class HelicoidGear(InvoluteTooth, Gear):
         return self._assumed_radius if self.rim is None else self.rim
 
     @property
+    def rim_thickness(self) -> float:
+        """Thickness of the body below the root [m]."""
+        return abs(self.root - self.rim_radius)
+
+    @property
     def _assumed_radius(self) -> float:
         """Radius at which the gear's body ends where nobody says [m]."""
         # A hub held at next to no radius would wind up without end.

@@ -247,14 +247,12 @@ def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLa
     """Laws by the hash of their pair: those of the cache, and the others computed."""
     from loadshare.tooth.law.folder import computed_law, known_law
 
-    found = {key: known_law(pair) for key, pair in pairs.items()}
-    missing = [key for key, law in found.items() if law is None]
-    total = sum(pairs[key].analysis.positions for key in missing)
-    before = 0
-    laws = {key: law for key, law in found.items() if law is not None}
-    for key in missing:
-        laws[key] = computed_law(pairs[key], _from(progress, before, total))
-        before += pairs[key].analysis.positions
+    laws = {key: law for key, pair in pairs.items() if (law := known_law(pair)) is not None}
+    missing = {key: pair for key, pair in pairs.items() if key not in laws}
+    before, total = 0, sum(pair.analysis.positions for pair in missing.values())
+    for key, pair in missing.items():
+        laws[key] = computed_law(pair, _from(progress, before, total))
+        before += pair.analysis.positions
     return laws
 
 

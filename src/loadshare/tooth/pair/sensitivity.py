@@ -13,8 +13,6 @@ import numpy as np
 
 from loadshare.tooth.analysis.ltca import PairCompliance, ltca
 from loadshare.tooth.compliance.slices import Slices
-from loadshare.tooth.cylindrical.body import HelicoidBody
-from loadshare.tooth.face.body import FaceBody
 from loadshare.tooth.pair.file import PairFile
 
 THINNER, THICKER = 0.5, 1.5
@@ -55,18 +53,19 @@ def rim_effects(pair: PairFile) -> dict[Which, RimEffect]:
         If a position has no certified contact.
     """
     geometry = pair.geometry
-    bodies: dict[Which, Any] = {"driver": geometry.driver, "driven": geometry.driven}
-    sides: dict[Which, int] = {"driver": 1, "driven": geometry.driven_side}
-    own = {name: Slices(bodies[name], sides[name]) for name in bodies}
+    loaded: dict[Which, tuple[Any, int]] = {
+        "driver": (geometry.driver, 1),
+        "driven": (geometry.driven, geometry.driven_side),
+    }
+    own = {name: Slices(*flank) for name, flank in loaded.items()}
     mean = _mean_deflection(pair, own)
     found = {}
-    for name, body in bodies.items():
-        thickness = _thickness(body)
+    for name, (body, side) in loaded.items():
+        thickness = body.gear.rim_thickness
         most = np.inf if body.shape != "external" else 0.5 * (thickness + body.gear.root)
         tried = thickness * THINNER, min(thickness * THICKER, most)
         others = [
-            _mean_deflection(pair, own | {name: Slices(_on_rim(body, rim), sides[name])})
-            for rim in tried
+            _mean_deflection(pair, own | {name: Slices(_on_rim(body, rim), side)}) for rim in tried
         ]
         found[name] = RimEffect(
             (tried[0], thickness, tried[1]), (mean / others[0], 1.0, mean / others[1])
@@ -97,14 +96,7 @@ def _mean_deflection(pair: PairFile, models: dict[Which, Slices]) -> float:
     return float(found.elastic[0, -1])
 
 
-def _thickness(body: HelicoidBody | FaceBody) -> float:
-    if isinstance(body, FaceBody):
-        return body.rim
-    return abs(body.gear.root - body.rim)
-
-
-def _on_rim(body: HelicoidBody | FaceBody, thickness: float) -> HelicoidBody | FaceBody:
-    if isinstance(body, FaceBody):
-        return replace(body, gear=replace(body.gear, rim=thickness))
-    rim = body.gear.root - body.gear.kind * thickness
-    return replace(body, gear=replace(body.gear, rim=rim))
+def _on_rim(body: Any, thickness: float) -> Any:
+    gear = body.gear
+    rim = thickness if body.shape == "face" else gear.root - gear.kind * thickness
+    return replace(body, gear=replace(gear, rim=rim))

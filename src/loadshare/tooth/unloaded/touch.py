@@ -93,14 +93,10 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
     least = relative_curvature(own, other, major)
     greatest = relative_curvature(own, other, minor)
     margins = {name: margin[:, 0] for name, margin in pair.margins((a, b), (c, d)).items()}
+    every = np.stack(list(margins.values()))
+    nearest = np.argmax(every <= every.min(axis=0) + TEETH.same_edge, axis=0)
+    edges = np.where(at_edge, np.array(list(margins))[nearest], "").tolist()
 
-    edges = []
-    for i in range(len(lines.pairs)):
-        nearest = min(float(margin[i]) for margin in margins.values())
-        edge = next(
-            name for name, margin in margins.items() if margin[i] <= nearest + TEETH.same_edge
-        )
-        edges.append(edge if at_edge[i] else "")
     vectors = (part[:, 0] for part in (own.point, own.normal, major, minor))
     apart = pair.openings(lines.pairs) / pair.arm
     leads = error[0] + (turned + apart)[:, None] + lead
