@@ -166,14 +166,8 @@ def defaults() -> dict[str, Any]:
 
     It looks at the signature of what makes each default.
     """
-    return {name: default if alone else {} for name, default, alone in _defaults()}
-
-
-@cache
-def _defaults() -> tuple[tuple[str, Any, bool], ...]:
-    """Names of the sections, their defaults, and whether these are no tables."""
     fields = Draft.model_fields.items()
-    return tuple((name, about.default, about.default_factory is None) for name, about in fields)
+    return {name: {} if about.default_factory else about.default for name, about in fields}
 
 
 def _read_section(

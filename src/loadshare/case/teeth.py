@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+from loadshare.case.gears import Gear
+from loadshare.case.meshes import Mesh
 
 TEETH_TOLERANCE = 1e-2
 """How far given tooth counts may miss the ratio of the base radii, as a part of it [-].
@@ -31,19 +34,15 @@ class Misfit:
 
 
 def tooth_counts(
-    given: Mapping[str, int | None],
-    radii: Mapping[str, float],
-    pairs: Iterable[tuple[str, str]],
+    gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]
 ) -> tuple[dict[str, float], tuple[Misfit, ...]]:
     """Return the teeth of every gear that meshes, over any meshes, with one whose teeth are given.
 
     Parameters
     ----------
-    given : mapping of gear to int or None
-    radii : mapping of gear to float
-        Base radii [m].
-    pairs : iterable of (str, str)
-        Gears that mesh with one another.
+    gears : mapping of str to Gear
+    meshes : mapping of str to Mesh
+        Those of carriers, and of gears that are not there, are left out.
 
     Returns
     -------
@@ -51,10 +50,13 @@ def tooth_counts(
         Given counts as they are; what follows need not be whole, as radii may be rounded [-].
     tuple of Misfit
     """
+    given = {name: gear.teeth for name, gear in gears.items() if not gear.is_carrier}
+    radii = {name: gears[name].acting_radius for name in given}
     partners: dict[str, list[str]] = {name: [] for name in given}
-    for a, b in pairs:
-        partners[a].append(b)
-        partners[b].append(a)
+    for a, b in (mesh.ends for mesh in meshes.values()):
+        if a in given and b in given:
+            partners[a].append(b)
+            partners[b].append(a)
     counts = {name: float(count) for name, count in given.items() if count is not None}
     misfits: list[Misfit] = []
     settled: dict[str, tuple[str, float]] = {}

@@ -159,17 +159,11 @@ def _number_text(number: Fraction | int) -> str:
 def _kinematics(case: spec.Case) -> Kinematics:
     running = 1 if case.operating.running == "counter-clockwise" else -1
     centres = case.centres()
-    pairs = {n: m.ends for n, m in case.meshes.items()}
     # What follows from the counts that are given is a count as well.
-    toothed = {n: g for n, g in case.gears.items() if not g.is_carrier}
-    teeth, _ = tooth_counts(
-        {n: g.teeth for n, g in toothed.items()},
-        {n: g.acting_radius for n, g in toothed.items()},
-        pairs.values(),
-    )
+    teeth, _ = tooth_counts(case.gears, case.meshes)
     return settle(
         {n: _gear(n, g, centres[n], running, teeth.get(n)) for n, g in case.gears.items()},
-        pairs,
+        {n: m.ends for n, m in case.meshes.items()},
         {n: s.ends for n, s in case.shafts.items()},
         case.operating.input,
     )

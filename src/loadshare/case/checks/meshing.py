@@ -37,7 +37,7 @@ def check_teeth_fit(draft: Draft) -> Iterator[Problem]:
     """Yield tooth counts that contradict the base radii of gears that mesh."""
     if not draft.sound("gears", "meshes"):
         return
-    _, misfits = _counts(draft)
+    _, misfits = tooth_counts(draft.gears, draft.meshes)
     for found in misfits:
         number = draft.gears[found.gear].teeth
         message = (
@@ -95,7 +95,7 @@ def check_march_teeth(draft: Draft) -> Iterator[Problem]:
     """Yield meshes of a march whose law changes over a cycle that nothing tells."""
     if draft.march is None or not draft.sound("gears", "meshes"):
         return
-    counts, _ = _counts(draft)
+    counts, _ = tooth_counts(draft.gears, draft.meshes)
     for name, mesh in draft.meshes.items():
         if mesh.driver in draft.gears and mesh.driver not in counts and _varies(mesh):
             message = (
@@ -111,14 +111,3 @@ def _varies(mesh: Mesh) -> bool:
         return True
     lists = (values for _, values in mesh.per_position() if isinstance(values, tuple))
     return any(len(set(values)) > 1 for values in lists)
-
-
-def _counts(draft: Draft) -> tuple[dict[str, float], tuple[Misfit, ...]]:
-    """Tooth counts of the gears and what contradicts; misspelt names are reported elsewhere."""
-    gears = {name: gear for name, gear in draft.gears.items() if not gear.is_carrier}
-    pairs = [m.ends for m in draft.meshes.values()]
-    return tooth_counts(
-        {name: gear.teeth for name, gear in gears.items()},
-        {name: gear.acting_radius for name, gear in gears.items()},
-        [(a, b) for a, b in pairs if a in gears and b in gears],
-    )
