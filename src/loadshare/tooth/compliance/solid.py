@@ -7,15 +7,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from loadshare.tooth.compliance.block import BlockMesh
+from loadshare.tooth.compliance.block import BlockMesh, Index
 from loadshare.tooth.geometry.body import Array
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
-
-Index = NDArray[np.int64]
 
 
 class LayeredFactor:
@@ -36,7 +33,7 @@ class LayeredFactor:
         If the matrix is not positive definite.
     """
 
-    def __init__(self, matrix: csr_matrix, group: NDArray[np.int64]) -> None:
+    def __init__(self, matrix: csr_matrix, group: Index) -> None:
         from scipy.linalg import cholesky, solve_triangular
         from scipy.linalg.blas import dsyrk
 

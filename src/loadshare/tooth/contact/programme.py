@@ -110,7 +110,8 @@ def solve_contacts(
     else:
         force = warm * (load / np.sum(warm, axis=1))[:, None]
     found = _Found.initial(force, warm is not None)
-    of, linear = _Batch(batch.which, load, batch.gap, batch.fixed), _Linear.empty(force.shape[1])
+    of, points = _Batch(batch.which, load, batch.gap, batch.fixed), force.shape[1]
+    linear = _Linear(np.empty((points, points)), np.empty(points), np.empty(points))
     circling = -1
     while (circling := _settle(batch.strips, of, found, linear, circling)) >= 0:
         try:
@@ -177,10 +178,6 @@ class _Linear(NamedTuple):
     gap: Array  # (N,)
     force: Array  # (N,)
 
-    @classmethod
-    def empty(cls, count: int) -> _Linear:
-        return cls(np.empty((count, count)), np.empty(count), np.empty(count))
-
     def answer(self, count: int, load: float, last: Array, solver: str) -> None:
         """Solve it by the solver interface; only `count` of the points are real."""
         linear = self.matrix[:count, :count], self.gap[:count], float(load), last[:count]
@@ -192,7 +189,12 @@ def _certified(batch: ContactBatch, load: Array, found: _Found) -> tuple[Contact
     certificates = certify_contacts(batch, load, found.force, found.approach)
     for name, part, certificate in zip(batch.names, load, certificates, strict=True):
         if not certificate.passed:
-            raise Refused(_message(name, float(part), certificate), certificate.failing)
+            figures = ", ".join(f"{n} {v:.1e}" for n, v in certificate.failing.items())
+            raise Refused(
+                f"{_called(name)}the contact under {part:.6g} N does not pass its certificate: "
+                f"{figures}, allowed {certificate.tolerance:.0e}",
+                certificate.failing,
+            )
     distance = np.where(found.force > 0.0, 0.0, found.distance)
     return tuple(
         Contact(
@@ -205,14 +207,6 @@ def _certified(batch: ContactBatch, load: Array, found: _Found) -> tuple[Contact
 
 def _called(name: str) -> str:
     return f"{name}: " if name else ""
-
-
-def _message(name: str, load: float, certificate: ContactCertificate) -> str:
-    figures = ", ".join(f"{n} {v:.1e}" for n, v in certificate.failing.items())
-    return (
-        f"{_called(name)}the contact under {load:.6g} N does not pass its certificate: {figures}, "
-        f"allowed {certificate.tolerance:.0e}"
-    )
 
 
 def exchange(matrix: Array, gap: Array, load: float, closed: Mask) -> Array | None:

@@ -75,6 +75,7 @@ def _tooth_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
 
 def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     slope, addendum = math.tan(gear.pressure_angle), f"{key}.addendum"
+    pointed = "the teeth are pointed below this tip"
     if rack_tip_half_width(gear) < 0.0:
         room = math.pi / 4 - gear.dedendum * slope
         largest = room / (1.0 / math.cos(gear.pressure_angle) - slope)
@@ -92,16 +93,14 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
         allowed = f"more than {digits(up(gear.addendum_to(gear.base_radius)))}"
         inside = "the tip lies inside the base circle"
         yield problem(addendum, gear.addendum, inside, allowed)
-    elif gear.base_half_angle <= 0.0 or gear.half_angle(gear.tip) <= 0.0:
-        what = "the teeth are pointed below this tip"
-        if gear.base_half_angle <= 0.0:
-            yield problem(addendum, gear.addendum, what, "none with so small a profile shift")
-            return
+    elif gear.base_half_angle <= 0.0:
+        yield problem(addendum, gear.addendum, pointed, "none with so small a profile shift")
+    elif gear.half_angle(gear.tip) <= 0.0:
         allowed = (
             f"less than {digits(down(gear.addendum_to(gear.pointed)))} with this profile shift"
         )
         hint = "A smaller profile shift helps too."
-        yield problem(addendum, gear.addendum, what, allowed, hint)
+        yield problem(addendum, gear.addendum, pointed, allowed, hint)
 
 
 def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:

@@ -34,7 +34,6 @@ from loadshare.tooth.pair.model import (
     ABOUT,
     CONTENTS,
     Analysis,
-    Body,
     Cylindrical,
     FaceGearContent,
     HelicoidContent,
@@ -291,25 +290,20 @@ def _face(content: FaceGearContent) -> FaceGearPair:
     cutter = driven.shaper
     shift = pinion.profile_shift if cutter.profile_shift is None else cutter.profile_shift
     shaper = Shaper(pinion.module, cutter.teeth, pinion.pressure_angle, shift, cutter.addendum)
-    gear = FaceGear(**(_si(driven) | _pitch(driven) | {"shaper": shaper}))
+    gear = FaceGear(**(_si(driven) | {"shaper": shaper}))
     return face_gear_pair(pinion, gear, FaceMisalignment(**_si(content.misalignment)))
 
 
 def _gear(element: Cylindrical, fitting: dict[str, Any]) -> HelicoidGear:
     """A gear; `fitting` gives what it leaves out."""
-    values = _si(element) | _pitch(element)
+    values = _si(element)
     values["modification"] = Modification(**values["modification"])
     return HelicoidGear(**(fitting | values))
-
-
-def _pitch(body: Body) -> dict[str, Any]:
-    """Pitch deviations of a gear, where it has some."""
-    if body.pitch is None:
-        return {}
-    return {"pitch": PitchDeviations(body.pitch.ahead, body.pitch.first_tooth)}
 
 
 def _si(element: Any) -> dict[str, Any]:
     """The values of an element in SI units, without what it leaves out."""
     found: dict[str, Any] = element.model_dump(mode="json", exclude_none=True, context="SI")
+    if "pitch" in found:
+        found["pitch"] = PitchDeviations(element.pitch.ahead, element.pitch.first_tooth)
     return found
