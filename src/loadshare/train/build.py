@@ -31,6 +31,8 @@ from loadshare.train.train import Train
 
 Element = TypeVar("Element")
 
+CHAINS = "chains that begin with a mesh of the limited gear, one on either side of it"
+"""What a float that follows from backlashes needs."""
 JUMP = -2.0
 """Twice the angle of a support's stiffest direction at which it is counted from the other side
 [rad]."""
@@ -106,7 +108,7 @@ def train_of(
         try:
             return _ring(name, ring, gears, meshes)
         except ValueError as error:
-            problems.append(_ring_problem(case, name, str(error)))
+            problems.append(case.problem(("rings", name, "float"), str(error), CHAINS))
             return None
 
     supported = elements("gears", lambda name, _: _supported(case, geometry.gears[name]))
@@ -120,7 +122,8 @@ def train_of(
         return made.closer(flank_growth(case, pair)) if warm else made
 
     def bearing_of(name: str, bearing: spec.Bearing) -> Bearing:
-        made = _bearing(bearing, gears[name])
+        offset = np.array([q.si for q in bearing.offset]) @ gears[name].plane
+        made = Bearing(name, bearing.clearance.si, offset, *bearing.wall)
         return fitted(case, made, gears[name]) if warm else made
 
     meshes = elements("meshes", mesh_of)
@@ -146,12 +149,7 @@ def train_of(
     )
 
 
-def _kept(
-    section: str,
-    now: Mapping[str, Any],
-    before: Mapping[str, Any],
-    changed: Collection[Path] | None,
-) -> set[str]:
+def _kept(section: str, now: Any, before: Any, changed: Collection[Path] | None) -> set[str]:
     """Names of the elements of a section that are not built again (see `train_of`)."""
     if changed is None:
         return {name for name, item in now.items() if item is before[name]}
@@ -254,13 +252,9 @@ def _spline(gear: str, spline: spec.Spline) -> Spline:
     )
 
 
-def _stiffness(value: spec.Quantity | str) -> float:
-    return math.inf if isinstance(value, str) else value.si
-
-
 def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[str, Mesh]) -> Ring:
     gear = gears[name]
-    stiffness = _stiffness(ring.stiffness)
+    stiffness = math.inf if isinstance(ring.stiffness, str) else ring.stiffness.si
     if ring.radius is not None:
         offset = np.array([q.si for q in ring.offset]) @ gear.plane
         return RoundRing(name, ring.radius.si, offset, stiffness)
@@ -269,13 +263,8 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
     across = cross(gear.axis, along / np.linalg.norm(along))
     clearance = _each(ring.clearance)
     if isinstance(ring.float_, spec.Backlashes):
-        up, down = (
-            _float_range(gear, across, meshes, *chains)
-            for chains in (
-                (ring.float_.upward, ring.float_.downward),
-                (ring.float_.downward, ring.float_.upward),
-            )
-        )
+        ways = ring.float_.upward, ring.float_.downward
+        up, down = (_float_range(gear, across, meshes, w) for w in (ways, ways[::-1]))
     elif isinstance(ring.float_, spec.Range):
         up, down = ring.float_.up.si, ring.float_.down.si
     else:
@@ -292,46 +281,29 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
     )
 
 
-def _bearing(bearing: spec.Bearing, gear: Gear) -> Bearing:
-    offset = np.array([q.si for q in bearing.offset]) @ gear.plane
-    return Bearing(gear.name, bearing.clearance.si, offset, *bearing.wall)
-
-
 def _float_range(
-    gear: Gear,
-    across: Vector,
-    meshes: dict[str, Mesh],
-    closing: tuple[str, ...],
-    resting: tuple[str, ...],
+    gear: Gear, across: Vector, meshes: Mapping[str, Mesh], chains: tuple[tuple[str, ...], ...]
 ) -> float:
     """Float that takes up the backlashes of a chain of meshes (formulation, section 6).
 
-    The gear rests on the first mesh of the other chain and rolls on it until the backlash of the
+    The gear rests on the first mesh of the second chain and rolls on it until the backlash of the
     whole chain is closed: y with n_closing·ŷ y + r φ = Σ j_n and n_resting·ŷ y + r φ = 0.
     """
     slopes = []
-    for chain in (closing, resting):
-        mesh = meshes[chain[0]]
+    for first, *_ in chains:
+        mesh = meshes[first]
         if gear.name not in (mesh.driver, mesh.driven):
             raise ValueError(f"mesh {mesh.name} is not a mesh of gear {gear.name}")
         side = 1.0 if mesh.driver == gear.name else -1.0
         slopes.append(side * float(mesh.drive_normal @ across))
-    total = math.fsum(meshes[m].backlash for m in closing)
+    total = math.fsum(meshes[m].backlash for m in chains[0])
     turn = abs(slopes[0] - slopes[1])
     if turn < 1e-9:
         raise ValueError(
             f"a float of gear {gear.name} across its neighbours does not take up the backlash "
-            f"of mesh {closing[0]}"
+            f"of mesh {chains[0][0]}"
         )
     return total / turn
-
-
-def _ring_problem(case: spec.Case, name: str, message: str) -> Problem:
-    return case.problem(
-        f"rings.{name}.float",
-        message,
-        allowed="chains that begin with a mesh of the limited gear, one on either side of it",
-    )
 
 
 def _pin(pin: spec.Pin, planet: Gear, carrier: Gear) -> Vector:

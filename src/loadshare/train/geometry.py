@@ -161,35 +161,29 @@ def _kinematics(case: spec.Case) -> Kinematics:
     centres = case.centres()
     # What follows from the counts that are given is a count as well.
     teeth, _ = tooth_counts(case.gears, case.meshes)
+
+    def unsettled(name: str, gear: spec.Gear) -> Gear:
+        axis = np.array(axis_of(gear))
+        return Gear(
+            name=name,
+            kind=gear.type,
+            centre=np.array(centres[name]),
+            axis=axis,
+            frame=transverse_frame(axis),
+            base_radius=0.0 if gear.is_carrier else gear.acting_radius,
+            sense=running,
+            teeth=teeth.get(name),
+            support=None,
+            ratio=1.0,
+            held=gear.held,
+            carrier=gear.carrier,
+        )
+
     return settle(
-        {n: _gear(n, g, centres[n], running, teeth.get(n)) for n, g in case.gears.items()},
+        {name: unsettled(name, gear) for name, gear in case.gears.items()},
         {n: m.ends for n, m in case.meshes.items()},
         {n: s.ends for n, s in case.shafts.items()},
         case.operating.input,
-    )
-
-
-def _gear(
-    name: str,
-    gear: spec.Gear,
-    centre: tuple[float, float, float],
-    running: int,
-    teeth: float | None,
-) -> Gear:
-    axis = np.array(axis_of(gear))
-    return Gear(
-        name=name,
-        kind=gear.type,
-        centre=np.array(centre),
-        axis=axis,
-        frame=transverse_frame(axis),
-        base_radius=0.0 if gear.is_carrier else gear.acting_radius,
-        sense=running,
-        teeth=teeth,
-        support=None,
-        ratio=1.0,
-        held=gear.held,
-        carrier=gear.carrier,
     )
 
 
