@@ -45,6 +45,11 @@ def centre_distance(driver: Gear, offset: Vector) -> float:
     return math.sqrt(max(dot(offset, offset) - along**2, 0.0))
 
 
+def mesh_distance(mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]) -> float:
+    """Return the centre distance of a mesh of two gears with parallel axes [m]."""
+    return centre_distance(gears[mesh.driver], minus(centres[mesh.driven], centres[mesh.driver]))
+
+
 def facing(
     mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
 ) -> tuple[Gear, Gear]:
@@ -102,7 +107,7 @@ def line_of_action(
         return LineOfAction(mesh.pressure_angle.si, helix)
     if "face" in (driver.type, driven.type):
         return None
-    distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
+    distance = mesh_distance(mesh, gears, centres)
     radius = tangent_distance(driver, driven)
     return LineOfAction(math.acos(radius / distance), helix) if radius < distance else None
 
@@ -124,9 +129,8 @@ def backlash_of_teeth(
     driver, driven = gears[mesh.driver], gears[mesh.driven]
     if driver.tooth is None or driven.tooth is None:
         return None
-    distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
     # Written digits may leave teeth that touch overlapping a little.
-    left = normal_backlash(driver.tooth, driven.tooth, distance)
+    left = normal_backlash(driver.tooth, driven.tooth, mesh_distance(mesh, gears, centres))
     return max(left / math.cos(driver.tooth.base_helix_angle), 0.0)
 
 

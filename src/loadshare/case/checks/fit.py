@@ -9,7 +9,7 @@ from contextlib import suppress
 from loadshare.case.draft import Draft
 from loadshare.case.gears import STEEPEST, Gear, Tooth
 from loadshare.case.iso1328 import outside
-from loadshare.case.line_of_action import centre_distance, tangent_distance
+from loadshare.case.line_of_action import centre_distance, mesh_distance, tangent_distance
 from loadshare.case.meshes import Mesh
 from loadshare.case.place import Vector, axis_of, dot, minus
 from loadshare.case.quantity import ANGLE, LENGTH
@@ -186,8 +186,7 @@ def toothed_pairs(
         if (one.internal and two.internal) or _unlike(driver, driven) is not None:
             continue
         if parallel(driver, driven):
-            offset = minus(centres[mesh.driven], centres[mesh.driver])
-            yield name, mesh.ends, (one, two), centre_distance(driver, offset)
+            yield name, mesh.ends, (one, two), mesh_distance(mesh, draft.gears, centres)
 
 
 def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[Problem]:

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from loadshare.case.line_of_action import centre_distance, facing
-from loadshare.case.place import minus
+from loadshare.case.line_of_action import facing, mesh_distance
 from loadshare.errors import CaseError, Problem
 from loadshare.tooth.pair.file import PairFile, built
 from loadshare.tooth.pair.model import HelicoidContent
@@ -42,7 +41,7 @@ def inline_pair(case: Case, name: str) -> PairFile:
     driver, driven = facing(mesh, case.gears, centres)
     gears = dict(zip(mesh.ends, (driver, driven), strict=True))
     refuse(problem for end, gear in gears.items() for problem in _too_deep(case, end, gear))
-    distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
+    distance = mesh_distance(mesh, case.gears, centres)
     torque = mesh.rated_torque.si if mesh.rated_torque else _rated(driver, driven)
     content = HelicoidContent.model_validate(
         {

@@ -12,9 +12,8 @@ from loadshare.case.checks.fit import mm
 from loadshare.case.checks.law_origin import teeth_digest
 from loadshare.case.keys import Path as KeyPath
 from loadshare.case.keys import dotted, parse
-from loadshare.case.line_of_action import centre_distance, facing
+from loadshare.case.line_of_action import facing, mesh_distance
 from loadshare.case.meshes import SOURCES
-from loadshare.case.place import minus
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.input import real
@@ -26,6 +25,8 @@ if TYPE_CHECKING:
     from loadshare.tooth.pair.file import PairFile
 
 Tick = Callable[[int, int], None]
+Problems = dict[Problem, None]
+"""What is wrong: what several meshes share is reported once."""
 
 APART = 0.1
 """How far centres may be from where teeth mesh without backlash and need no word, in modules."""
@@ -79,11 +80,13 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     words = [n for n, m in case.meshes.items() if isinstance(m.law, str) and n not in leave]
     if not sources and not words:
         return case
-    laws, pairs, problems = _read(case, sources)
-    inline, taken, wrong = _inline(case, [n for n in words if case.meshes[n].law_is_of_contact])
-    formulas, more = _by_formula(case, [name for name in words if name not in taken])
-    if problems or wrong or more:
-        raise CaseError([*problems, *wrong, *more])
+    problems: Problems = {}
+    laws, pairs = _read(case, sources, problems)
+    of_contact = [name for name in words if case.meshes[name].law_is_of_contact]
+    inline, taken = _inline(case, of_contact, problems)
+    formulas = _by_formula(case, [name for name in words if name not in taken], problems)
+    if problems:
+        raise CaseError(list(problems))
     pairs |= inline
     by_hash = _laws({pair.hash: pair for pair in pairs.values()}, progress)
     laws |= {name: by_hash[pair.hash] for name, pair in pairs.items()}
@@ -135,31 +138,29 @@ def written_in(case: Case, folders: Iterable[Path] | None = None) -> Case:
 
 
 def _inline(
-    case: Case, names: Sequence[str]
-) -> tuple[dict[str, PairFile], dict[str, tuple[str, ...]], list[Problem]]:
-    """Pairs of the meshes whose law is of their gears' teeth, what they assume, and what is wrong.
+    case: Case, names: Sequence[str], problems: Problems
+) -> tuple[dict[str, PairFile], dict[str, tuple[str, ...]]]:
+    """Pairs of the meshes whose law is of their gears' teeth, and what they assume.
 
     What an analysis takes for granted marks the law as assumed.
     """
     if not names:
-        return {}, {}, []
+        return {}, {}
     from loadshare.tooth.law.inline import assumed_of, inline_pair
 
     pairs: dict[str, PairFile] = {}
-    problems: dict[Problem, None] = {}
     for name in names:
         try:
             pairs[name] = inline_pair(case, name)
         except CaseError as error:
             problems |= dict.fromkeys(error.problems)
-    taken = {n: assumed_of(case, n, pairs[n]) if n in pairs else () for n in names}
-    return pairs, taken, list(problems)
+    return pairs, {n: assumed_of(case, n, pairs[n]) if n in pairs else () for n in names}
 
 
 def _read(
-    case: Case, sources: dict[str, str]
-) -> tuple[dict[str, MeshLaw], dict[str, PairFile], list[Problem]]:
-    """Laws and pairs by mesh, and what is wrong with their files or does not fit the case."""
+    case: Case, sources: dict[str, str], problems: Problems
+) -> tuple[dict[str, MeshLaw], dict[str, PairFile]]:
+    """Laws and pairs by mesh; problems of their files, and with what does not fit the case."""
     from loadshare.tooth.law.file import load_law
     from loadshare.tooth.pair.agree import disagreements
     from loadshare.tooth.pair.file import load_pair
@@ -167,7 +168,6 @@ def _read(
 
     laws: dict[str, MeshLaw] = {}
     pairs: dict[str, PairFile] = {}
-    problems: dict[Problem, None] = {}  # what several meshes share is reported once
     positions = case.operating.positions
     known: dict[Path, PairFile] = {}
     for name, source in sources.items():
@@ -198,29 +198,25 @@ def _read(
                 problems |= dict.fromkeys(disagreements(case, name, gears, pairs[name].name))
         except CaseError as error:
             problems |= dict.fromkeys(error.problems)
-    return laws, pairs, list(problems)
+    return laws, pairs
 
 
-def _by_formula(
-    case: Case, names: Iterable[str]
-) -> tuple[dict[str, dict[str, Any]], list[Problem]]:
-    """Laws at the driver by mesh, and what is wrong with their gears."""
+def _by_formula(case: Case, names: Iterable[str], problems: Problems) -> dict[str, dict[str, Any]]:
+    """Laws at the driver by mesh."""
     from loadshare.tooth.law.iso6336 import basis_of, least_torque, mesh_stiffness
 
     centres = case.centres()
     found: dict[str, dict[str, Any]] = {}
-    problems: list[Problem] = []
     for name in names:
         mesh = case.meshes[name]
         measured = mesh.law == "iso"
         pair = facing(mesh, case.gears, centres)
-        offset = minus(centres[mesh.driven], centres[mesh.driver])
-        distance = centre_distance(pair[0], offset)
+        distance = mesh_distance(mesh, case.gears, centres)
         try:
             stiffness = mesh_stiffness(pair, distance, measured=measured)
         except ValueError as error:
             path, hint = ("meshes", name, "law"), _distance_hint(pair, distance)
-            problems.append(case.problem(path, str(error), hint=hint))
+            problems[case.problem(path, str(error), hint=hint)] = None
             continue
         compliance = 1.0 / (stiffness * pair[0].acting_radius ** 2)
         found[name] = {
@@ -228,7 +224,7 @@ def _by_formula(
             "basis": basis_of(pair, distance, measured=measured),
             "holds_from": f"{least_torque(pair)!r} N*m",
         }
-    return found, problems
+    return found
 
 
 def _distance_hint(pair: tuple[Gear, Gear], distance: float) -> str:
