@@ -104,6 +104,10 @@ class Boundaries(NamedTuple):
     reaction: Array
 
 
+Some = tuple[tuple[str, ...], Array, Array, Array, Array]
+"""Of some boundaries: names, margins, forces, outward normals, forces on the gear."""
+
+
 class Rests:
     """Where the floats of a train rest in S claims.
 
@@ -134,22 +138,20 @@ class Rests:
     def boundaries(self, gear: str) -> Boundaries:
         """Return the boundaries of a float's region."""
         if gear not in self._boundaries:
-            parts = [*self._of_drums(gear), *self._of_rings(gear)]
-            names = tuple(name for each, *_ in parts for name in each)
-            none = np.zeros((0, self.state.count))
-            margin, force = (np.concatenate([none, *(p[k] for p in parts)]) for k in (1, 2))
-            normal, pushed = (
-                np.concatenate([np.zeros((0, 2, self.state.count)), *(p[k] for p in parts)])
-                for k in (3, 4)
-            )
+            none, nowhere = (np.zeros((0, *inner, self.state.count)) for inner in ((), (2,)))
+            parts: list[Some] = [((), none, none, nowhere, nowhere)]
+            parts += [*self._of_drums(gear), *self._of_rings(gear)]
+            each, *figures = zip(*parts, strict=True)
+            margin, force, normal, pushed = map(np.concatenate, figures)
             touching = self.settled(gear) & (margin <= self._near) | (force > self._pressed)
+            names = tuple(name for some in each for name in some)
             self._boundaries[gear] = Boundaries(
                 names, margin, force, normal, touching, pushed.sum(axis=0)
             )
         return self._boundaries[gear]
 
-    def _of_drums(self, gear: str) -> Iterable[tuple[tuple[str, ...], Array, Array, Array, Array]]:
-        """Boundaries of its drums: names, margins, forces, outward normals, forces on the gear."""
+    def _of_drums(self, gear: str) -> Iterable[Some]:
+        """Boundaries of its drums."""
         state, of = self.state, self.state.of
         plane = of.train.gears[gear].plane
         for d, ring in enumerate(of.train.drums):
@@ -163,8 +165,8 @@ class Rests:
             pushed = -force[:, None] * normal
             yield of.contacts[own], -state.approach[own], force, normal, pushed
 
-    def _of_rings(self, gear: str) -> Iterable[tuple[tuple[str, ...], Array, Array, Array, Array]]:
-        """Boundaries of its round rings, likewise."""
+    def _of_rings(self, gear: str) -> Iterable[Some]:
+        """Boundaries of its round rings."""
         state, of = self.state, self.state.of
         plane = of.train.gears[gear].plane
         for q, ring in enumerate(of.train.rounds):

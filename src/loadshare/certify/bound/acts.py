@@ -52,21 +52,14 @@ def first_acts(claim: Claim, noise: float = BOUND.noise) -> Acts:
         Friction, over the largest force, that is put aside.
     """
     columns = claim.columns
-    force = claim.forces
-    contacts = np.concatenate(
-        [force[:, columns.flanks], force[:, columns.stops], force[:, columns.arcs][:, ::2]], axis=1
-    )
-    length = claim.lengths[0].value
-    gap = np.concatenate(
-        [-length[:, columns.flanks], -length[:, columns.stops], claim.arcs[1]], axis=1
-    )
-    largest = np.abs(force[:, columns.flanks]).max(axis=1, initial=0.0)[:, None]
-    deflection = length[:, columns.flanks].max(axis=1, initial=0.0)[:, None]
-    faint = (np.abs(contacts) <= BOUND.noise * largest) & (gap > BOUND.apart * deflection)
-    closed = (contacts != 0.0) & ~faint
+    pushes, flanks = claim.pushes, columns.flanks
+    largest = np.abs(pushes[:, flanks]).max(axis=1, initial=0.0)[:, None]
+    deflection = claim.lengths[0].value[:, flanks].max(axis=1, initial=0.0)[:, None]
+    faint = (np.abs(pushes) <= BOUND.noise * largest) & (claim.gaps > BOUND.apart * deflection)
+    closed = (pushes != 0.0) & ~faint
     scalar = np.where(closed, Act.STOP, Act.OPEN).astype(np.int8)
     radials = np.zeros((claim.count, 0), np.int8)
-    if claim.columns.claims.radials:
+    if columns.claims.radials:
         radials = _radial_acts(claim, noise * largest)
     return np.concatenate([scalar, radials], axis=1)
 

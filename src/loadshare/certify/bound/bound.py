@@ -61,9 +61,9 @@ class Box:
     above: Flags
     unbalanced: Flags
 
-    def part(self, row: int) -> Box:
-        """Return the box of one claim."""
-        return Box(*(getattr(self, f.name)[row : row + 1] for f in fields(self)))
+    def take(self, rows: Numbers) -> Box:
+        """Return the boxes of some claims."""
+        return Box(*(getattr(self, f.name)[rows] for f in fields(self)))
 
     def put(self, rows: Numbers, other: Box) -> None:
         """Write the boxes of some claims."""
@@ -103,7 +103,7 @@ def boxes(claim: Claim, act: Acts, scale: Array, verge: Flags | None = None) -> 
         other = _boxes(claim.take(rows), act[rows], scale[rows], verge[rows], BOUND.softest)
         unbounded = [np.isinf(b.force[:, claim.columns.flanks]).sum(axis=1) for b in (box, other)]
         better = np.flatnonzero(unbounded[1] <= unbounded[0][rows])
-        box.put(rows[better], Box(*(getattr(other, f.name)[better] for f in fields(Box))))
+        box.put(rows[better], other.take(better))
     return box
 
 

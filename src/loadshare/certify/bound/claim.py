@@ -173,6 +173,17 @@ class Claim:
         return np.stack(ways, axis=1), np.stack(margins, axis=1), np.stack(sizes, axis=1)
 
     @cached_property
+    def pushes(self) -> Array:
+        """Claimed forces of contacts: flanks, stops, arcs, shape (S, contacts) [N]."""
+        columns, force = self.columns, self.forces
+        return np.concatenate([force[:, columns.contacts], force[:, columns.arcs][:, ::2]], axis=1)
+
+    @cached_property
+    def gaps(self) -> Array:
+        """By how much these are open, shape (S, contacts) [m]."""
+        return np.concatenate([-self.lengths[0].value[:, self.columns.contacts], self.arcs[1]], 1)
+
+    @cached_property
     def load(self) -> tuple[Twofold, Array]:
         """f, shape (S, n) [N], and the sum of the sizes of its terms."""
         columns, torque = self.columns, self.situations.torque

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from loadshare.array_types import Array, Flags
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.acts import Act, Acts, first_acts
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
@@ -169,13 +169,17 @@ def _boxes(claim: Claim, rigorous: bool, enough: float) -> Bounds:
         if len(rows):
             held = with_held_slips(claim.take(rows), scale[rows], still)
             other, found = _proved(held, scale[rows], largest[rows], rigorous, enough)
-            better = found < relative[rows]
-            relative[rows[better]] = found[better]
-            box.force[rows[better]] = other.force[better]
-            box.coordinate[rows[better]] = other.coordinate[better]
+            _improve(box, relative, rows, (other.force, other.coordinate, found))
     torques = _torques(columns, box.force, flanks)
     box.force[squeezed(claim)] = np.inf
     return Bounds(columns, relative, torques, box.force, box.coordinate)
+
+
+def _improve(box: Box, relative: Array, rows: Numbers, other: tuple[Array, Array, Array]) -> None:
+    """Take other errors of forces, coordinates and torques of some claims, where they are less."""
+    better = other[2] < relative[rows]
+    for target, errors in zip((box.force, box.coordinate, relative), other, strict=True):
+        target[rows[better]] = errors[better]
 
 
 def _proved(
@@ -201,10 +205,7 @@ def _proved(
         fine = replace(claim.take(rows), fine=True)
         force, coordinate = _fine(fine, act[rows], scale[rows])
         found = _largest(columns, force, flanks[rows]) / largest[rows]
-        better = found < relative[rows]
-        relative[rows[better]] = found[better]
-        box.force[rows[better]] = force[better]
-        box.coordinate[rows[better]] = coordinate[better]
+        _improve(box, relative, rows, (force, coordinate, found))
     for row in np.flatnonzero(~(relative <= CERTIFY.largest) & finite).tolist():
         one = replace(claim.take(np.array([row])), fine=True)
         ways = (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ()
@@ -303,7 +304,7 @@ def _fine(claim: Claim, act: Acts, scale: Array) -> tuple[Array, Array]:
     def try_ways(rows: Flags, doubtful: Flags) -> None:
         for row in np.flatnonzero(rows & doubtful.any(axis=1)).tolist():
             one = np.array([row])
-            part = replace(box.part(row), doubtful=doubtful[one])
+            part = replace(box.take(one), doubtful=doubtful[one])
             single = on_the_verge(claim.take(one), act[one], scale[one], part)
             force[row], coordinate[row] = single.force[0], single.coordinate[0]
 
@@ -331,15 +332,12 @@ def _of_rounding(claim: Claim, scale: Array) -> Flags:
     Of splines, their friction is then put aside.
     """
     columns, noise = claim.columns, BOUND.noise * scale[:, None]
-    contacts = np.abs(claim.forces[:, columns.contacts])
     found = np.zeros((claim.count, len(columns.contacts) + columns.pairs), dtype=bool)
-    arcs = np.hypot(*np.moveaxis(claim.forces[:, columns.arcs].reshape(claim.count, -1, 2), 2, 0))
-    pushes = np.concatenate([contacts, arcs], axis=1)
+    pushes = np.abs(claim.pushes)
     found[:, : pushes.shape[1]] = (pushes > 0.0) & (pushes <= noise)
-    if claim.columns.claims.radials:
-        size = np.hypot(
-            *np.moveaxis(claim.forces[:, columns.radials].reshape(claim.count, -1, 2), 2, 0)
-        )
+    if columns.claims.radials:
+        pulls = claim.forces[:, columns.radials].reshape(claim.count, -1, 2)
+        size = np.hypot(pulls[:, :, 0], pulls[:, :, 1])
         found[:, -size.shape[1] :] = (
             (claim.graphs[:, :, 2] <= noise) & (size <= noise) & (size > 0.0)
         )

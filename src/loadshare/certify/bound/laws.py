@@ -6,8 +6,6 @@ sections 3, 5, 6 and 16.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from loadshare.array_types import Array, Flags, Numbers
@@ -38,87 +36,64 @@ def elements(
         Largest compliance of a turn, in those of the claim; what a softer one has less in
         stiffness goes to `stiff_error`.
     """
-    columns, count = claim.columns, claim.count
-    m, pairs = len(columns.names), columns.pairs
-    shape = (count, m)
-    active = np.zeros(shape, dtype=bool)
-    soft, width, curve = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-    room = np.full(shape, np.inf)
+    columns, count, pairs = claim.columns, claim.count, claim.columns.pairs
+    shape = count, len(columns.names)
     force = claim.forces.copy()
     # A flank that pulls has no law: the pull is put aside.
     force[:, columns.flanks] = np.maximum(force[:, columns.flanks], 0.0)
-    rounding = np.zeros(shape)
     lengths, sizes = claim.lengths
-    misfit = lengths.value
-    flanks, stops = columns.flanks.stop, columns.stops.stop - columns.stops.start
-    active[:, columns.flanks] = act[:, :flanks] != Act.OPEN
-    active[:, columns.stops] = act[:, flanks : flanks + stops] != Act.OPEN
-    pushed = force[:, columns.flanks]
-    least = BOUND.light * scale[:, None]
-    light = np.ones(pushed.shape, bool) if verge is None else verge[:, :flanks] | (pushed == 0.0)
-    reached = pushed if verge is None else BOUND.reached * pushed
-    at = np.where(light, np.maximum(reached, least), pushed)
-    _flanks(claim, scale, at, soft, curve, room, misfit, width)
-    light &= curve[:, columns.flanks] > 0.0
-    curve[:, columns.flanks][light] = 0.0
-    if verge is not None:
-        room[:, columns.flanks][light] = (at - pushed)[light]
-    _springs(claim, active, soft, misfit, width)
-    scalar = slice(0, columns.first_pair)
-    width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
-    force[:, scalar] = np.where(active[:, scalar], force[:, scalar], 0.0)
-    lines: list[Any] = [
-        np.zeros((count, k)) for k in (*[pairs] * 6, len(claim.columns.claims.radials))
-    ]
-    lines.append(np.zeros((count, pairs), dtype=bool))
+    flat = ("rounding", "soft", "width", "curve")
+    paired = ("skew", "size", "along", "bent", "stiff_error", "follows", "shrinks")
     found = Elements(
-        act,
-        active,
-        force,
-        rounding,
-        soft,
-        np.zeros((count, pairs)),
-        misfit,
-        width,
-        curve,
-        room,
-        np.zeros((count, pairs, 2)),
-        np.ones((count, pairs)),
-        *lines,
+        act=act,
+        active=np.zeros(shape, dtype=bool),
+        force=force,
+        misfit=lengths.value,
+        room=np.full(shape, np.inf),
+        line=np.zeros((count, pairs, 2)),
+        distance=np.ones((count, pairs)),
+        spare=np.zeros((count, len(columns.claims.radials))),
+        begins=np.zeros((count, pairs), dtype=bool),
+        **{name: np.zeros(shape) for name in flat},
+        **{name: np.zeros((count, pairs)) for name in paired},
     )
+    scalar, contacts = slice(0, columns.first_pair), len(columns.contacts)
+    least = BOUND.light * scale[:, None]
+    _flanks(claim, found, scale, least, verge)
+    found.active[:, columns.contacts] = act[:, :contacts] != Act.OPEN
+    _springs(claim, found)
+    found.width[:, scalar] += EPS * np.abs(found.misfit[:, scalar]) + TINY * sizes[:, scalar]
+    force[:, scalar] = np.where(found.active[:, scalar], force[:, scalar], 0.0)
     if pairs:
         with np.errstate(divide="ignore", invalid="ignore"):
-            open_ended = None if verge is None else verge[:, flanks + stops :]
-            put_pairs(claim, act[:, flanks + stops :], found, least, open_ended, softest)
+            open_ended = None if verge is None else verge[:, contacts:]
+            put_pairs(claim, act[:, contacts:], found, least, open_ended, softest)
     if claim.slack is not None:
         found.width[:] += claim.slack
     return found
 
 
-def _flanks(
-    claim: Claim,
-    scale: Array,
-    at: Array,
-    soft: Array,
-    curve: Array,
-    room: Array,
-    misfit: Array,
-    width: Array,
-) -> None:
-    """Compliance (at a force), curvature and misfit of flanks, in twice the precision."""
+def _flanks(claim: Claim, found: Elements, scale: Array, least: Array, verge: Flags | None) -> None:
+    """Compliance, curvature and misfit of flanks, in twice the precision."""
     columns, here = claim.columns, claim.situations
     b, c = here.bending, here.hertz
-    force = np.maximum(claim.forces[:, columns.flanks], 0.0)
     part = slice(0, columns.flanks.stop)
+    soft, curve, room, width = (
+        v[:, part] for v in (found.soft, found.curve, found.room, found.width)
+    )
+    force = found.force[:, part]
+    light = np.ones(force.shape, bool) if verge is None else verge[:, part] | (force == 0.0)
+    reached = force if verge is None else BOUND.reached * force
+    at = np.where(light, np.maximum(reached, least), force)
     hertz = 2.0 / 3.0 * c / np.cbrt(at)
-    soft[:, part] = b + hertz
-    curve[:, part] = hertz / at
+    soft[:] = b + hertz
+    curve[:] = hertz / at
     length, sizes = claim.lengths
     length = type(length)(length.high[:, part], length.low[:, part])
     if not claim.fine:
         root = np.cbrt(force)
         yielded = exact(b * force + c * (root * root))
-        width[:, part] += EPS * yielded.high
+        width += EPS * yielded.high
     else:
         yielded = two_product(np.broadcast_to(b, force.shape), force)
     if claim.fine and c.any():
@@ -132,8 +107,12 @@ def _flanks(
         soft[:, tabled], yielded.high[:, tabled], yielded.low[:, tabled] = slope, value, 0.0
         width[:, tabled] += EPS * value
         curve[:, tabled] = jump
-    misfit[:, part] = minus(length, yielded).value
-    width[:, part] += TINY * (yielded.high + sizes[:, part])
+    found.misfit[:, part] = minus(length, yielded).value
+    width += TINY * (yielded.high + sizes[:, part])
+    light &= curve > 0.0
+    curve[light] = 0.0
+    if verge is not None:
+        room[light] = (at - force)[light]
 
 
 def _tables(
@@ -171,7 +150,7 @@ def _tables(
     return slope, value, -jump, room
 
 
-def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Array) -> None:
+def _springs(claim: Claim, found: Elements) -> None:
     """Shafts, bearings, stops and the shafts of splines with memory: linear columns."""
     columns, here = claim.columns, claim.situations
     support = here.support[:, columns.moving].reshape(len(here.support), -1)
@@ -188,10 +167,10 @@ def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Arr
     linear, stops = slice(columns.shafts.start, columns.bends.stop), columns.stops
     held = ~np.isnan(compliance)
     compliance = np.where(held, compliance, 0.0)
-    active[:, linear.start : stops.start] = held[:, : stops.start - linear.start]
-    active[:, columns.bends] = held[:, stops.stop - linear.start :]
-    soft[:, linear] = compliance
+    found.active[:, linear.start : stops.start] = held[:, : stops.start - linear.start]
+    found.active[:, columns.bends] = held[:, stops.stop - linear.start :]
+    found.soft[:, linear] = compliance
     yielded = compliance * claim.forces[:, linear]
     length = claim.lengths[0]
-    misfit[:, linear] = (length.high[:, linear] - yielded) + length.low[:, linear]
-    width[:, linear] += EPS * np.abs(yielded)
+    found.misfit[:, linear] = (length.high[:, linear] - yielded) + length.low[:, linear]
+    found.width[:, linear] += EPS * np.abs(yielded)

@@ -13,9 +13,7 @@ from loadshare.certify.bound.columns import Columns
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.validity import measuring
 from loadshare.settings import BOUND, CERTIFY
-from loadshare.train.ring import transverse
 from loadshare.train.situations import Situations
-from loadshare.train.train import Train
 
 Places = NDArray[np.uintp]
 
@@ -119,23 +117,18 @@ def _pairs(pairs: list[tuple[int, int]]) -> Numbers:
     return np.array(pairs, dtype=np.intp).reshape(-1, 2)
 
 
-def _pull_centres(train: Train) -> Array:
-    centres = [train.gears[r.gear].frame @ r.offset for r in train.rounds]
-    return np.array([*centres, *np.zeros((len(train.splines), 2))]).reshape(-1, 2)
-
-
 def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
     """Return a train with its springs, as `springs_of` finds them, for compiled code."""
-    train, order = columns.train, columns.order
-    ends = [(train.gears[r.gear], train.gears[n]) for r in train.drums for n in r.neighbours]
-    ways = [transverse(g.centre - n.centre, g.axis) @ g.frame.T for g, n in ends]
+    train, order, of = columns.train, columns.order, mechanics_of(columns.train)
+    gears = list(train.gears.values())
+    frames = np.array([g.frame for g in gears]).reshape(-1, 2, 3)
+    ways = [way @ frames[g].T for g, both in zip(of.drum, of.nominal, strict=True) for way in both]
     nominal = np.array(ways).reshape(-1, 2)
     apart = np.sqrt((nominal**2).sum(axis=1))
     drums = np.arange(len(train.drums))
     held = {g: t for g, t in columns.turns.items() if t.coordinate is not None}
     turns = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items() if not t.shafts]
     loads = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items()]
-    pulled = [order[r.gear] for r in train.rounds] + [order[g] for g in train.splines]
     gear_pairs = _pairs([(order[m.driver], order[m.driven]) for m, _ in columns.all_flanks])
     size, rest = measuring(train), _entries(columns.constants.T)
     across = size.across.reshape(len(gear_pairs), -1, 3)
@@ -145,13 +138,15 @@ def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
         columns.arms,
         _twins(columns, nominal, apart),
         np.concatenate([np.repeat(drums, 2)] * 2),
-        np.array([order[r.gear] for r in train.drums], dtype=np.intp),
+        of.drum,
         nominal,
         apart,
         spring,
         spring_arm,
-        np.array(pulled, dtype=np.intp),
-        _pull_centres(train),
+        of.pulled,
+        np.array([frames[g] @ c for g, c in zip(of.pulled, of.centres, strict=True)]).reshape(
+            -1, 2
+        ),
         columns.moments,
         len(train.rounds),
         _pairs([t[:2] for t in turns]),
@@ -159,8 +154,8 @@ def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
         _pairs([(at, order[g]) for g, at in columns.places.items()]),
         _pairs([t[:2] for t in loads]),
         np.array([t[2] for t in loads]),
-        np.array([g.frame for g in train.gears.values()]).reshape(-1, 2, 3),
-        np.array([g.base_radius for g in train.gears.values()]),
+        frames,
+        of.radius,
         columns.stops.start,
         columns.arcs.start,
         columns.radials.start,
@@ -168,13 +163,13 @@ def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
         *rest,
         _first_from(len(train.shafts), *rest[:2])[: columns.flanks.stop],
         np.setdiff1d(np.arange(len(order)), columns.moving),
-        np.array([g.axis for g in train.gears.values()]).reshape(-1, 3),
-        _pairs([(order[s.first], order[s.second]) for s in train.shafts.values()]),
+        np.array([g.axis for g in gears]).reshape(-1, 3),
+        of.shaft,
         np.setdiff1d(np.arange(len(train.shafts)), columns.elastic_shafts),
-        np.array([order[g] for g in train.held], dtype=np.intp),
-        np.array([order.get(g.carrier or "", -1) for g in train.gears.values()], dtype=np.intp),
-        mechanics_of(train).squeezed,
-        np.array([order[n] for r in train.drums for n in r.neighbours], dtype=np.intp),
+        np.array(of.held, dtype=np.intp),
+        np.array([order.get(g.carrier or "", -1) for g in gears], dtype=np.intp),
+        of.squeezed,
+        of.neighbours.reshape(-1),
         gear_pairs,
         across[np.arange(len(gear_pairs)), gear_pairs[:, 0]] / size.line,
         size.line[:, 0].copy(),

@@ -95,16 +95,12 @@ def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
     """
     columns = claim.columns
     flanks, contacts = columns.flanks.stop, len(columns.contacts)
-    length = claim.lengths[0].value
-    gaps = np.concatenate([-length[:, columns.contacts], claim.arcs[1]], axis=1)
+    gaps, force = claim.gaps, claim.pushes
     widest = np.abs(gaps).max(axis=1, initial=0.0)
     act = act.copy()
     part = act[:, : gaps.shape[1]]
     part[(part == Act.OPEN) & (gaps <= BOUND.near * widest[:, None])] = Act.STOP
     doubled = np.zeros(act.shape, dtype=bool)
-    force = np.concatenate(
-        [claim.forces[:, columns.contacts], claim.forces[:, columns.arcs][:, ::2]], axis=1
-    )
     ways = claim.arcs[0]
     for start in (*range(flanks, contacts, 2), *range(contacts, gaps.shape[1], 2)):
         both = (part[:, start] == Act.STOP) & (part[:, start + 1] == Act.STOP)
@@ -117,7 +113,7 @@ def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
             doubled[both & weaker, start + k] = True
     act[doubled] = Act.OPEN
     if claim.columns.claims.radials:
-        length = length[:, columns.radials].reshape(claim.count, -1, 2)
+        length = claim.lengths[0].value[:, columns.radials].reshape(claim.count, -1, 2)
         left = claim.graphs[:, :, 3] - np.sqrt((length**2).sum(axis=2))
         radials = act[:, gaps.shape[1] :]
         radials[(radials == Act.OPEN) & (left <= BOUND.near * widest[:, None])] = Act.STOP
