@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -56,7 +55,7 @@ class Block:
         Stiffness that arcs take across them [N/m]; NaN where there is no answer.
     rung : ndarray of int8, shape (S, positions)
         Number in `RUNGS` of what answered.
-    message : mapping of (row, position) to str
+    message : dict of (row, position) to str
         Why there is no answer.
     """
 
@@ -71,14 +70,14 @@ class Block:
     convex: Flags
     arc_curvature: Array
     rung: States
-    message: Mapping[tuple[int, int], str]
+    message: dict[tuple[int, int], str]
 
     def over(self, positions: tuple[int, ...]) -> Block:
         """Return the block over other positions; at those that it lacks there is no answer."""
         lacking = np.array([k not in self.positions for k in positions])
         at = [self.positions.index(k) if k in self.positions else 0 for k in positions]
-        arrays = {name: getattr(self, name)[:, at] for name in _NOTHING}
-        for name, nothing in _NOTHING.items():
+        arrays = {name: getattr(self, name)[:, at] for name in NOTHING}
+        for name, nothing in NOTHING.items():
             arrays[name][:, lacking] = nothing
         none = self.equilibria[0].mapped(lambda array: np.full_like(array, np.nan))
         lacks = zip(lacking.tolist(), at, strict=True)
@@ -96,10 +95,10 @@ class Block:
 
 
 NONE = "the sample has no such position"
-_NOTHING = {
+NOTHING = {
     **dict.fromkeys(("certified", "determined", "convex"), False),
     **dict.fromkeys(("residual", "bound", "displaced", "arc_curvature"), np.nan),
-    "rung": 0,
+    "rung": np.int8(0),
 }
 """What stands in the arrays of a block where there is no answer."""
 
@@ -129,17 +128,30 @@ class _Chunk(NamedTuple):
 
 
 class _Open:
-    """A block that is being solved; its arrays are those of `Block`, over (sample, position)."""
+    """A block that is being solved.
 
-    def __init__(self, count: int, positions: Sequence[int]) -> None:
-        shape = count, len(positions)
-        self.count, self.positions = count, positions
-        self.certified, self.determined = np.zeros((2, *shape), dtype=bool)
-        self.residual, self.bound, self.displaced = np.full((3, *shape), np.nan)
+    Attributes
+    ----------
+    block : Block
+        Its arrays are filled in.
+    load, deflection : ndarray, shape (S, positions)
+        Scales of the answers [N], [m].
+    equilibria : list of Equilibria
+    chunks : list of _Chunk
+    """
+
+    def __init__(self, rows: Numbers, positions: tuple[int, ...]) -> None:
+        shape = len(rows), len(positions)
+        arrays: dict[str, Any] = {name: np.full(shape, v) for name, v in NOTHING.items()}
+        self.block = Block(rows, positions, (), message={}, **arrays)
         self.deflection, self.load = np.full((2, *shape), np.nan)
-        self.rung = np.zeros(shape, dtype=np.int8)
         self.equilibria: list[Equilibria] = []
         self.chunks: list[_Chunk] = []
+
+    @property
+    def count(self) -> int:
+        """S."""
+        return len(self.block.rows)
 
     def by_sample(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return values of a chunk, one position after another, as (sample, position)."""
@@ -147,14 +159,14 @@ class _Open:
 
     def put(self, chunk: _Chunk, found: Answers) -> None:
         """Write what the hot path found."""
-        verdicts, count = found.verdicts, self.count
+        verdicts, count, block = found.verdicts, self.count, self.block
         for there, values in (
-            (self.certified, found.passed),
-            (self.determined, found.determined),
-            (self.rung, np.where(found.searched, RUNGS.index(SEARCHED), RUNGS.index(HOT))),
-            (self.residual, verdicts.worst),
-            (self.bound, verdicts.bounds.relative),
-            (self.displaced, verdicts.displaced),
+            (block.certified, found.passed),
+            (block.determined, found.determined),
+            (block.rung, np.where(found.searched, RUNGS.index(SEARCHED), RUNGS.index(HOT))),
+            (block.residual, verdicts.worst),
+            (block.bound, verdicts.bounds.relative),
+            (block.displaced, verdicts.displaced),
             (self.deflection, verdicts.deflection),
             (self.load, verdicts.load),
         ):
@@ -165,19 +177,20 @@ class _Open:
 
     def answer(self, row: int, p: int, found: Answer) -> None:
         """Write what the ladder found for a sample at a position."""
-        certificate = found.certificate
+        certificate, block, at = found.certificate, self.block, (row, p)
         self.equilibria[p].put(row, found.equilibrium)
-        self.certified[row, p], self.rung[row, p] = True, RUNGS.index(found.rung)
-        self.determined[row, p] = not found.equilibrium.undetermined
-        self.residual[row, p], self.bound[row, p] = certificate.worst, certificate.proved
-        self.deflection[row, p], self.load[row, p] = certificate.deflection, certificate.load
-        self.displaced[row, p] = np.nan
+        block.certified[at], block.rung[at] = True, RUNGS.index(found.rung)
+        block.determined[at], block.displaced[at] = not found.equilibrium.undetermined, np.nan
+        block.residual[at], block.bound[at] = certificate.worst, certificate.proved
+        self.deflection[at], self.load[at] = certificate.deflection, certificate.load
 
-    def refuse(self, row: int, p: int) -> None:
+    def refuse(self, row: int, p: int, why: str) -> None:
         """Leave a sample without an answer at a position."""
-        self.certified[row, p], self.rung[row, p] = False, 0
-        self.residual[row, p] = self.bound[row, p] = self.displaced[row, p] = np.nan
+        block = self.block
+        for name in ("certified", "rung", "residual", "bound", "displaced"):
+            getattr(block, name)[row, p] = NOTHING[name]
         self.equilibria[p].forget(row)
+        block.message[int(block.rows[row]), block.positions[p]] = why
 
 
 def solve_block(
@@ -202,64 +215,50 @@ def solve_block(
     tolerance, engine, least_norm
         As for `solve_blocks`.
     """
-    block, message = _Open(len(rows), positions), dict[tuple[int, int], str]()
+    open_ = _Open(rows, positions)
+    block = open_.block
     abreast = 1 if machine.train.is_placed_anew else max(1, machine.together // len(rows))
     for at in range(0, len(positions), abreast):
         some = positions[at : at + abreast]
         situations, here = samples.abreast(some), machine.at(some[0])
         found = here.answer(situations, tolerance, engine, starts=some)
         chunk = _Chunk(slice(at, at + len(some)), here, situations, found.equilibria)
-        block.put(chunk, found)
+        open_.put(chunk, found)
         if least_norm:
             loose = found.passed & ~found.determined
             least_places(here, situations, found, np.flatnonzero(loose).tolist(), tolerance)
-            block.displaced[:, chunk.columns][block.by_sample(loose)] = np.nan
+            block.displaced[:, chunk.columns][open_.by_sample(loose)] = np.nan
     for row, p in np.argwhere(~block.certified).tolist():
         try:
             train = build_train(samples.one(row))
-            block.answer(row, p, climb(train, positions[p], Options(), tolerance, JOB.steps))
+            open_.answer(row, p, climb(train, positions[p], Options(), tolerance, JOB.steps))
         except (CaseError, Refused) as refusal:
-            message[int(rows[row]), positions[p]] = str(refusal)
-            block.refuse(row, p)
-    for (row, p), why in _too_far(block).items():
-        message[int(rows[row]), positions[p]] = f"position {positions[p]}: {why}"
-        block.refuse(row, p)
-    curvature, convex = np.full(block.load.shape, np.nan), np.zeros_like(block.certified)
-    for chunk in block.chunks:
+            open_.refuse(row, p, str(refusal))
+    for (row, p), why in _too_far(open_).items():
+        open_.refuse(row, p, f"position {positions[p]}: {why}")
+    for chunk in open_.chunks:
         train, answers = chunk.machine.train, chunk.equilibria
-        curvature[:, chunk.columns] = block.by_sample(arc_curvature(train, answers))
-        only = is_convex(train, chunk.situations, answers, chunk.of(block.load))
-        convex[:, chunk.columns] = block.by_sample(only)
-    return Block(
-        rows,
-        positions,
-        tuple(block.equilibria),
-        block.certified,
-        block.residual,
-        block.bound,
-        block.determined,
-        block.displaced,
-        convex & block.certified,
-        curvature,
-        block.rung,
-        message,
-    )
+        block.arc_curvature[:, chunk.columns] = open_.by_sample(arc_curvature(train, answers))
+        only = is_convex(train, chunk.situations, answers, chunk.of(open_.load))
+        block.convex[:, chunk.columns] = open_.by_sample(only)
+    block.convex[~block.certified] = False
+    return replace(block, equilibria=tuple(open_.equilibria))
 
 
-def _too_far(block: _Open) -> dict[tuple[int, int], str]:
+def _too_far(open_: _Open) -> dict[tuple[int, int], str]:
     """Write how far displacements go where that is not known; return why some are refused."""
     refused = dict[tuple[int, int], str]()
-    for chunk in block.chunks:
+    for chunk in open_.chunks:
         measuring, here, found = chunk.machine.measuring, chunk.situations, chunk.equilibria
-        displaced, deflection = chunk.of(block.displaced), chunk.of(block.deflection)
+        displaced, deflection = chunk.of(open_.block.displaced), chunk.of(open_.deflection)
         left = np.flatnonzero(np.isnan(displaced))
         if len(left):
             displaced[left] = measuring.worst(here.take(left), found.take(left), deflection[left])
-            block.displaced[:, chunk.columns] = block.by_sample(displaced)
+            open_.block.displaced[:, chunk.columns] = open_.by_sample(displaced)
         large = np.flatnonzero(displaced >= 1.0)
         if len(large):
             some = here.take(large), found.take(large), deflection[large]
             for k, why in measuring.refusals(*some).items():
-                p, row = divmod(int(large[k]), block.count)
+                p, row = divmod(int(large[k]), open_.count)
                 refused[row, chunk.columns.start + p] = why
     return refused

@@ -13,7 +13,7 @@ import numpy as np
 from loadshare._version import __version__
 from loadshare.array_types import Array
 from loadshare.case import Case
-from loadshare.job.block import RUNGS, Block
+from loadshare.job.block import NOTHING, RUNGS, Block
 from loadshare.results.dataset import VARIABLES, Variable
 from loadshare.results.figures import COMPONENTS
 from loadshare.results.share import MeshTorques, mesh_torques, shares
@@ -62,31 +62,25 @@ class Each:
     ----------
     field : str
         Of a block.
-    none : object
-        The value where there is no answer.
     long_name, units : str
-    type_ : str
-        As NumPy names it.
     """
 
     field: str
-    none: object
     long_name: str
     units: str = "1"
-    type_: str | None = None
 
 
 EACH = {
-    "residual": Each("residual", np.nan, "largest scaled residual of the certificate"),
+    "residual": Each("residual", "largest scaled residual of the certificate"),
     "torque_bound": Each(
-        "bound", np.nan, "largest distance of a torque from the exact one, over the largest torque"
+        "bound", "largest distance of a torque from the exact one, over the largest torque"
     ),
-    "certified": Each("certified", False, "whether the answer is certified"),
-    "determined": Each("determined", False, "whether every displacement is determined"),
-    "displaced": Each("displaced", np.nan, "displacements over the bound of a warning"),
-    "convex": Each("convex", False, "whether nothing that is not convex carries"),
-    "arc_curvature": Each("arc_curvature", np.nan, "stiffness that arcs take across them", "N/m"),
-    "rung": Each("rung", 0, "rung of the ladder that answered", type_="int8"),
+    "certified": Each("certified", "whether the answer is certified"),
+    "determined": Each("determined", "whether every displacement is determined"),
+    "displaced": Each("displaced", "displacements over the bound of a warning"),
+    "convex": Each("convex", "whether nothing that is not convex carries"),
+    "arc_curvature": Each("arc_curvature", "stiffness that arcs take across them", "N/m"),
+    "rung": Each("rung", "rung of the ladder that answered"),
 }
 
 
@@ -146,11 +140,11 @@ class Table:
         if later and "torque" not in written:
             written.append("torque")
         self.variables = {name: self._empty(np.nan, KEPT[name].dims) for name in written}
-        self.each = {name: self._empty(e.none, (), e.type_) for name, e in EACH.items()}
+        self.each = {name: self._empty(NOTHING[e.field], ()) for name, e in EACH.items()}
         self.message: dict[tuple[int, int], str] = {}
 
-    def _empty(self, value: Any, dims: tuple[str, ...], type_: str | None = None) -> np.ndarray:
-        return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value, dtype=type_)
+    def _empty(self, value: Any, dims: tuple[str, ...]) -> np.ndarray:
+        return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value)
 
     def fill(self, blocks: Iterable[Block], progress: Progress | None = None) -> None:
         """Write all blocks, and tell after each how many samples are done."""
