@@ -159,8 +159,7 @@ def residuals(
         for row, d, f in zip(rows, approach, forces.tolist(), strict=True)
     ]
     graphs = [
-        _off_graph(r.matrix @ x - r.centre, pulls[r.name], laws[r.name], unit, length)
-        for r in problem.radials
+        _off_graph(r.offset(x), pulls[r.name], laws[r.name], unit, length) for r in problem.radials
     ]
     return Residuals(
         balance=float(np.abs(left).max(initial=0.0)) / unit,

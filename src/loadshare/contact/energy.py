@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from loadshare.array_types import Array
 from loadshare.contact.plan import Plan, Role
 from loadshare.contact.problem import ContactProblem
@@ -20,7 +18,7 @@ def potential(problem: ContactProblem, plan: Plan, laws: dict[str, RadialLaw], x
         approach = float(row.vector @ x) - row.gap
         total += row.law.energy(abs(approach) if role is Role.CLOSED else approach)
     for radial in problem.radials:
-        radius = float(np.linalg.norm(radial.matrix @ x - radial.centre))
+        radius = radial.radius(x)
         law = laws[radial.name]
         if plan.radials[radial.name] is Role.IN_PLAY:
             total += law.energy(radius)

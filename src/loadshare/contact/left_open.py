@@ -8,14 +8,44 @@ as well.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from loadshare.array_types import Array
-from loadshare.contact.problem import ContactProblem, Radial, of_unit_norm
+from loadshare.contact.problem import ArcRow, ContactProblem, Radial, of_unit_norm
+from loadshare.contact.radial import RadialLaw
 from loadshare.settings import CONTACT, PLACES
+
+
+class Round(NamedTuple):
+    """A disc in which a radial element carries nothing: ‖P x − m‖ ≤ R."""
+
+    radial: Radial
+    radius: float
+
+
+class Held(NamedTuple):
+    """What contacts and radial elements hold where forces stay as they are.
+
+    Attributes
+    ----------
+    ties : list of ndarray, shape (n,)
+        Along which nothing moves.
+    limits : list of (ndarray, shape (n,), float)
+        What must not close further, and how far it may.
+    arcs : list of ArcRow
+        That carry nothing.
+    rounds : list of Round
+    """
+
+    ties: list[Array]
+    limits: list[tuple[Array, float]]
+    arcs: list[ArcRow]
+    rounds: list[Round]
 
 
 class _End(NamedTuple):
@@ -23,6 +53,62 @@ class _End(NamedTuple):
 
     along: Array
     holds: Array
+
+
+def held_by(
+    problem: ContactProblem,
+    x: Array,
+    forces: Mapping[str, float],
+    pulls: Mapping[str, Array],
+    laws: Mapping[str, RadialLaw],
+) -> Held:
+    """Return what the forces of an answer hold.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    x : ndarray, shape (n,)
+        Its place.
+    forces : mapping of row or arc to float
+    pulls : mapping of radial element to ndarray, shape (2,)
+        Force along its offset.
+    laws : mapping of radial element to RadialLaw
+        At the torques that are transmitted.
+    """
+    every = [*(abs(f) for f in forces.values()), *(math.hypot(*p) for p in pulls.values())]
+    carries = PLACES.carries * max([problem.force_unit(), *every])
+    found = Held([], [], [], [])
+    for row in problem.rows:
+        if forces.get(row.name, 0.0) > carries:
+            found.ties.append(row.vector)
+        else:
+            # What counts as no force may be far into a soft contact.
+            end = row.gap + row.law.compression(max(forces.get(row.name, 0.0), 0.0))
+            found.limits.append((row.vector, max(end - float(row.vector @ x), 0.0)))
+    for arc in problem.arcs:
+        if forces.get(arc.name, 0.0) > carries:
+            # Moved along it, it would push another way.
+            found.ties.extend(arc.relative)
+        else:
+            end = arc.arc.clearance + arc.law.compression(max(forces.get(arc.name, 0.0), 0.0))
+            found.arcs.append(replace(arc, arc=replace(arc.arc, clearance=end)))
+    for radial in problem.radials:
+        pull, law = pulls[radial.name], laws[radial.name]
+        size = float(np.linalg.norm(pull))
+        level = law.level(size, carries)
+        if level is None or (size <= carries and level[1] <= 0.0):
+            # Without play a disc is a point.
+            found.ties.extend(radial.matrix)
+        elif size <= carries:
+            found.rounds.append(Round(radial, level[1]))
+        else:
+            along = pull / size
+            found.ties.append(np.array([-along[1], along[0]]) @ radial.matrix)
+            radius = float(along @ radial.offset(x))
+            for sign, end in ((1.0, level[1]), (-1.0, level[0])):
+                room = max(sign * (end - radius), 0.0)
+                found.limits.append((sign * along @ radial.matrix, room))
+    return found
 
 
 def left_open(
@@ -38,21 +124,19 @@ def left_open(
     force : mapping of row or arc to float
     pull : mapping of radial element to ndarray, shape (2,)
     """
-    every = [*force.values(), *(float(np.linalg.norm(p)) for p in pull.values())]
-    carries = PLACES.carries * max([problem.force_unit(), *every])
     near = CONTACT.tolerance * problem.length_unit()
-    ties, ends = [*problem.stiffness], list[_End]()
-    # Moved along an arc that it presses, a body would be pushed another way.
-    pressed = {arc.name: arc.relative for arc in problem.arcs}
-    for row in problem.rows_at(x):
-        if force[row.name] > carries:
-            ties += [*pressed.get(row.name, row.vector[None, :])]
-        elif float(row.vector @ x) - row.gap >= -near:
-            ends.append(_End(row.vector, row.vector[None, :]))
-    for radial in problem.radials:
-        tied, ended = _graph(radial, x, pull[radial.name], radial.torque(force), carries, near)
-        ties += tied
-        ends += ended
+    laws = {r.name: r.law(r.torque(force), x) for r in problem.radials}
+    held = held_by(problem, x, force, pull, laws)
+    ties, faces = [*problem.stiffness, *held.ties], [arc.row(x) for arc in held.arcs]
+    limits = held.limits + [(face.vector, face.gap - float(face.vector @ x)) for face in faces]
+    ends = [_End(along, along[None, :]) for along, room in limits if room <= near]
+    for radial, reach in held.rounds:
+        offset = radial.offset(x)
+        if reach <= near:
+            ties += [*radial.matrix]
+        elif float(np.linalg.norm(offset)) >= reach - near:
+            # The edge is round: who cannot leave it cannot move along it either.
+            ends.append(_End(offset @ radial.matrix, radial.matrix))
     moves = _unresisted(ties, problem.size)
     while ends and moves.size:
         leaves = _left_behind(ends, moves)
@@ -66,28 +150,6 @@ def left_open(
     return frozenset(
         c for c, v in zip(problem.coordinates, moved, strict=True) if v > CONTACT.loose
     )
-
-
-def _graph(
-    radial: Radial, x: Array, pull: Array, torque: float, carries: float, near: float
-) -> tuple[list[Array], list[_End]]:
-    """Directions in which a radial element holds, and its ends."""
-    offset, size = radial.matrix @ x - radial.centre, float(np.linalg.norm(pull))
-    level = radial.law(torque, x).level(size, carries)
-    if level is None:
-        return [*radial.matrix], []
-    if size <= carries:
-        radius = float(np.linalg.norm(offset))
-        if level[1] <= near:
-            return [*radial.matrix], []
-        # The edge is round: who cannot leave it cannot move along it either.
-        inside = radius < level[1] - near
-        return [], [] if inside else [_End(offset @ radial.matrix, radial.matrix)]
-    out = pull @ radial.matrix / size
-    radius = float(pull @ offset) / size
-    ends = [(out, level[1] - radius), (-out, radius - level[0])]
-    across = np.array([-pull[1], pull[0]]) @ radial.matrix / size
-    return [across], [_End(way, way[None, :]) for way, room in ends if room <= near]
 
 
 def _unresisted(ties: Sequence[Array], size: int) -> Array:

@@ -23,7 +23,7 @@ from loadshare.contact.backends.backend import Backend
 from loadshare.contact.energy import potential
 from loadshare.contact.findings import Unsolved, Work
 from loadshare.contact.inner import Inner, solve_programme
-from loadshare.contact.law import Law, PowerLaw
+from loadshare.contact.law import PowerLaw
 from loadshare.contact.plan import Linearisation, Plan, Role, Units, programme
 from loadshare.contact.problem import ContactProblem
 from loadshare.contact.programme import Point
@@ -61,8 +61,7 @@ class Settled:
         """Force of every radial element along its offset, whether it was in play or not."""
         idle = [r for r in problem.radials if r.name not in self.radial_forces]
         first = {r.name: self.laws[r.name].pieces[0].stiffness for r in idle}
-        offsets = {r.name: np.asarray(r.matrix @ self.x - r.centre) for r in idle}
-        return self.radial_forces | {name: first[name] * p for name, p in offsets.items()}
+        return self.radial_forces | {r.name: first[r.name] * r.offset(self.x) for r in idle}
 
 
 @dataclass(slots=True)
@@ -101,7 +100,9 @@ def settle(
     ValueError
         If a spline's law would drop at the torque it carries.
     """
-    state = _start(problem)
+    # Every contact under the force unit, every spline under the whole input torque.
+    pushes = dict.fromkeys(problem.laws, problem.force_unit())
+    state = _State(np.zeros(problem.size), pushes, problem.first_torques())
     warm: Inner | None = None
     history: list[Iteration] = []
     last: Array | None = None
@@ -167,24 +168,13 @@ def _extrapolated(
     return x + ahead * (x - before), None
 
 
-def _start(problem: ContactProblem) -> _State:
-    """Every contact under the force unit, every spline under the whole input torque."""
-    unit = problem.force_unit()
-    names = [r.name for r in problem.rows] + [a.name for a in problem.arcs]
-    return _State(
-        np.zeros(problem.size),
-        dict.fromkeys(names, unit),
-        problem.first_torques(),
-    )
-
-
 def _compliances(
     problem: ContactProblem, forces: dict[str, float], method: str
 ) -> dict[str, tuple[float, float]]:
     """Linear replacements of the laws: secants through the origin (Picard) or tangents (Newton)."""
     if method == "picard":
-        return {n: (law.secant(forces[n]), 0.0) for n, law in _laws(problem).items()}
-    return {n: law.tangent(forces[n]) for n, law in _laws(problem).items()}
+        return {n: (law.secant(forces[n]), 0.0) for n, law in problem.laws.items()}
+    return {n: law.tangent(forces[n]) for n, law in problem.laws.items()}
 
 
 def lines_of_laws(
@@ -197,12 +187,8 @@ def lines_of_laws(
     """
     return {
         n: law.tangent(forces[n]) if forces[n] else (law.secant(least), 0.0)
-        for n, law in _laws(problem).items()
+        for n, law in problem.laws.items()
     }
-
-
-def _laws(problem: ContactProblem) -> dict[str, Law]:
-    return {r.name: r.law for r in problem.rows} | {a.name: a.law for a in problem.arcs}
 
 
 def _forces(names: tuple[str, ...], point: Point, units: Units) -> dict[str, float]:

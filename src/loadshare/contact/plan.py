@@ -44,17 +44,14 @@ class Plan:
     @classmethod
     def full(cls, problem: ContactProblem) -> Plan:
         """Put everything in play."""
-        names = [r.name for r in problem.rows] + [a.name for a in problem.arcs]
-        return cls(
-            dict.fromkeys(names, Role.IN_PLAY),
-            {r.name: Role.IN_PLAY for r in problem.radials},
-        )
+        radials = dict.fromkeys((r.name for r in problem.radials), Role.IN_PLAY)
+        return cls(dict.fromkeys(problem.laws, Role.IN_PLAY), radials)
 
     @classmethod
     def lean(cls, problem: ContactProblem) -> Plan:
         """Take drive flanks as closed and everything else as idle."""
-        rows = {r.name: Role.CLOSED if r.kind == "drive flank" else Role.OPEN for r in problem.rows}
-        rows |= {a.name: Role.OPEN for a in problem.arcs}
+        closed = (r.name for r in problem.rows if r.kind == "drive flank")
+        rows = dict.fromkeys(problem.laws, Role.OPEN) | dict.fromkeys(closed, Role.CLOSED)
         return cls(rows, {r.name: Role.CLOSED for r in problem.radials}, condensed=True)
 
     def with_in_play(self, names: set[str]) -> Plan:

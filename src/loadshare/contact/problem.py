@@ -154,9 +154,13 @@ class Radial:
         """Torque over the element; a row that is not named carries nothing."""
         return sum(lever * forces.get(name, 0.0) for name, lever in self.levers.items())
 
+    def offset(self, x: Array) -> Array:
+        """Way from its centre at coordinates x, (2,) [m]."""
+        return np.asarray(self.matrix @ x - self.centre)
+
     def radius(self, x: Array) -> float:
         """How far it is from its centre at coordinates x [m]."""
-        return float(np.linalg.norm(self.matrix @ x - self.centre))
+        return float(np.linalg.norm(self.offset(x)))
 
     def law(self, torque: float, x: Array | None = None) -> RadialLaw:
         """Law at a torque over the element; what is a power touches it at coordinates x."""
@@ -290,6 +294,11 @@ class ContactProblem:
             touched |= (matrix != 0.0).any(axis=0)
         return condense(self.stiffness, self.load, touched)
 
+    @cached_property
+    def laws(self) -> dict[str, Law]:
+        """Laws of rows and arcs by name."""
+        return {r.name: r.law for r in self.rows} | {a.name: a.law for a in self.arcs}
+
     def rows_at(self, x: Array, wide: bool = False) -> tuple[Row, ...]:
         """All rows, arcs replaced by their faces at x, wide or tangent."""
         return self.rows + tuple(a.row(x, wide) for a in self.arcs)
@@ -313,7 +322,7 @@ class ContactProblem:
         overlap = -min(room, default=0.0)
         yielded = overlap if overlap > 0.0 else max(self._gaps(), default=0.0)
         forces = [k * yielded for k in np.diag(self.stiffness).tolist()]
-        laws = [r.law for r in self.rows] + [a.law for a in self.arcs]
+        laws = self.laws.values()
         forces += [law.force(yielded) for law in laws if law.compression(1.0) > 0.0]
         for piece in (p for _, graph in graphs if graph for p in graph.pieces):
             forces += [piece.force, piece.stiffness * yielded]

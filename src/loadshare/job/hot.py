@@ -180,7 +180,7 @@ def left_out(answer: Answer) -> tuple[tuple[str, str], ...]:
         if plan.rows[row.name] is Role.OPEN
     ]
     idle += [
-        (r.name, f"moves freely, {float(np.linalg.norm(r.matrix @ x - r.centre)) * 1e6:.4g} µm out")
+        (r.name, f"moves freely, {r.radius(x) * 1e6:.4g} µm out")
         for r in scene.radials
         if plan.radials[r.name] is Role.OPEN
     ]

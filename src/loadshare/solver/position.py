@@ -167,7 +167,7 @@ def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool
         if plan.radials[radial.name] is Role.IN_PLAY:
             continue
         first = settled.laws[radial.name].pieces[0]
-        radius = float(np.linalg.norm(radial.matrix @ settled.x - radial.centre))
+        radius = radial.radius(settled.x)
         holds = first.force == 0.0 and radius <= first.length + length
         room = (first.length - radius) * 1e6
         found[radial.name] = (holds, f"{first.name}: {room:.4g} µm before the next piece")

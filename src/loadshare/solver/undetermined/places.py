@@ -15,11 +15,12 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.array_types import Array
+from loadshare.contact.left_open import Round
 from loadshare.contact.problem import Row
 from loadshare.later import Later
 from loadshare.scene.scene import Scene
 from loadshare.settings import PLACES
-from loadshare.solver.undetermined.free_set import FreeSet, Round
+from loadshare.solver.undetermined.free_set import FreeSet
 from loadshare.solver.undetermined.region import Disc, Region
 from loadshare.train.equilibrium import Range
 
@@ -153,7 +154,7 @@ class _Part:
 
     def _disc(self, held: Round) -> Disc:
         radial, matrix = held.radial, held.radial.matrix @ self.across
-        offset = (radial.matrix @ self.free.x - radial.centre) / self.unit
+        offset = radial.offset(self.free.x) / self.unit
         return Disc(matrix, matrix @ self.start - offset, held.radius / self.unit)
 
     def _least(self) -> Array:
