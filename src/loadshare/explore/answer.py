@@ -22,6 +22,7 @@ from loadshare.report.records import Cell, Record, Table, table
 from loadshare.report.verdict import measure_of, trust, verdict_tables
 from loadshare.report.words import boundary_name
 from loadshare.results import Position, Result
+from loadshare.results.share import largest
 from loadshare.settings import ALLOWED, EXPLORE
 from loadshare.study.parameter import read_value
 
@@ -79,9 +80,11 @@ def whole_of(inputs: Inputs, given: Setting, position: int) -> Plain:
         return found
     found["trust"] = trust(result)
     if len(result.positions) > 1:
+        stages = result.positions[0].train.stages
+        every = [largest([p.share], stages) for p in result.positions]
         found["cycle"] = {
             "positions": [p.position for p in result.positions],
-            "omega": {name: list(values) for name, values in _cycle(result)},
+            "omega": {stage: [each[stage] for each in every] for stage in result.stages},
         }
     return found
 
@@ -179,18 +182,6 @@ def _bars(result: Result, shown: Position | None) -> Iterator[Plain]:
                 "here": here,
                 "text": omega(most),
             }
-
-
-def _cycle(result: Result) -> Iterator[tuple[str, list[float | None]]]:
-    """Yield the largest Ω of every stage at each position."""
-    for stage, meshes in result.stages.items():
-        yield (
-            stage,
-            [
-                max((s for m in meshes if (s := p.share[m]) is not None), default=None)
-                for p in result.positions
-            ],
-        )
 
 
 def states(shown: Position) -> Table:

@@ -112,6 +112,14 @@ class OnSet:
             gap[:, k] = margin + self.x @ base
         return load, gap
 
+    def room(self) -> Array:
+        """How far every contact may close from where the samples are, (k, rows)."""
+        structure, rows = self.structure, self.structure.columns.contacts
+        room = pick(self.loading.gap, self.rows)[:, rows] - self.x @ structure.vectors[rows].T
+        for a in range(len(structure.arcs)):
+            room[:, structure.flat + a] = arc_at(self.loading, a, self.rows, self.x)[1]
+        return np.asarray(room)
+
     def graph(self, j: int, offset: Array) -> at.Graph:
         """Law of a radial element at an offset; found once where it is the same everywhere."""
         known = self.fixed.get(j)

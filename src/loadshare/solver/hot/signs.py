@@ -15,7 +15,7 @@ from loadshare.solver.hot.rest import rest
 
 def wrong_elements(on: OnSet, sign: float) -> tuple[Flags, States]:
     """Which elements have the wrong sign, and where they should be instead."""
-    structure, loading = on.structure, on.loading
+    structure = on.structure
     wrong = np.zeros((len(on.rows), structure.switches), dtype=bool)
     moved = np.repeat(on.states[None, :], len(on.rows), axis=0)
     largest_force = np.maximum(np.abs(on.force).max(axis=1, initial=0.0), on.push)
@@ -24,11 +24,8 @@ def wrong_elements(on: OnSet, sign: float) -> tuple[Flags, States]:
     force_band, faint = sign * largest_force, HOT.sign * largest_force
     length_band = sign * np.maximum(yielded, HOT.of_way * furthest)
     rows = structure.columns.contacts
-    approach = on.x @ structure.vectors[rows].T - pick(loading.gap, on.rows)[:, rows]
-    for a in range(len(structure.arcs)):
-        approach[:, structure.flat + a] = -arc_at(loading, a, on.rows, on.x)[1]
     closed = on.states[: structure.rows] == at.CLOSED
-    wrong[:, : structure.rows] = approach > length_band[:, None]
+    wrong[:, : structure.rows] = on.room() < -length_band[:, None]
     row = np.flatnonzero((on.basis.columns >= rows.start) & (on.basis.columns < rows.stop))
     switch = on.basis.columns[row] - rows.start
     wrong[:, switch] = on.force[:, row] < -force_band[:, None]
@@ -84,12 +81,8 @@ def stopped_by(on: OnSet, drift: Array) -> tuple[Flags, States]:
     stopping = np.zeros((len(on.rows), structure.switches), dtype=bool)
     rows = structure.columns.contacts
     speed = drift @ structure.vectors[rows].T
-    room = pick(on.loading.gap, on.rows)[:, rows] - on.x @ structure.vectors[rows].T
-    for a in range(len(structure.arcs)):
-        margin = arc_at(on.loading, a, on.rows, on.x)[1]
-        room[:, structure.flat + a] = margin
     fast = HOT.drift * np.abs(drift).max(axis=1, initial=0.0)[:, None]
-    way = np.where(speed > fast, np.maximum(room, 0.0) / speed, np.inf)
+    way = np.where(speed > fast, np.maximum(on.room(), 0.0) / speed, np.inf)
     way[:, on.states[: structure.rows] == at.CLOSED] = np.inf
     states = np.repeat(on.states[None, :], len(on.rows), axis=0)
     states[:, : structure.rows] = at.CLOSED
