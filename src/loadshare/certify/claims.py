@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, TypeVar, cast
 
@@ -33,6 +34,7 @@ from loadshare.train.train import Train
 Derived = TypeVar("Derived")
 
 
+@dataclass(eq=False, repr=False)
 class Claims:
     """Claims of one train, at a position each.
 
@@ -50,18 +52,13 @@ class Claims:
         As for `certify`.
     """
 
-    def __init__(
-        self,
-        train: Train,
-        judge: Judge,
-        positions: Sequence[int],
-        answers: Equilibria,
-        undetermined: Sequence[Mapping[str, Range]],
-        rigorous: bool = False,
-    ) -> None:
-        self.train, self.judge, self.positions, self.answers = train, judge, positions, answers
-        self.undetermined, self.rigorous = undetermined, rigorous
-        self._derived: dict[Callable[..., Any], Any] = {}
+    train: Train
+    judge: Judge
+    positions: Sequence[int]
+    answers: Equilibria
+    undetermined: Sequence[Mapping[str, Range]]
+    rigorous: bool = False
+    _derived: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False)
 
     @classmethod
     def of(cls, train: Train, answers: Sequence[Equilibrium], rigorous: bool = False) -> Claims:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 import numpy as np
@@ -26,6 +26,7 @@ from loadshare.train.train import Train
 HOT, SEARCHED = "hot path", "proximal search"
 
 
+@dataclass(eq=False, repr=False)
 class Solved:
     """What the hot path found in situations of one machine, handed out one by one.
 
@@ -40,12 +41,11 @@ class Solved:
         Of their certificates.
     """
 
-    def __init__(
-        self, machine: Machine, situations: Situations, found: Answers, tolerance: float
-    ) -> None:
-        self.machine, self.situations, self.found = machine, situations, found
-        self.tolerance = tolerance
-        self._least: dict[int, Equilibrium] = {}
+    machine: Machine
+    situations: Situations
+    found: Answers
+    tolerance: float
+    _least: dict[int, Equilibrium] = field(default_factory=dict, init=False)
 
     @cached_property
     def small(self) -> Flags:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 import numpy as np
 
 from loadshare.array_types import Flags
@@ -13,6 +15,7 @@ from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
 
+@dataclass(eq=False, repr=False)
 class Judging:
     """Answers of samples and what the certificate says of them.
 
@@ -34,20 +37,14 @@ class Judging:
         Once they were judged.
     """
 
-    def __init__(
-        self,
-        structure: Structure,
-        judge: Judge,
-        situations: Situations,
-        iterate: Iterate,
-        tolerance: float,
-        compiled: bool,
-    ) -> None:
-        self.structure, self.judge = structure, judge
-        self.situations, self.iterate = situations, iterate
-        self.tolerance, self.compiled = tolerance, compiled
-        self.answers: Equilibria
-        self._verdicts: Verdicts | None = None
+    structure: Structure
+    judge: Judge
+    situations: Situations
+    iterate: Iterate
+    tolerance: float
+    compiled: bool
+    answers: Equilibria = field(init=False)
+    _verdicts: Verdicts | None = field(default=None, init=False)
 
     def renewed(self, rows: Flags, bounded: bool = True) -> Verdicts:
         """Judge samples that have changed, the first time all; return the verdicts on all.
