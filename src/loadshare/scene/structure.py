@@ -18,7 +18,7 @@ section 11.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import accumulate, pairwise
@@ -319,12 +319,15 @@ class Structure:
         """What an engine remembers of a set."""
         return {}
 
-    def remember(self, key: tuple[Any, ...], value: Any) -> Any:
-        """Remember what an engine needs of a set, and return it."""
-        if len(self.cache) >= STATICS.sets:
-            self.cache.clear()
-        self.cache[key] = value
-        return value
+    def kept(self, key: tuple[Any, ...], make: Callable[[], Any]) -> Any:
+        """Return what an engine needs of a set, made when it is first asked for."""
+        found = self.cache.get(key)
+        if found is None:
+            found = make()
+            if len(self.cache) >= STATICS.sets:
+                self.cache.clear()
+            self.cache[key] = found
+        return found
 
     @cached_property
     def _bases(self) -> dict[bytes, Basis]:

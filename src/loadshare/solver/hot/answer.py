@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, cast
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,7 +26,7 @@ def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -
     With `compiled`, for many samples, products pass over zeros: the same except for round-off.
     """
     names = Names(structure.train)
-    to = _map(structure, names)
+    to: _Map = structure.kept(("map",), partial(_map, structure, names))
     force, tables = iterate.force, (*[iterate.x] * 2, *[iterate.force] * 3)
     if compiled:
         from loadshare.solver.hot.products import products
@@ -114,10 +114,7 @@ class _Map:
 
 
 def _map(structure: Structure, names: Names) -> _Map:
-    """Return the matrices of a machine, written down once."""
-    known = structure.cache.get(("map",))
-    if known is not None:
-        return cast(_Map, known)
+    """Return the matrices of a machine."""
     train, at, columns = structure.train, structure.coordinates, structure.columns
     gears, n, m = len(names.gears), structure.size, len(structure.kinds)
     rotation, turned = np.zeros((n, gears)), np.zeros(gears)
@@ -137,7 +134,7 @@ def _map(structure: Structure, names: Names) -> _Map:
     for j, (_, name) in enumerate(names.radials):
         column = structure.radial_column(j)
         reaction[column : column + 2, j] = -train.gears[name].frame
-    found = _Map(
+    return _Map(
         (
             rotation * structure.length,
             displacement.reshape(n, -1) * structure.length,
@@ -147,5 +144,3 @@ def _map(structure: Structure, names: Names) -> _Map:
         ),
         turned,
     )
-    structure.remember(("map",), found)
-    return found

@@ -8,6 +8,7 @@ together as a set once, and serves all samples that have it. Source: formulation
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -142,12 +143,12 @@ class _Batch(NamedTuple):
         return kinds
 
     def moves(self, some: States) -> _Moves:
-        """Put together what a set of carrying elements leaves; computed once."""
+        """What a set of carrying elements leaves; put together once."""
+        key = "moves", some.tobytes()
+        return cast(_Moves, self.structure.kept(key, partial(self._moves_of, some)))
+
+    def _moves_of(self, some: States) -> _Moves:
         structure, loading, _ = self
-        key = ("moves", some.tobytes())
-        known = structure.cache.get(key)
-        if known is not None:
-            return cast(_Moves, known)
         carry, kinds = some[: structure.rows], some[structure.rows :]
         flat, columns, vectors = structure.flat, structure.columns, structure.vectors
         holding = [vectors[columns.springs], vectors[columns.flat][carry[:flat] != 0]]
@@ -183,9 +184,7 @@ class _Batch(NamedTuple):
             met += [flat + a for a in arcs]
             met += [structure.rows + j for j in free]
         fewest = moves.shape[1] - len(level) if some_left else -1 if may_be_held else 0
-        found = _Moves(moves, level, idle, arcs, free, some_left, may_be_held, tuple(met), fewest)
-        structure.remember(key, found)
-        return found
+        return _Moves(moves, level, idle, arcs, free, some_left, may_be_held, tuple(met), fewest)
 
     def fixed(self, some: States, rows: Numbers) -> Flags:
         """Whether samples of one set of carrying elements are determined, shape (len(rows),)."""

@@ -74,9 +74,9 @@ class Touching:
         held: Flags,
         least: Array,
     ) -> None:
-        self._of = structure.cache.get(("touching",)) or structure.remember(
+        self._of = structure.kept(
             ("touching",),
-            Layout(
+            lambda: Layout(
                 rows_of(structure.vectors),
                 rows_of(loading.relative.reshape(-1, structure.size)),
                 rows_of(loading.carried),

@@ -11,7 +11,8 @@ differ from sample to sample, radial elements on their first piece or pinned).
 
 from __future__ import annotations
 
-from typing import NamedTuple, cast
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -133,14 +134,12 @@ def packed_sets(
     begins : ndarray of int, shape (sets, 2)
         Where each set begins in both.
     """
-    found = []
-    for states in sets:
-        key = ("compiled", states.tobytes(), loading.laws)
-        known = structure.cache.get(key)
-        if known is None:
-            known = _pack(*_structure(structure, loading, structure.basis(states), states))
-            structure.remember(key, known)
-        found.append(known)
+    found = [
+        structure.kept(
+            ("compiled", states.tobytes(), loading.laws), partial(_pack, structure, loading, states)
+        )
+        for states in sets
+    ]
     begins = np.zeros((len(sets), 2), dtype=np.intp)
     if len(found) == 1:
         return *found[0], begins
@@ -150,8 +149,9 @@ def packed_sets(
     return np.concatenate(floats), np.concatenate(numbers), begins
 
 
-def _pack(tables: list[Array], lists: list[Numbers], numbers: list[int]) -> tuple[Array, Numbers]:
+def _pack(structure: Structure, loading: Loading, states: States) -> tuple[Array, Numbers]:
     """One array of all tables, one of all lists and numbers."""
+    tables, lists, numbers = _structure(structure, loading, structure.basis(states), states)
     front, start = [], 0
     for table in tables:
         front += [start, *table.shape]
@@ -258,7 +258,8 @@ def _structure(
     slips = states[structure.rows + turning_radials] == SLIP
     borders = int(slips.sum())
     if n.shape[1] and not len(inverse):
-        particular, n = (table[order] for table in _local(structure, basis))
+        key = "local", basis.columns.tobytes()
+        particular, n = (table[order] for table in structure.kept(key, partial(local, basis)))
         n, factor = eliminated(n, n[springs : springs + turned], borders)
     else:
         factor = full(n.shape[1], borders)
@@ -267,9 +268,9 @@ def _structure(
     acting = np.flatnonzero((arcs >= 0) & (contacts < first_radial))
     open_rows = np.flatnonzero(states[:flanks] == OPEN)
     open_arcs = np.flatnonzero(states[flanks : structure.rows] == OPEN)
-    known, (arc_starts, arc_coordinates, _), by_rows = _every_set(structure)
+    every_set = structure.kept(("every set",), partial(_every_set, structure))
+    known, (arc_starts, arc_coordinates, _), (starts, coordinates, entries) = every_set
     turning = np.flatnonzero(known[arcs[acting]].any(axis=0))
-    starts, coordinates, entries = by_rows
     compliances = np.array(loading.bending[0, columns[:springs]])
     held, of_springs, touching = particular[:springs], n[:springs], n[springs:]
     yields = held[:, turning].T * compliances
@@ -326,13 +327,6 @@ def _structure(
     return arrays, lists, [powers, turned, row_end, first, first_radial, flanks]
 
 
-def _local(structure: Structure, basis: Basis) -> tuple[Array, Array]:
-    """P and N as `local` has them, found once for all sets of the same elements."""
-    key = "local", basis.columns.tobytes()
-    known = structure.cache.get(key) or structure.remember(key, local(basis))
-    return cast(tuple[Array, Array], known)
-
-
 def _every_set(structure: Structure) -> tuple[Flags, Rows, Rows]:
     """What is the same in every set.
 
@@ -343,14 +337,10 @@ def _every_set(structure: Structure) -> tuple[Flags, Rows, Rows]:
     of_arcs, by_rows : tuple of ndarray
         The same, and A, row by row.
     """
-    known = structure.cache.get(("every set",))
-    if known is None:
-        arcs, first = len(structure.relative), structure.springs + structure.flat
-        found = (structure.relative != 0.0).any(axis=1)
-        found |= structure.vectors[first : first + arcs] != 0.0
-        known = found, rows_of(found.astype(float)), rows_of(structure.vectors)
-        structure.remember(("every set",), known)
-    return cast(tuple[Flags, Rows, Rows], known)
+    arcs, first = len(structure.relative), structure.springs + structure.flat
+    known = (structure.relative != 0.0).any(axis=1)
+    known |= structure.vectors[first : first + arcs] != 0.0
+    return known, rows_of(known.astype(float)), rows_of(structure.vectors)
 
 
 def _radial_at(structure: Structure, contacts: Numbers) -> Numbers:
