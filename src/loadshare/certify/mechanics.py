@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -132,7 +132,7 @@ class Mechanics:
         train, order = self.train, self.order
         rigid, shafts = rigid_shafts(train), list(train.shafts.values())
         self.groups = [[order[g] for g in group] for group in rigid.paths]
-        self.shaft = _pairs([(order[s.first], order[s.second]) for s in shafts])
+        self.shaft = pairs([(order[s.first], order[s.second]) for s in shafts])
         self.elastic: Numbers = np.flatnonzero([not math.isinf(s.stiffness) for s in shafts])
         self.beyond = np.zeros((len(shafts), len(order)))
         for w, shaft in enumerate(shafts):
@@ -142,7 +142,7 @@ class Mechanics:
     def _put_drums(self) -> None:
         train, order, drums = self.train, self.order, self.train.drums
         self.drum = np.array([order[r.gear] for r in drums], dtype=np.intp)
-        self.neighbours = _pairs([[order[n] for n in r.neighbours] for r in drums])
+        self.neighbours = pairs([[order[n] for n in r.neighbours] for r in drums])
         self.across = np.array([r.across for r in drums]).reshape(-1, 3)
         self.nominal = arms_of_drums(train)
         self.distance = np.sqrt((self.nominal**2).sum(axis=2))
@@ -264,7 +264,8 @@ def arms_of_drums(train: Train) -> Array:
     return np.array(apart).reshape(-1, 2, 3)
 
 
-def _pairs(values: list[object]) -> Numbers:
+def pairs(values: Sequence[object]) -> Numbers:
+    """Return pairs of numbers as an array (k, 2), also where there are none."""
     return np.array(values, dtype=np.intp).reshape(-1, 2)
 
 

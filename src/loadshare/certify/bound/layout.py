@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.mechanics import mechanics_of, pairs
 from loadshare.certify.validity import measuring
 from loadshare.settings import BOUND, CERTIFY
 from loadshare.train.situations import Situations
@@ -113,10 +113,6 @@ def _twins(columns: Columns, nominal: Array, apart: Array) -> Numbers:
     return twin
 
 
-def _pairs(pairs: list[tuple[int, int]]) -> Numbers:
-    return np.array(pairs, dtype=np.intp).reshape(-1, 2)
-
-
 def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
     """Return a train with its springs, as `springs_of` finds them, for compiled code."""
     train, order, of = columns.train, columns.order, mechanics_of(columns.train)
@@ -129,7 +125,7 @@ def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
     held = {g: t for g, t in columns.turns.items() if t.coordinate is not None}
     turns = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items() if not t.shafts]
     loads = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items()]
-    gear_pairs = _pairs([(order[m.driver], order[m.driven]) for m, _ in columns.all_flanks])
+    gear_pairs = pairs([(order[m.driver], order[m.driven]) for m, _ in columns.all_flanks])
     size, rest = measuring(train), _entries(columns.constants.T)
     across = size.across.reshape(len(gear_pairs), -1, 3)
     return Layout(
@@ -149,10 +145,10 @@ def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
         ),
         columns.moments,
         len(train.rounds),
-        _pairs([t[:2] for t in turns]),
+        pairs([t[:2] for t in turns]),
         np.array([t[2] for t in turns]),
-        _pairs([(at, order[g]) for g, at in columns.places.items()]),
-        _pairs([t[:2] for t in loads]),
+        pairs([(at, order[g]) for g, at in columns.places.items()]),
+        pairs([t[:2] for t in loads]),
         np.array([t[2] for t in loads]),
         frames,
         of.radius,

@@ -21,6 +21,8 @@ shown so is left to `boxes`. Source: formulation, section 16.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from loadshare.array_types import Array, Flags, Numbers
@@ -217,8 +219,7 @@ class _Group:
     def _pushed(self) -> Array:
         """Forces of what may open, shape (rows, m): infinite of what cannot."""
         claim, found, pick = self.claim, self.found, self.pick
-        columns, flanks, arcs = claim.columns, claim.columns.flanks.stop, claim.arcs[1].shape[1]
-        contacts = len(columns.contacts)
+        columns, arcs = claim.columns, claim.arcs[1].shape[1]
         pushed = np.full(found.force[pick].shape, np.inf)
         pushed[:, columns.contacts] = found.force[pick][:, columns.contacts]
         size = found.size[pick].copy()
@@ -226,13 +227,20 @@ class _Group:
         first = columns.first_pair
         pushed[:, first::2] = pushed[:, first + 1 :: 2] = size
         # Of two without clearance between them, one takes what the other cannot.
-        doubled = self.doubled[pick]
-        for e in np.flatnonzero(doubled[:, : contacts + arcs].any(axis=0)).tolist():
-            twin = flanks + ((e - flanks) ^ 1)
-            for k in (0,) if e < contacts else (0, 1):
-                at = columns.contacts[twin] if e < contacts else first + 2 * (twin - contacts) + k
-                pushed[doubled[:, e], at] = np.inf
+        for rows, _, twin in self._twins():
+            pushed[rows, twin] = np.inf
         return pushed
+
+    def _twins(self) -> Iterator[tuple[Flags, int, int]]:
+        """Yield contacts that their twin replaces: where it does, a column of each."""
+        columns = self.claim.columns
+        contacts, first = len(columns.contacts), columns.flanks.stop
+        at = [*columns.contacts.tolist(), *range(columns.arcs.start, columns.arcs.stop, 2)]
+        doubled = self.doubled[self.pick][:, : len(at)]
+        for e in np.flatnonzero(doubled.any(axis=0)).tolist():
+            twin = first + ((e - first) ^ 1)
+            for k in (0,) if e < contacts else (0, 1):
+                yield doubled[:, e], at[e] + k, at[twin] + k
 
     def _at_ends(self, figures: Array) -> Array:
         """Figures of all columns (rows, m), as directions are; those of turns infinite."""
@@ -387,16 +395,9 @@ class _Group:
 
     def _cover_twins(self, errors: Array) -> None:
         """Give contacts that their twin replaces the twin's errors: it may be they that act."""
-        columns = self.claim.columns
-        ends = columns.contacts, range(columns.arcs.start, columns.arcs.stop, 2)
-        at = np.array([*ends[0], *ends[1]], dtype=np.intp)
-        doubled = self.doubled[self.pick][:, : len(at)]
-        for e in np.flatnonzero(doubled.any(axis=0)).tolist():
-            first = columns.flanks.stop
-            twin = first + ((e - first) ^ 1)
-            for k in (0, 1) if e >= len(ends[0]) else (0,):
-                error = np.maximum(errors[:, at[e] + k], errors[:, at[twin] + k])
-                errors[:, at[e] + k] = np.where(doubled[:, e], error, errors[:, at[e] + k])
+        for rows, one, twin in self._twins():
+            error = np.maximum(errors[:, one], errors[:, twin])
+            errors[:, one] = np.where(rows, error, errors[:, one])
 
     def _under(self, load: Array, misfit: Array | float) -> tuple[Array, Array]:
         """Sizes of the forces that carry a load, and of the misfit that is left for self-stress."""

@@ -124,8 +124,9 @@ def _with(act: Acts, changes: dict[int, int]) -> Acts:
 def _idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> set[int]:
     """Doubtful contacts that cannot change a force, whether they touch or not."""
     contacts = [e for e in doubtful if e < len(claim.columns.contacts)]
-    closed, verge = _closed(act, contacts)
-    return _alone(claim, closed, contacts, verge, scale)
+    verge = np.zeros(act.shape, dtype=bool)
+    verge[0, contacts] = True
+    return _alone(claim, np.where(verge, np.int8(Act.STOP), act), contacts, verge, scale)
 
 
 def _without_idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> Acts:
@@ -165,13 +166,6 @@ def _alone(claim: Claim, act: Acts, some: list[int], verge: Flags, scale: Array)
         return float(part[first : first + 2].max())
 
     return {e for e in some if share(e) < BOUND.idle}
-
-
-def _closed(act: Acts, doubtful: Iterable[int]) -> tuple[Acts, Flags]:
-    """Ways of acting with all doubtful contacts closed, and which these are."""
-    verge = np.zeros(act.shape, dtype=bool)
-    verge[0, list(doubtful)] = True
-    return np.where(verge, np.int8(Act.STOP), act), verge
 
 
 def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
