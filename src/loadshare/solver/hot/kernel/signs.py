@@ -41,24 +41,26 @@ def look_at_rows(s, work, width):  # type: ignore[no-untyped-def]
         force_band[m] = work.each[BAND, m] * strongest[m]
         length_band[m] = work.each[BAND, m] * longest[m]
     for e in range(s.first_row, s.end_row):
-        _mark(wrong[s.switches[e - s.first_row]], count, force[e], -1.0, force_band, width)
+        row = s.switches[e - s.first_row]
+        for m in range(width):
+            off = force[e, m] < -force_band[m]
+            wrong[row, m] = off
+            count[m] += off
     for o in range(s.open_rows.shape[0]):
         row = s.open_rows[o]
         approach(s, samples, s.first_column + row, x, width, nearer)
-        _mark(wrong[row], count, nearer, 1.0, length_band, width)
+        for m in range(width):
+            off = nearer[m] > length_band[m]
+            wrong[row, m] = off
+            count[m] += off
     for o in range(s.open_arcs.shape[0]):
         a = s.open_arcs[o]
+        row = s.flanks + a
         arc(s, samples, a, x, width, work.normal, nearer, work.one)
-        _mark(wrong[s.flanks + a], count, nearer, -1.0, length_band, width)
-
-
-@bare
-def _mark(wrong, count, figures, sign, band, width):  # type: ignore[no-untyped-def]
-    """Mark and count the samples in which a figure of some sign is beyond a band."""
-    for m in range(width):
-        off = sign * figures[m] > band[m]
-        wrong[m] = off
-        count[m] += off
+        for m in range(width):
+            off = -nearer[m] > length_band[m]
+            wrong[row, m] = off
+            count[m] += off
 
 
 @bare
@@ -169,15 +171,6 @@ def propose(states, wrong, better, m, one_only, proposal):  # type: ignore[no-un
 
 
 @bare
-def _along(s, column, move):  # type: ignore[no-untyped-def]
-    """Product of a row of A and a move of the coordinates."""
-    total = 0.0
-    for c in range(s.starts[column], s.starts[column + 1]):
-        total += s.entries[c] * move[s.coordinates[c]]
-    return total
-
-
-@bare
 def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-def]
     """Propose what is first in the way of the drift of a sample, and go there.
 
@@ -204,8 +197,9 @@ def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-d
     for o in range(open_rows + s.open_arcs.shape[0]):
         row = s.open_rows[o] if o < open_rows else s.flanks + s.open_arcs[o - open_rows]
         column = s.first_column + row
-        speed, left = _along(s, column, drift), gap[column]
+        speed, left = 0.0, gap[column]
         for c in range(s.starts[column], s.starts[column + 1]):
+            speed += s.entries[c] * drift[s.coordinates[c]]
             left -= s.entries[c] * x[s.coordinates[c], m]
         if o >= open_rows:
             a = s.open_arcs[o - open_rows]
@@ -221,8 +215,11 @@ def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-d
         column = s.first_radial + 2 * j
         approach(s, work.samples, column, x, width, work.one)
         approach(s, work.samples, column + 1, x, width, work.two)
-        u, v = work.one[m], work.two[m]
-        du, dv = _along(s, column, drift), _along(s, column + 1, drift)
+        u, v, du, dv = work.one[m], work.two[m], 0.0, 0.0
+        for c in range(s.starts[column], s.starts[column + 1]):
+            du += s.entries[c] * drift[s.coordinates[c]]
+        for c in range(s.starts[column + 1], s.starts[column + 2]):
+            dv += s.entries[c] * drift[s.coordinates[c]]
         square, along = du * du + dv * dv, u * du + v * dv
         if square > fast * fast:
             torque_of(s.follows[j], s.carried[j], work.force, width, work.one)
