@@ -15,8 +15,8 @@ Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
-class Loads:
-    """The loads of one answer, by name; `Figures` says what each is.
+class _OfAnswer:
+    """Figures of one answer, by name.
 
     Attributes
     ----------
@@ -28,6 +28,10 @@ class Loads:
 
     figures: Figures
     row: int
+
+
+class Loads(_OfAnswer):
+    """The loads of one answer, by name; `Figures` says what each is."""
 
     @property
     def meshes(self) -> dict[str, float]:
@@ -63,23 +67,12 @@ class Loads:
         return {name: value for name, value in found.items() if gears[name].rim_of is None}
 
 
-@dataclass(frozen=True)
-class Elastic:
+class Elastic(_OfAnswer):
     """Transmission errors and tangent stiffnesses of one answer; `Figures` says what each is.
 
     Gaps, errors and displacements of the gears count as well as what teeth and shafts yield. Where
     forces leave a rotation open, the errors are those of the least one.
-
-    Attributes
-    ----------
-    figures : Figures
-        Of the answer among others.
-    row : int
-        Its number among them.
     """
-
-    figures: Figures
-    row: int
 
     @property
     def transmission_error(self) -> dict[str, float]:

@@ -255,19 +255,7 @@ def sweep(
     >>> found.dataset["pair_omega"].sel(stage="II").values.round(4).tolist()
     [1.0471, 1.0189, 1.0]
     """
-    if not isinstance(parameters, Mapping):
-        wanted = "inputs by key path are wanted, as in {'rings.4.float': '0 um:12 um:61'}"
-        raise TypeError(f"{wanted}, not {type(parameters).__name__}")
-    case = loaded(case, map(named, parameters))
-    if not 1 <= len(parameters) <= MOST:
-        message = f"a sweep has 1 or {MOST} parameters, not {len(parameters)}"
-        raise CaseError([Problem(STUDY, "sweep", "", message, "keys joined by = count as one")])
-    chosen, grids = [], []
-    for key, given in parameters.items():
-        values, unit = grid(given, named(key))
-        chosen.append(read_parameter(case, key, unit))
-        grids.append(values)
-    check_apart(chosen)
+    case, chosen, grids = _grids(case, parameters)
     total = prod(len(values) for values in grids)
     if total > ALLOWED.points:
         raise too_many("sweep", total)
@@ -297,6 +285,26 @@ def sweep(
         answered=answered,
         usable=usable,
     )
+
+
+def _grids(
+    case: Case | str | FilePath, parameters: Mapping[Any, object]
+) -> tuple[Case, list[Parameter], list[tuple[float, ...]]]:
+    """Return the case of a sweep, what varies, and the values that each takes."""
+    if not isinstance(parameters, Mapping):
+        wanted = "inputs by key path are wanted, as in {'rings.4.float': '0 um:12 um:61'}"
+        raise TypeError(f"{wanted}, not {type(parameters).__name__}")
+    case = loaded(case, map(named, parameters))
+    if not 1 <= len(parameters) <= MOST:
+        message = f"a sweep has 1 or {MOST} parameters, not {len(parameters)}"
+        raise CaseError([Problem(STUDY, "sweep", "", message, "keys joined by = count as one")])
+    chosen, grids = [], []
+    for key, given in parameters.items():
+        values, unit = grid(given, named(key))
+        chosen.append(read_parameter(case, key, unit))
+        grids.append(values)
+    check_apart(chosen)
+    return case, chosen, grids
 
 
 def _check_corners(case: Case, chosen: Sequence[Parameter], values: Array) -> None:
