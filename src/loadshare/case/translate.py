@@ -192,6 +192,10 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
         return Rule("is not one of the allowed words", path, choices(words), hint)
     if kind == "shape":
         return Rule("does not have an allowed form", path, error["msg"])
+    given = error["input"]
+    if kind == "string_type" and isinstance(given, int | float) and not isinstance(given, bool):
+        hint = f"""Write it in quotes; in a shell in both kinds, as '"{given}"'."""
+        return Rule("is a number, a text is needed", path, f'a text such as "{given}"', hint)
     wanted = WANTED.get(kind, "another value").format_map(context)
     inner = _fields(model, path) if wanted == "a table" else {}
     if inner:
