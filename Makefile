@@ -4,6 +4,8 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 CASE   ?= cases/fgfbstts/limit_ring.toml
 WORKERS ?= 2
+# Of tests one more than there are cores: some wait for a browser or for another process.
+TESTERS ?= 3
 # BLAS gains nothing on matrices of this size, and its threads fight with the test workers.
 export OPENBLAS_NUM_THREADS = 1
 # Without bytecode on disk every process would compile all modules again.
@@ -37,7 +39,7 @@ $(VENV)/.bench: $(VENV)/.run
 # All that a test runs against, side by side; the tests find the kernels on disk.
 CHECKED := $(MAKE) --no-print-directory --output-sync -j $(WORKERS) kernels types docs lint layers
 # Neighbours stay together, so that a file's fixtures are made once; the pages are those just built.
-TESTED := LOADSHARE_SITE=site $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+TESTED := LOADSHARE_SITE=site $(BIN)/python -m pytest -n $(TESTERS) --dist worksteal
 
 test: $(VENV)/.dev ## check and test everything that is not slow
 	$(CHECKED)
@@ -54,12 +56,12 @@ $(LOWEST)/.test: pyproject.toml constraints-lowest.txt
 	@touch $@
 
 test-lowest: $(LOWEST)/.test ## test with the lowest versions that are allowed
-	$(LOWEST)/bin/python -m pytest -n $(WORKERS) -m "not slow" tests/case tests/cli tests/physics tests/results \
+	$(LOWEST)/bin/python -m pytest -n $(TESTERS) -m "not slow" tests/case tests/cli tests/physics tests/results \
 		tests/study/test_commands.py tests/tooth/use tests/report/test_save.py tests/surroundings
 
 SEED ?= 1
 test-shuffled: $(VENV)/.dev ## the tests in a random order (SEED=…)
-	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow" --shuffle $(SEED)
+	$(BIN)/python -m pytest -n $(TESTERS) -m "not slow" --shuffle $(SEED)
 
 lint: $(VENV)/.dev ## ruff: style and formatting
 	$(BIN)/ruff check .

@@ -11,7 +11,7 @@ import loadshare as ls
 from benchmarks.reference import reference
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
-from loadshare.study.memory import stepped
+from loadshare.study.memory.step import stepped
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
 

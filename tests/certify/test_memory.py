@@ -14,7 +14,7 @@ from tests.support import mostly_slow, shipped
 from loadshare.certify import RESIDUALS, certify
 from loadshare.errors import Refused
 from loadshare.settings import CERTIFY
-from loadshare.study.memory import stepped
+from loadshare.study.memory.step import stepped
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium

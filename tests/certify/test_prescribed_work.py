@@ -15,7 +15,7 @@ from tests.support import answer, coasting, round_ring, shipped
 import loadshare as ls
 from benchmarks import families
 from loadshare.certify import RESIDUALS, Judge, certify
-from loadshare.study.memory import stepped
+from loadshare.study.memory.step import stepped
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium

@@ -11,6 +11,7 @@ from itertools import pairwise
 from urllib.parse import urlsplit
 
 import pytest
+from selenium.common.exceptions import TimeoutException
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from tests.chromium import badly_set, waiting
@@ -298,12 +299,15 @@ def begin(browser, samples):
     shown(browser, "samples").clear()
     shown(browser, "samples").send_keys(str(samples))
     shown(browser, "tolerance").click()
-    waiting(browser, 120).until(
-        lambda b: (
-            b.find_elements(By.CSS_SELECTOR, "#histogram svg")
-            and b.find_elements(By.CSS_SELECTOR, "#statistics table")
+    try:
+        waiting(browser, 120).until(
+            lambda b: (
+                b.find_elements(By.CSS_SELECTOR, "#histogram svg")
+                and b.find_elements(By.CSS_SELECTOR, "#statistics table")
+            )
         )
-    )
+    except TimeoutException:
+        pytest.fail(f"no figures; the page says: {shown(browser, 'sampled').text!r}")
 
 
 @pytest.mark.slow

@@ -25,7 +25,7 @@ from loadshare.results.digest import sealed
 from loadshare.results.document import DOCUMENT, FORMAT, OLDER, as_data
 from loadshare.results.reading import read_document
 from loadshare.study.march import march
-from loadshare.study.memory import stepped
+from loadshare.study.memory.step import stepped
 from loadshare.train import build_train
 
 METADATA = ("effort", "stop", "input")

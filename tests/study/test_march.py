@@ -9,7 +9,7 @@ from tests.support import CASES, mostly_slow, shipped
 
 import loadshare as ls
 from loadshare.certify import certify
-from loadshare.study.memory import stepped
+from loadshare.study.memory.step import stepped
 from loadshare.train import build_train
 from loadshare.train.memory import slip_of
 

@@ -15,7 +15,7 @@ from tests.certify.test_bound_following import two_shafts
 from tests.support import mostly_slow
 
 import loadshare as ls
-from loadshare.study.memory import stepped
+from loadshare.study.memory.step import stepped
 from loadshare.study.positions import certified
 from loadshare.train import Train
 

@@ -27,7 +27,7 @@ from loadshare.pictures import Figure, picture
 from loadshare.results import Result
 from loadshare.results.dataset import unchanging
 from loadshare.settings import CERTIFY, MARCH
-from loadshare.study.memory import Ways, stepped
+from loadshare.study.memory.step import Ways, stepped
 from loadshare.study.positions import BACKEND
 from loadshare.study.tables import march_dataset
 from loadshare.train import Train, build_train

@@ -1,0 +1,1 @@
+"""Steps of a march: friction that remembers its slip."""
