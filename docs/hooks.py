@@ -33,6 +33,7 @@ TABLES = (
     ("March", "March", "[march]"),
     ("Gears", "Gear", "[gears.NAME]"),
     ("Centre by distance and angle", "Polar", "centre = { … }"),
+    ("Support of a pin", "PinSupport", "support = { … }"),
     ("Meshes", "Mesh", '[meshes."DRIVER-DRIVEN"]'),
     ("Law of a mesh", "Law", "law = { … }"),
     ("Table of a mesh", "Table", "table = { … }"),

@@ -1,3 +1,11 @@
+import math
+
+import numpy as np
+import pytest
+from tests.support import shipped
+
+import loadshare as ls
+from loadshare.errors import CaseError
 from loadshare.train import build_train
 
 
@@ -15,3 +23,41 @@ def test_a_matrix_may_differ_from_a_symmetric_one_in_its_last_digits(drive):
     assert one.support.tolist() == other.support.tolist()
     assert one.frame.tolist() == other.frame.tolist()
     assert (one.support > 0.0).all()
+
+
+PIN = {"radial": "1.2e9 N/m", "tangential": "4e8 N/m"}
+
+
+def test_a_pin_yields_as_the_matrix_of_its_stiffnesses():
+    case = shipped("planetary/four_planets")
+    pins, matrices = {}, {}
+    for k in range(4):
+        angle = math.radians(17.0 + 90.0 * k)
+        ways = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        matrix = (ways.T @ np.diag([1.2e9, 4e8]) @ ways).tolist()
+        gear = f"gears.planet{k + 1}"
+        pins |= {f"{gear}.centre.angle": f"{17 + 90 * k} deg", f"{gear}.support": PIN}
+        matrices[f"{gear}.support"] = [[f"{v!r} N/m" for v in row] for row in matrix]
+    polar = case.replace(pins)
+    one, other = (ls.solve(c).positions[0] for c in (polar, polar.replace(matrices)))
+    assert one.torque == pytest.approx(other.torque, rel=1e-12)
+    assert one.share["sun-planet1"] > 1.1
+    for gear, place in one.displacement.items():
+        assert place == pytest.approx(other.displacement[gear], abs=1e-15)
+
+
+def test_stiffnesses_of_a_pin_vary_from_sample_to_sample():
+    case = shipped("planetary/four_planets").replace({"gears.planet1.support": PIN})
+    samples = {f"gears.planet1.support.{way} [N/m]": [1e9, 2e8] for way in PIN}
+    found = ls.solve_many(case, samples)
+    for k, stiffness in enumerate(("1e9 N/m", "2e8 N/m")):
+        alone = case.replace({f"gears.planet1.support.{way}": stiffness for way in PIN})
+        alike = case.replace({"gears.planet1.support": stiffness})
+        for one in (alone, alike):
+            torque = [*ls.solve(one).positions[0].torque.values()]
+            assert found.torque.values[k, 0] == pytest.approx(torque, rel=1e-12)
+
+
+def test_only_planets_have_a_pin():
+    with pytest.raises(CaseError, match=r"gears\.sun\.support\.radial .* is for planets only"):
+        shipped("planetary/four_planets").replace({"gears.sun.support": PIN})

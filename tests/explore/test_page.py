@@ -13,7 +13,7 @@ from selenium.webdriver.common.keys import Keys
 from tests.chromium import CONTRAST, NAMES, badly_set, on_screen, too_wide, waiting
 from tests.explore.conftest import SEED
 from tests.explore.test_server import partly_refused, tables_of
-from tests.explore.walks import contradicted, opened, settled, walked
+from tests.explore.walks import contradicted, opened, settled, walked, whole
 from tests.report.pages import EVIL_CASE
 from tests.support import mostly_slow, shipped
 
@@ -265,7 +265,7 @@ def test_all_positions_replace_the_figures_of_one(browser, served):
         assert "Ω at position 1: I = " in browser.find_element(By.ID, "summary").text
         assert "1 of 15 positions" in browser.find_element(By.ID, "note").text
         browser.find_element(By.ID, "pin").click()
-        waiting(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        whole(browser)
         says = settled(browser)
         compared, note, summary, bars = (
             browser.find_element(By.CSS_SELECTOR, place).text
@@ -321,7 +321,7 @@ def test_hostile_texts_do_nothing(browser, served):
         field.send_keys("stiffness")
         assert browser.find_elements(By.CSS_SELECTOR, "#found button")
         field.send_keys("<img src=x onerror=window.pwned=1>*", Keys.ENTER)
-        waiting(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        whole(browser)
         assert browser.execute_script("return window.pwned") is None
         assert browser.find_elements(By.CSS_SELECTOR, "main img, main script, main b, main i") == []
         assert browser.get_log("browser") == []
@@ -357,7 +357,7 @@ def test_the_page_fits_every_screen(browser, served, name, width):
     with served(shipped(name)) as address:
         browser.get(address)
         settled(browser)
-        waiting(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        whole(browser)
         browser.find_element(By.ID, "pin").click()
         assert too_wide(browser, width) <= 0
         pictures = browser.find_elements(By.CSS_SELECTOR, PICTURES)

@@ -17,7 +17,7 @@ from selenium.webdriver.common.keys import Keys
 from tests.chromium import badly_set, waiting
 from tests.explore.asking import ask
 from tests.explore.conftest import SEED
-from tests.explore.walks import opened, settled
+from tests.explore.walks import opened, settled, whole
 from tests.support import shipped
 
 import loadshare as ls
@@ -296,7 +296,7 @@ def shown(browser, identity):
 
 def begin(browser, samples):
     """Begin a tolerance study on the page, and wait for its first figures."""
-    shown(browser, "samples").clear()
+    shown(whole(browser), "samples").clear()
     shown(browser, "samples").send_keys(str(samples))
     shown(browser, "tolerance").click()
     try:
@@ -362,7 +362,7 @@ def test_a_tolerance_study_comes_to_its_end(browser, served):
 
 def test_what_matters_on_the_page(browser, seed):
     opened(browser, seed, names=["rings.5.float", "operating.power"])
-    shown(browser, "slopes").click()
+    shown(whole(browser), "slopes").click()
     waiting(browser, 120).until(
         lambda b: (
             b.find_elements(By.CSS_SELECTOR, "#mattering tr") and not shown(b, "slopes-status").text

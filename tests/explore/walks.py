@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from urllib.parse import quote
 
+from selenium.webdriver.common.by import By
 from tests.chromium import waiting
 
 from loadshare.errors import CaseError, Refused
@@ -93,6 +94,12 @@ def settled(browser, timeout=60):
     """What the page says when it is done."""
     waiting(browser, timeout).until(lambda b: b.execute_script(STATE) in SETTLED)
     return browser.execute_script(f"{SAYS} return says();")
+
+
+def whole(browser):
+    """The page when all is worked out: what comes last moves what is below, where one clicks."""
+    waiting(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+    return browser
 
 
 def walked(browser, steps, seed):

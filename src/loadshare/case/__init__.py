@@ -2,7 +2,7 @@
 
 from loadshare.case.content import Content
 from loadshare.case.gear_errors import Eccentricity, Errors, Offset, Pin
-from loadshare.case.gears import STEEL_EXPANSION, Gear, Polar
+from loadshare.case.gears import STEEL_EXPANSION, Gear, PinSupport, Polar
 from loadshare.case.links import Backlashes, Bearing, Range, Ring, Shaft, Spline
 from loadshare.case.mass import mass_of
 from loadshare.case.measured import Measurement
@@ -31,6 +31,7 @@ __all__ = [
     "Offset",
     "Operating",
     "Pin",
+    "PinSupport",
     "Polar",
     "Quantity",
     "Range",

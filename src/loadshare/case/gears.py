@@ -149,6 +149,16 @@ class Polar(Element):
     """Offset from the pole along z [length]."""
 
 
+class PinSupport(Element):
+    """How a planet's pin yields, seen from the carrier's axis."""
+
+    radial: PositiveStiffness
+    """Outwards and inwards [force/length]."""
+
+    tangential: PositiveStiffness
+    """About the carrier's axis [force/length]."""
+
+
 class Gear(Element):
     """A gear: a rigid body with a centre, an axis and a base circle; or a carrier of planets."""
 
@@ -183,7 +193,7 @@ class Gear(Element):
     """Gears that this one is short for: their number, or the angles of their rotation [angle].
 
     The gear p is short for p1, p2 and so on, at places rotated about its pole; directions, as of an
-    axis, an offset or a support with two stiffnesses, are the same for all. A mesh s-p is short for
+    axis, an offset or a support along x and y, are the same for all. A mesh s-p is short for
     s-p1, s-p2, and likewise shafts, splines, rings, bearings, errors and what stages name. What is
     written of single copies counts first.
     """
@@ -298,16 +308,19 @@ class Gear(Element):
             | Annotated[tuple[PositiveStiffness, PositiveStiffness], Tag(LIST)]
             | Annotated[
                 tuple[tuple[Stiffness, Stiffness], tuple[Stiffness, Stiffness]], Tag(NESTED)
-            ],
+            ]
+            | Annotated[PinSupport, Tag(TABLE)],
             shaped(
-                '"rigid", "free", a stiffness such as "5.5e8 N/m", a list of 2 of them, or 2 lists'
+                '"rigid", "free", a stiffness such as "5.5e8 N/m", a list of 2 of them, 2 lists, '
+                "or of a planet a table of radial and tangential"
             ),
         ]
         | None
     ) = None
     """Bearing: rigid, free, or a stiffness for both or each of two directions [force/length].
 
-    Two lists of 2 are a full matrix, of a bearing whose stiffest direction is neither x nor y.
+    Two lists of 2 are a full matrix, of a bearing whose stiffest direction is neither x nor y. A
+    planet's may be given as radial and tangential, seen from the carrier's axis.
 
     Left out: free for a gear with a spline or a ring, rigid for any other.
     """
@@ -345,6 +358,9 @@ class Gear(Element):
         yield from self._axis_rules()
 
     def _support_rules(self) -> Iterator[Rule]:
+        if isinstance(self.support, PinSupport) and self.carrier is None:
+            message, hint = "is for planets only", "Give the stiffnesses along x and y."
+            yield Rule(message, ("support", "radial"), hint=hint)
         if not isinstance(self.support, tuple) or not isinstance(self.support[0], tuple):
             return
         (xx, xy), (yx, yy) = ((k.si for k in row) for row in self.support)

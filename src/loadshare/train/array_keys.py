@@ -73,4 +73,6 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
             return not isinstance(case.shafts[str(shaft)].stiffness, str)
         case ("gears", gear, "support"):
             return column.is_positive and not isinstance(case.gears[str(gear)].support, str)
+        case ("gears", _, "support", "radial" | "tangential"):
+            return True
     return False

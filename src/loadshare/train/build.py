@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from loadshare import case as spec
+from loadshare.array_types import Array
 from loadshare.case.keys import Path
 from loadshare.case.uneven import is_uneven
 from loadshare.contact.law import Law, PowerLaw, TableLaw
@@ -111,7 +112,7 @@ def train_of(
             problems.append(case.problem(("rings", name, "float"), str(error), CHAINS))
             return None
 
-    supported = elements("gears", lambda name, _: _supported(case, geometry.gears[name]))
+    supported = elements("gears", lambda name, _: _supported(case, geometry.gears, name))
     # In the order of the walk from the input gear.
     gears = with_harmonics(case, {name: supported[name] for name in geometry.gears})
     by_layout, warm = case.operating.phases == "layout", grows(case)
@@ -156,11 +157,16 @@ def _kept(section: str, now: Any, before: Any, changed: Collection[Path] | None)
     return {name for name in now if (section, name) not in changed}
 
 
-def _supported(case: spec.Case, gear: Gear) -> Gear:
-    """Return a gear on its support: of a full matrix, seen from the principal directions."""
+def _supported(case: spec.Case, gears: Mapping[str, Gear], name: str) -> Gear:
+    """Return a gear on its support, of a full matrix or a pin seen from principal directions."""
+    gear = gears[name]
     given = case.gears[gear.name].support or ("free" if case.floats(gear.name) else "rigid")
     if isinstance(given, str):
         return replace(gear, support=np.zeros(2) if given == "free" else None)
+    if isinstance(given, spec.PinSupport):
+        outwards = gear.frame @ (gear.centre - gears[str(gear.carrier)].centre)
+        stiffness = np.stack([given.radial.si, given.tangential.si], axis=-1)
+        return _seen_along(gear, math.atan2(outwards[1], outwards[0]), stiffness)
     rows = given if isinstance(given, tuple) else (given, given)
     if alike := [k.si for k in rows if isinstance(k, spec.Quantity)]:
         return replace(gear, support=np.stack(alike, axis=-1))
@@ -170,8 +176,13 @@ def _supported(case: spec.Case, gear: Gear) -> Gear:
     # The directions must jump somewhere as the entries change: not where an entry off the diagonal
     # is zero, or two on it are the same.
     angle = 0.5 * (twice if twice > JUMP else twice + 2.0 * math.pi)
+    return _seen_along(gear, angle, stiffness[::-1])
+
+
+def _seen_along(gear: Gear, angle: float, support: Array) -> Gear:
+    """Return a gear with its first direction turned by an angle, and its stiffnesses along both."""
     ways = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
-    return replace(gear, support=stiffness[::-1], frame=ways @ gear.frame)
+    return replace(gear, support=support, frame=ways @ gear.frame)
 
 
 def _each(value: spec.Quantity | tuple[spec.Quantity, ...] | None) -> tuple[spec.Quantity, ...]:
