@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from loadshare.equality import Comparable
+
 ROWS = 8
 """Of a table that are shown."""
 WIDTH = 88
@@ -76,7 +78,7 @@ class View:
         return f"… and {len(self.rows) - ROWS} more" if len(self.rows) > ROWS else ""
 
 
-class Viewed:
+class Viewed(Comparable):
     """What shows itself by its view, in a console and in a notebook."""
 
     __slots__ = ()

@@ -1,14 +1,17 @@
 """What a Python user meets: what is listed, how things show themselves, tables, pictures joined."""
 
 import html.parser
+import pickle
 import re
 from dataclasses import replace
 from pathlib import Path
 
 import altair as alt
+import numpy as np
 import pytest
 
 import loadshare as ls
+from loadshare.contact import ContactProblem, solve_contact
 from loadshare.view import ROWS, WIDTH, View
 
 HOSTILE = '"><script>alert(1)</script><img src=x onerror=alert(2)>'
@@ -120,6 +123,33 @@ def test_what_a_position_was_solved_with_shows_itself_on_a_screen(ring):
         assert 1 < len(lines) <= ROWS + 10
         assert max(map(len, lines)) <= WIDTH
         assert tags(thing._repr_html_()) <= PLAIN
+
+
+def test_what_was_found_is_equal_to_its_pickle_and_to_nothing_else(ring, studies):
+    case = ring.case
+    answered = (ring.positions[0], ls.explain(case), ls.formulate(case), ls.search(case))
+    parts = (
+        solve_contact(ContactProblem(("x",), np.eye(1), np.ones(1))),
+        ring.positions[0].equilibrium,
+        studies["sweep"].points[0],
+        studies["sensitivity"].rates[1, "rings.5.float", "rising"],
+        next(iter(studies["march"].slips[0].values())),
+        studies["tolerance"].of("system"),
+        studies["tolerance"].of("system").summary,
+    )
+    every = [case, ring, *answered, *studies.values(), ring.plot.floats(), *parts]
+    again = [pickle.loads(pickle.dumps(one)) for one in every]
+    assert [[one == other for other in again] for one in every] == np.eye(len(every)).tolist()
+    assert len({*every, *again}) == len(every)
+
+
+def test_studies_that_found_something_else_are_not_equal(ring, studies):
+    """Also where they asked the same."""
+    more = ring.case.replace({"operating.power": "2100 kW"})
+    found = ls.sweep(more, {"rings.*.float": "0 um:10 um:12"}, positions=[1])
+    assert found.points == studies["sweep"].points
+    assert found != studies["sweep"]
+    assert ls.sensitivity(more, ["rings.*.float"], positions=[1]) != studies["sensitivity"]
 
 
 def test_hostile_titles_and_names_inject_nothing():

@@ -18,6 +18,7 @@ from loadshare.contact.problem import ContactProblem, Row
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.contact.runaway import runaway
+from loadshare.equality import Comparable
 from loadshare.errors import Refused
 from loadshare.one_thread import one_thread
 from loadshare.settings import CONTACT
@@ -49,7 +50,7 @@ class Residuals:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ContactAnswer:
+class ContactAnswer(Comparable):
     """Answer of a contact problem, in the problem's own units.
 
     Attributes

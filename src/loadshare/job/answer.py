@@ -70,6 +70,9 @@ class Answer(Viewed):
             known(record),
         )
 
+    def _said(self) -> object:
+        return self.rung, self.equilibrium, self.certificate
+
     @cached_property
     def _found(self) -> tuple[Equilibrium, Certificate]:
         return self.find()

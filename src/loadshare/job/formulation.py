@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -60,9 +60,9 @@ class Formulation(Viewed):
     programme: Programme
     units: Units
     removed: tuple[tuple[str, str], ...]
-    scene: Scene
+    scene: Scene = field(compare=False)
     plan: Plan
-    at: Linearisation
+    at: Linearisation = field(compare=False)
     answer: Answer
 
     def qp(self) -> QuadraticForm:

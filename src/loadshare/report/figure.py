@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.arguments import one_of
+from loadshare.equality import Comparable
 from loadshare.errors import LoadshareError
 from loadshare.output import write_whole
 from loadshare.report import beside
@@ -91,7 +92,7 @@ CONFIG: dict[str, Any] = {
 """The look of all pictures."""
 
 
-class Figure:
+class Figure(Comparable):
     """A picture of a result, a case or a study.
 
     Parameters
@@ -118,6 +119,9 @@ class Figure:
         drawn = chart if isinstance(chart, dict) else chart.to_dict(validate=False)
         # Altair writes a configuration of its own, which would set other sizes.
         self._view = {key: part for key, part in drawn.items() if key not in ("$schema", "config")}
+
+    def _said(self) -> object:
+        return self.name, self._view
 
     @cached_property
     def chart(self) -> alt.TopLevelMixin:

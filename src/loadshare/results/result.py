@@ -13,6 +13,7 @@ from loadshare.case.table import Table
 from loadshare.certify import Certificate, FloatState
 from loadshare.certify.uniqueness import MEANINGS, Uniqueness
 from loadshare.certify.validity import Measure, Validity
+from loadshare.equality import Comparable
 from loadshare.json_text import json_text
 from loadshare.libraries import pd, xr
 from loadshare.output import write_whole
@@ -139,13 +140,8 @@ class Position(Viewed):
     train: Train
     answer: Answered
 
-    def __eq__(self, other: object) -> bool:
-        """Whether another position was claimed, judged and found alike."""
-        if not isinstance(other, Position):
-            return NotImplemented
-        return all(getattr(self, name) == getattr(other, name) for name in _COMPARED)
-
-    __hash__ = None  # type: ignore[assignment]
+    def _said(self) -> object:
+        return [getattr(self, name) for name in _COMPARED]
 
     @property
     def equilibrium(self) -> Equilibrium:
@@ -250,7 +246,7 @@ _COMPARED = (
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class Result(Comparable):
     """Certified equilibria of a case.
 
     Two results are equal if their stamps and positions are.
@@ -280,13 +276,8 @@ class Result:
     solved: Case
     stamped: Callable[[], Stamp] = field(repr=False)
 
-    def __eq__(self, other: object) -> bool:
-        """Whether another result is of the same case, and says the same."""
-        if not isinstance(other, Result):
-            return NotImplemented
-        return self.stamp == other.stamp and self.positions == other.positions
-
-    __hash__ = None  # type: ignore[assignment]
+    def _said(self) -> object:
+        return self.stamp, self.positions
 
     @cached_property
     def stamp(self) -> Stamp:

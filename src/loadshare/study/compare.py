@@ -83,7 +83,7 @@ class Deviation:
         return self.difference / self.target.uncertainty
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Viewed):
     """All measured figures of a case against the computed ones.
 

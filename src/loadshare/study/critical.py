@@ -57,7 +57,7 @@ class Unproved:
     why: str
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Critical(Viewed):
     """Events along a parameter.
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from loadshare.case import Case
 from loadshare.case.reader import opened
+from loadshare.equality import Comparable
 from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
 from loadshare.job.answer import Answer
@@ -40,7 +41,7 @@ from loadshare.view import View, Viewed, by_name
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Slip:
+class Slip(Comparable):
     """What a spline did in one step.
 
     Attributes
@@ -61,7 +62,7 @@ class Slip:
     dissipated: float
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class March(Viewed):
     """Certified equilibria along a march, each from the slip of the one before.
 

@@ -17,6 +17,7 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.words import count
+from loadshare.equality import Comparable
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.answered import Answered, answer_samples
@@ -49,7 +50,7 @@ MOST = 2
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class Point(Comparable):
     """What was found at one point of a sweep.
 
     Attributes
@@ -67,7 +68,7 @@ class Point:
     values: tuple[float, ...]
     status: str
     message: str
-    find: Callable[[], Result | None] = field(repr=False)
+    find: Callable[[], Result | None] = field(repr=False, compare=False)
 
     @cached_property
     def result(self) -> Result | None:
@@ -75,7 +76,7 @@ class Point:
         return self.find()
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Viewed):
     """A case over a grid.
 
@@ -103,8 +104,12 @@ class Sweep(Viewed):
     grids: tuple[tuple[float, ...], ...]
     count: int
     points: tuple[Point, ...]
-    answered: Answered = field(repr=False)
+    answered: Answered = field(repr=False, compare=False)
     usable: tuple[int, ...] = field(repr=False)
+
+    def _said(self) -> Any:
+        arrays = {name: array.values for name, array in self.dataset.variables.items()}
+        return super()._said() | arrays
 
     @property
     def passed(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from loadshare.equality import Comparable
 from loadshare.train.gear import Vector
 
 Range = tuple[float, float]
@@ -12,7 +13,7 @@ Range = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Equilibrium:
+class Equilibrium(Comparable):
     """Displacements and forces of a train at one position.
 
     Attributes

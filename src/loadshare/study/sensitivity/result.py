@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import ClassVar, Literal
 
 from loadshare.array_types import Array
+from loadshare.equality import Comparable
 from loadshare.libraries import pd, xr
 from loadshare.pictures import Figure, picture
 from loadshare.results.dataset import unchanging, with_units
@@ -50,7 +51,7 @@ class Kink:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Rates:
+class Rates(Comparable):
     """Derivatives of one position with respect to one input, to one side, per SI unit.
 
     Attributes

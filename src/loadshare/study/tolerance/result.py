@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 
 from loadshare.case.words import count
+from loadshare.equality import Comparable
 from loadshare.errors import LoadshareError
 from loadshare.libraries import pd, xr
 from loadshare.pictures import Figure, picture
@@ -26,7 +27,7 @@ OVERS: tuple[Over, ...] = get_args(Over)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class FloatStatistics:
+class FloatStatistics(Comparable):
     """How a float scatters.
 
     Attributes
@@ -92,7 +93,7 @@ class Tolerance(Viewed):
     overs: tuple[str, ...]
     worst: tuple[WorstCase, ...]
     residual: float
-    folder: Folder
+    folder: Folder = field(compare=False)
 
     def of(self, stage: str = "system", over: Over = "stage") -> OmegaStatistics:
         """Return how Ω of a stage scatters.

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array
+from loadshare.equality import Comparable
 from loadshare.libraries import special, stats
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
@@ -37,7 +38,7 @@ class Estimate:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Summary:
+class Summary(Comparable):
     """How a figure scatters over the samples.
 
     Attributes
@@ -291,7 +292,7 @@ def _ratios(means: Array, units: int, still: float) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class OmegaStatistics:
+class OmegaStatistics(Comparable):
     """How the largest Ω of a stage scatters.
 
     Attributes
