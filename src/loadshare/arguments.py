@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from numbers import Integral
 
 
-def whole(name: str, given: object) -> int:
+def whole(name: str, given: object, least: int = 1) -> int:
     """Return a whole number, of NumPy as well, as Python's.
 
     Raises
     ------
     ValueError
-        If it is none, or below 1.
+        If it is none, or below the least.
     """
-    if not isinstance(given, Integral) or isinstance(given, bool) or given < 1:
-        raise ValueError(f"{name} {given!r}; allowed: a whole number from 1 on")
+    if not isinstance(given, Integral) or isinstance(given, bool) or given < least:
+        raise ValueError(f"{name} {given!r}; allowed: a whole number from {least} on")
     return int(given)
+
+
+def check_mapping(wanted: str, example: str, given: object) -> None:
+    """Check that a mapping is given.
+
+    Raises
+    ------
+    TypeError
+        If it is none.
+    """
+    if not isinstance(given, Mapping):
+        raise TypeError(f"{wanted} are wanted, as in {example}, not {type(given).__name__}")
 
 
 def one_of(name: str, given: object, allowed: Iterable[str]) -> None:

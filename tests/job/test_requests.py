@@ -65,7 +65,7 @@ def test_any_other_tolerance_is_taken():
         ([0], "positions 0: this case has positions 1 to 5"),
         ([1.0], r"positions 1\.0: this"),
         ([True], "positions True: this"),
-        (["1"], "positions 1: this"),
+        (["1"], "positions '1': this"),
         ([None], "positions None: this"),
         ([], "positions none given: this"),
         ("12", "positions '12': not a list"),
@@ -82,7 +82,7 @@ def test_positions_that_are_none_are_refused(positions, message):
 
 @pytest.mark.parametrize("position", [0, 9, 1.0, True, "1", None], ids=repr)
 def test_a_search_refuses_a_position_that_is_none(position):
-    with pytest.raises(ValueError, match=f"^positions {position}: this case has positions 1 to 5"):
+    with pytest.raises(ValueError, match=f"^positions {position!r}: this case has positions 1 to 5"):
         ls.search(shipped("fgfbstts/limit_ring"), position)
 
 

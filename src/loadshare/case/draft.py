@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from functools import cache
 from typing import Any, TypeVar, get_origin
 
@@ -139,7 +139,7 @@ def as_data(given: Any, file: str = "case", path: Path = ()) -> Any:
     Raises
     ------
     CaseError
-        If it is nested too deeply, or a table has too many entries.
+        If it is nested too deeply, holds too many entries, or nothing that a file can hold.
     """
     if len(path) > ALLOWED.depth:
         allowed = f"at most {ALLOWED.depth} tables and lists within one another"
@@ -158,6 +158,9 @@ def as_data(given: Any, file: str = "case", path: Path = ()) -> Any:
         given = given.tolist()
     if isinstance(given, list | tuple | range | Iterator):
         return [as_data(item, file, (*path, k)) for k, item in enumerate(given)]
+    if isinstance(given, bytes | Set):
+        message, allowed = f"is of type {type(given).__name__}", "tables, lists, texts and numbers"
+        raise CaseError([Problem(file, dotted(path), repr(given), message, allowed)])
     return given
 
 

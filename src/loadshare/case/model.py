@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import PrivateAttr
 
+from loadshare.arguments import check_mapping
 from loadshare.case.checks import check
 from loadshare.case.content import ABOUT, Content
 from loadshare.case.copies import with_copies
@@ -63,6 +64,7 @@ class Case(Content):
         origin: Origin | None = None,
         **sections: Any,
     ) -> None:
+        check_mapping("sections by name", "{'gears': {}}", content or {})
         origin = origin or Origin(name or "case", outside=True)
         self._take(as_data({**(content or {}), **sections}, origin.file), origin, name, None)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from loadshare.arguments import check_mapping
 from loadshare.case.content import Content
 from loadshare.case.draft import as_data
 from loadshare.case.keys import Path, covers, dotted, look_up, parse, walk
@@ -44,20 +45,18 @@ def revise(
     TypeError
         If the changes are no mapping.
     """
-    if not isinstance(changes, Mapping):
-        wanted = "changes by key path are wanted, as in {'operating.torque': '100 N*m'}"
-        raise TypeError(f"{wanted}, not {type(changes).__name__}")
+    check_mapping("changes by key path", "{'operating.torque': '100 N*m'}", changes)
     changed = dict(data)
     owned: set[int] = set()
     moved = set()
     problems = []
     for key, given in changes.items():
-        value = as_data(given)
         try:
             path = parse(key)
         except (TypeError, ValueError):
-            problems.append(Problem(CHANGES, str(key), as_given(value), "is not a key path"))
+            problems.append(Problem(CHANGES, str(key), as_given(given), "is not a key path"))
             continue
+        value = as_data(given, CHANGES, path)
         _own(changed, path, owned)
         lost = change(changed, path, value)
         if lost is None:

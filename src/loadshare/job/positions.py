@@ -275,7 +275,8 @@ def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]
     # A position out of an array is an integer of NumPy; a result and its file hold plain ones.
     wrong = [k for k in wanted if not isinstance(k, Integral) or k is True or k not in there]
     if wrong or not wanted:
-        given = ", ".join(map(str, wrong)) or "none given"
+        shown = (str(k) if isinstance(k, Integral) else repr(k) for k in wrong)
+        given = ", ".join(shown) or "none given"
         raise ValueError(f"positions {given}: {allowed}")
     twice = sorted(k for k, times in Counter(wanted).items() if times > 1)
     if twice:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from loadshare.arguments import whole
 from loadshare.case import Case
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
@@ -93,6 +94,7 @@ def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Sear
     CaseError, Refused, ValueError
         As :func:`loadshare.solve`.
     """
+    seed = whole("seed", seed, 0)
     _, machine = prepared(case)
     (position,) = wanted_positions(machine.train, [position])
     machine = machine.at(position)

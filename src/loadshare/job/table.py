@@ -39,7 +39,7 @@ USUAL = ("torque", "share", "pair_share")
 """What is kept where nothing else is requested."""
 
 
-def checked(names: Iterable[str]) -> tuple[str, ...]:
+def checked(names: Any) -> tuple[str, ...]:
     """Return variables to keep.
 
     Raises
@@ -47,11 +47,12 @@ def checked(names: Iterable[str]) -> tuple[str, ...]:
     ValueError
         If one of them does not exist.
     """
-    names = (names,) if isinstance(names, str) else tuple(names)
-    unknown = [name for name in names if name not in KEPT]
+    single = isinstance(names, str | bytes) or not isinstance(names, Iterable)
+    every = (names,) if single else tuple(names)
+    unknown = [name for name in every if name not in [*KEPT]]
     if unknown:
         raise ValueError(f"no variable {', '.join(map(str, unknown))}; allowed: {', '.join(KEPT)}")
-    return names
+    return every
 
 
 @dataclass(frozen=True, slots=True)

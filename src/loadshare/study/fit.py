@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from loadshare.arguments import whole
+from loadshare.arguments import check_mapping, whole
 from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.reader import opened
@@ -196,7 +196,8 @@ def fit(
     >>> f"{found.unknowns[0].value:.2f} ± {found.unknowns[0].deviation:.2f} um"
     '40.57 ± 1.98 um'
     """
-    starts = whole("starts", starts)
+    check_mapping("bounds by key path", "{'rings.4.float': ('0 um', '9 um')}", unknowns)
+    starts, seed = whole("starts", starts), whole("seed", seed, 0)
     problem = _Problem(opened(case), unknowns)
     reached: list[tuple[float, Array]] = []
     chis: list[float] = []

@@ -57,7 +57,7 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
     [1.0471, 1.002]
     """
     case = opened(case)
-    block = case.study.get(name)
+    block = case.study.get(name := str(name))
     if block is None:
         known = list(case.study)
         allowed = ", ".join(known) or "a table [study.NAME] in the case"

@@ -228,14 +228,23 @@ def read_parameter(case: Case, key: str | Sequence[str], unit: str) -> Parameter
     CaseError
         If a key is none, or a pattern matches nothing.
     """
-    parts = [p for k in ([key] if isinstance(key, str) else key) for p in split_outside(k, "=")]
+    parts = split_outside(named(key), "=")
     keys = tuple(dict.fromkeys(found for part in parts for found in matches(case, part)))
     return Parameter("=".join(parts), keys, unit)
 
 
 def named(key: str | Sequence[str]) -> str:
-    """Return the name of a parameter with one key or several."""
-    return key if isinstance(key, str) else "=".join(key)
+    """Return the name of a parameter with one key or several.
+
+    Raises
+    ------
+    CaseError
+        If it is neither.
+    """
+    keys = [key] if isinstance(key, str) or not isinstance(key, Iterable) else [*key]
+    if not all(isinstance(each, str) for each in keys):
+        raise _unusable(str(key), "is not a key path", "a text such as rings.4.float, or several")
+    return "=".join(keys)
 
 
 def matches(case: Case, pattern: str) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from loadshare.arguments import check_mapping, one_of, whole
 from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.words import count
@@ -130,6 +131,8 @@ class Sweep(Viewed):
             By the mean of the stage or of the group.
         point : int
         """
+        one_of("kind", kind, self.shares)
+        point = whole("point", point, 0)
         every = {stage: float(values[point]) for stage, values in self.shares[kind].items()}
         return {stage: None if math.isnan(value) else value for stage, value in every.items()}
 
@@ -296,9 +299,7 @@ def _grids(
     case: Case | str | FilePath, parameters: Mapping[Any, object]
 ) -> tuple[Case, list[Parameter], list[tuple[float, ...]]]:
     """Return the case of a sweep, what varies, and the values that each takes."""
-    if not isinstance(parameters, Mapping):
-        wanted = "inputs by key path are wanted, as in {'rings.4.float': '0 um:12 um:61'}"
-        raise TypeError(f"{wanted}, not {type(parameters).__name__}")
+    check_mapping("inputs by key path", "{'rings.4.float': '0 um:12 um:61'}", parameters)
     case = loaded(case, map(named, parameters))
     if not 1 <= len(parameters) <= MOST:
         message = f"a sweep has 1 or {MOST} parameters, not {len(parameters)}"

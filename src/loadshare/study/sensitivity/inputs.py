@@ -35,7 +35,8 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
         return _without_twins(_below(data, ()))
     inputs: list[Input] = []
     problems = []
-    for pattern in [wanted] if isinstance(wanted, str) else wanted:
+    one = isinstance(wanted, str) or not isinstance(wanted, Iterable)
+    for pattern in [wanted] if one else wanted:
         if not isinstance(pattern, str) or len(split_outside(pattern, "=")) > 1:
             hint = "Derivatives by keys that take the same value add up."
             problems.append(Problem(STUDY, str(pattern), "", "is not one key", KEY, hint))
