@@ -82,7 +82,9 @@ def test_positions_that_are_none_are_refused(positions, message):
 
 @pytest.mark.parametrize("position", [0, 9, 1.0, True, "1", None], ids=repr)
 def test_a_search_refuses_a_position_that_is_none(position):
-    with pytest.raises(ValueError, match=f"^positions {position!r}: this case has positions 1 to 5"):
+    with pytest.raises(
+        ValueError, match=f"^positions {position!r}: this case has positions 1 to 5"
+    ):
         ls.search(shipped("fgfbstts/limit_ring"), position)
 
 

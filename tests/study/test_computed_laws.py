@@ -89,3 +89,12 @@ def test_a_file_of_teeth_must_agree_with_every_point() -> None:
     wrong = ls.sweep(case, angles, positions=[1])
     assert [point.status for point in wrong.points] == ["invalid", "certified"]
     assert "p46 has" in wrong.points[0].message
+
+
+def test_a_batch_varies_a_number_of_a_law_as_a_sweep_does() -> None:
+    """It refused the key: the law of the file is a word."""
+    values = ["1e-7 rad/(N*m)", "2e-7 rad/(N*m)"]
+    swept = ls.sweep(CASE, {LAW: values}, positions=[1]).dataset.torque
+    many = ls.solve_many(CASE, {f"{LAW} [rad/(N*m)]": [1e-7, 2e-7]}, positions=[1]).torque
+    np.testing.assert_allclose(many.values, swept.values, rtol=1e-12)
+    assert (many.values[0] != many.values[1]).any()

@@ -35,9 +35,10 @@ from loadshare.study.parameter import (
     read_parameter,
     read_value,
 )
-from loadshare.study.positions import loaded, with_own_laws
+from loadshare.study.positions import loaded, paths_of
 from loadshare.study.sensitivity import Sensitivity, sensitivity
 from loadshare.study.sensitivity.inputs import twin_of
+from loadshare.tooth import with_own_laws
 from loadshare.view import View, Viewed
 
 
@@ -226,7 +227,7 @@ class _Problem:
     def __init__(self, case: Case, unknowns: Mapping[Any, Sequence[object] | str]) -> None:
         names = list(map(named, unknowns))
         # Laws that no unknown touches are computed once, but stay the teeth's in what is found.
-        self.written, self.case = with_own_laws(case, names), loaded(case, names)
+        self.written, self.case = with_own_laws(case, paths_of(names)), loaded(case, names)
         self.targets: list[Target] = targets(case)
         self.positions = needed(self.targets)
         if not unknowns:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from loadshare.case import Case
 from loadshare.case.keys import Path as Key
-from loadshare.case.keys import covers, dotted, parse
+from loadshare.case.keys import parse
 from loadshare.case.reader import opened
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
@@ -17,7 +17,7 @@ from loadshare.job.machine import Machine
 from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.study.parameter import split_outside
-from loadshare.tooth import bears_on_laws, resolve
+from loadshare.tooth import bears_on_laws, resolve, with_own_laws
 from loadshare.train.situations import VARYING, situation_of
 from loadshare.train.train import Train
 
@@ -34,34 +34,13 @@ def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
     varied : iterable of str
         Key paths and patterns of what varies; several may be joined by ``=``.
     """
-    varied = list(varied)
-    own = with_own_laws(opened(case), varied)
-    return own if any(map(bears_on_laws, _paths(varied))) else resolve(own)
+    paths = paths_of(varied)
+    own = with_own_laws(opened(case), paths)
+    return own if any(map(bears_on_laws, paths)) else resolve(own)
 
 
-def with_own_laws(case: Case, varied: Iterable[str]) -> Case:
-    """Return a case in which laws of which a number varies are numbers, and no longer the teeth's.
-
-    Parameters
-    ----------
-    case : Case
-    varied : iterable of str
-        As for `loaded`.
-    """
-    numbers = [path[:3] for path in _paths(varied) if len(path) > 3]
-    own = {m for m in case.meshes if any(covers(p, ("meshes", m, "law")) for p in numbers)}
-    solved = resolve(case, leave=case.meshes.keys() - own)
-    laws = {name: solved.meshes[name].power_law for name in own}
-    origin = {
-        dotted(("meshes", name, "law", key)): None
-        for name, law in laws.items()
-        for key in ("basis", "teeth")
-        if law and getattr(law, key)
-    }
-    return solved.replace(origin) if origin else solved
-
-
-def _paths(varied: Iterable[str]) -> list[Key]:
+def paths_of(varied: Iterable[str]) -> list[Key]:
+    """Return the paths of keys and patterns, of which several may be joined by ``=``."""
     paths: list[Key] = []
     for part in (part for key in varied for part in split_outside(key, "=")):
         # What is no key path is reported where it is used.

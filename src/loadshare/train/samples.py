@@ -22,6 +22,7 @@ from loadshare.case.keys import Path, dotted
 from loadshare.case.recent import Recent
 from loadshare.errors import CaseError
 from loadshare.settings import JOB
+from loadshare.tooth import with_own_laws
 from loadshare.train.alike import train_alike
 from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of, with_laws
@@ -126,6 +127,7 @@ def samples_of(case: spec.Case, samples: Mapping[str, ArrayLike]) -> list[tuple[
 
 def groups_of(case: spec.Case, columns: Sequence[Column]) -> list[tuple[Numbers, Samples]]:
     """Turn samples, read as columns, into groups; see `samples_of`."""
+    case = with_own_laws(case, (c.path for c in columns))
     first = case.replace({dotted(c.path): c.text(0) for c in columns})
     units = {c.path: u for c in columns if (u := array_unit(first, c)) is not None}
     arrays = {c.path: c.in_si(units[c.path]) for c in columns if c.path in units}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from loadshare.case.checks.fit import mm
 from loadshare.case.checks.law_origin import teeth_digest
 from loadshare.case.keys import Path as KeyPath
-from loadshare.case.keys import dotted, parse
+from loadshare.case.keys import covers, dotted, parse
 from loadshare.case.line_of_action import facing, mesh_distance
 from loadshare.case.meshes import SOURCES
 from loadshare.case.words import count
@@ -105,6 +105,28 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     if assumed:
         changes["assumed"] = assumed
     return case.replace(changes)
+
+
+def with_own_laws(case: Case, varied: Iterable[KeyPath]) -> Case:
+    """Return a case in which laws of which a number varies are numbers, and no longer the teeth's.
+
+    Parameters
+    ----------
+    case : Case
+    varied : iterable of tuple of str or int
+        Paths and patterns of what varies.
+    """
+    numbers = [path[:3] for path in varied if len(path) > 3]
+    own = {m for m in case.meshes if any(covers(p, ("meshes", m, "law")) for p in numbers)}
+    solved = resolve(case, leave=case.meshes.keys() - own)
+    laws = {name: solved.meshes[name].power_law for name in own}
+    origin = {
+        dotted(("meshes", name, "law", key)): None
+        for name, law in laws.items()
+        for key in ("basis", "teeth")
+        if law and getattr(law, key)
+    }
+    return solved.replace(origin) if origin else solved
 
 
 def written_in(case: Case, folders: Iterable[Path] | None = None) -> Case:
