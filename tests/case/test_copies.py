@@ -125,6 +125,24 @@ def test_pairs_of_unequal_numbers_are_told_so() -> None:
     assert "Give one: planet1" not in str(caught.value)
 
 
+def test_a_gear_with_the_name_of_a_copy_is_told_apart_from_what_is_said_of_the_copy() -> None:
+    """It was laid over the copy: one branch was lost without a word."""
+    data = changed()
+    for own in (
+        data["gears"]["sun"],
+        {"base_radius": "80 mm", "centre": {"about": "sun", "angle": "40 deg"}},
+        {"copies": 2},
+    ):
+        data["gears"]["planet2"] = own
+        with pytest.raises(CaseError) as caught:
+            Case(data)
+        message = "is a gear of its own, and the name of copy 2 of planet"
+        assert [(p.key, p.message) for p in caught.value.problems] == [("gears.planet2", message)]
+    data["gears"]["planet2"] = {"teeth": 36, "centre": {"angle": "131 deg", "height": "1 mm"}}
+    gears = Case(data).gears
+    assert gears["planet2"].centre.angle.text == "131 deg"
+
+
 def test_what_is_wrong_with_copies_is_reported_once() -> None:
     for given, key in ((1, "copies"), ("three", "copies"), (["0 mm", "5 mm"], "copies")):
         data = changed()

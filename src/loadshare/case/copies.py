@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sized
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -20,6 +20,7 @@ from loadshare.case.gears import COPIES
 from loadshare.case.keys import Path, dotted, ends_of, merge, parse
 from loadshare.case.origin import Origin
 from loadshare.case.quantity import ANGLE, Quantity
+from loadshare.errors import CaseError, Problem
 
 Data = dict[str, Any]
 
@@ -44,11 +45,18 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
     """Return a case's plain data with all copies written out, and where each was written.
 
     What is wrong with `copies` stays as it is, to be reported when the gear is read.
+
+    Raises
+    ------
+    CaseError
+        If a copy would have the name of another gear.
     """
     gears = data.get("gears")
     turns = dict(_turns(gears)) if isinstance(gears, Mapping) else {}
     if not turns:
         return data, origin
+    if taken := list(_taken(data, origin, turns)):
+        raise CaseError(taken)
     pattern, names = _Pattern(turns), list(data["gears"])
     made = {**data, "gears": {}}
     moved: list[tuple[Path, Path]] = []
@@ -104,6 +112,23 @@ def _turns(gears: Mapping[str, Any]) -> Iterator[tuple[str, tuple[float, ...]]]:
             angles = [_angle(angle) for angle in given]
             if None not in angles:
                 yield name, tuple(angle for angle in angles if angle is not None)
+
+
+def _taken(data: Data, origin: Origin, turns: Mapping[str, Sized]) -> Iterator[Problem]:
+    """Yield gears that stand on their own, but under the name of a copy of another."""
+    for name, copies in turns.items():
+        for k in range(1, len(copies) + 1):
+            own = data["gears"].get(f"{name}{k}")
+            if not isinstance(own, Mapping):
+                continue
+            centre = own.get("centre")
+            placed = isinstance(centre, list) or (
+                isinstance(centre, Mapping) and {"angle"} < centre.keys() - {"height"}
+            )
+            if "copies" in own or (placed and {"teeth", "base_radius"} & own.keys()):
+                message = f"is a gear of its own, and the name of copy {k} of {dotted((name,))}"
+                hint = "Name one of them otherwise; for a copy write only how it differs."
+                yield origin.problem(data, ("gears", f"{name}{k}"), message, "", hint)
 
 
 def _angle(given: object) -> float | None:
