@@ -134,6 +134,12 @@ WORDS = {
     ("new", "x", "-o", "x.json"): "no JSON file comes of this command. This command writes .toml.",
     ("new", "x", "--kind", "planetery"): "Did you mean planetary?",
     ("run", RING, "--set", "rings.4.float"): "is not of the form KEY=VALUE",
+    ("run", RING, "--set", "rings.4.float=4 um", "--set", "rings.4.float = 5 um"): (
+        "rings.4.float: is given twice, as '4 um' and '5 um'; give it once"
+    ),
+    ("run", RING, "--set", "rings.4.float=4 um", "--set", 'rings."4".float=5 um'): (
+        'changes: rings."4".float = "5 um": is given twice'
+    ),
     ("run", RING, "--set", "4.float=4 um"): "Did you mean rings.4.float?",
     ("run", RING, "--set", "rings.4.flaot=4 um"): "Did you mean float?",
     ("run", RING, "--set", "gears.4.base_radius=46"): 'Allowed: a length such as "46 mm".',

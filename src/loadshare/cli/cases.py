@@ -55,18 +55,20 @@ def read_changes(settings: Iterable[str]) -> dict[str, Any]:
     Raises
     ------
     typer.BadParameter
-        For a setting without a key or without an equals sign.
+        For a setting without a key or without an equals sign, or a key that is given twice.
     """
-    changes: dict[str, Any] = {}
+    texts: dict[str, str] = {}
     for setting in settings:
-        key, equals, value = setting.partition("=")
-        if not key.strip() or not equals:
-            raise typer.BadParameter(
-                f"{setting!r} is not of the form KEY=VALUE, as in operating.torque='100 N*m'",
-                param_hint="--set",
-            )
-        changes[key.strip()] = _value(value.strip())
-    return changes
+        key, equals, value = map(str.strip, setting.partition("="))
+        wrong = ""
+        if not key or not equals:
+            wrong = f"{setting!r} is not of the form KEY=VALUE, as in operating.torque='100 N*m'"
+        elif key in texts:
+            wrong = f"{key}: is given twice, as {texts[key]!r} and {value!r}; give it once"
+        if wrong:
+            raise typer.BadParameter(wrong, param_hint="--set")
+        texts[key] = value
+    return {key: _value(text) for key, text in texts.items()}
 
 
 def _value(text: str) -> Any:
