@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import loadshare as ls
 from loadshare.case.checks.law_origin import teeth_digest
 from loadshare.exchange.spreadsheet.exporting import export_tables
 from loadshare.exchange.spreadsheet.importing import import_tables
+from loadshare.results.laws import law_lines
 
 CASE = "cases/planetary/four_planets.toml"
 GEARS = ("sun", "ring", "planet1", "planet2", "planet3", "planet4")
@@ -21,6 +24,21 @@ def found() -> ls.Result:
 
 def stiffness(result: ls.Result) -> float:
     return result.positions[0].elastic.mesh_stiffness["sun-planet1"]
+
+
+def test_light_loads_of_several_meshes_are_one_warning(found) -> None:
+    """Of a set of thirteen meshes they were as many warnings."""
+    meshes = "meshes sun-planet2, sun-planet4, planet2-ring, planet4-ring, each"
+    assert [line for line in law_lines(found.laws) if line.startswith("WARNING")] == [
+        f"WARNING: {meshes}: 172.1 to 344.2 N·m lies below the 270 to 540 N·m from which the law "
+        "holds; it carries 63.7 N per mm of face width at most."
+    ]
+    assert found.laws["sun-planet2"].note.startswith("172.1 N·m lies below the 270 N·m")
+    one = {
+        "sun-planet2": found.laws["sun-planet2"],
+        "free": replace(found.laws["sun-planet2"], note=""),
+    }
+    assert law_lines(one)[-1].startswith("WARNING: mesh sun-planet2: 172.1 N·m lies below")
 
 
 def test_changed_teeth_of_a_result_s_case_have_their_own_law(found) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -18,6 +19,8 @@ MISFIT = 0.03
 warning: the models of the teeth are themselves off by as much [-]."""
 ROUNDED = 1e-6
 """Part of a torque by which it may pass a limit by rounding [-]."""
+NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]\d+)?")
+"""In a note."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,10 +85,10 @@ def law_lines(laws: Mapping[str, LawUse]) -> list[str]:
     if all(use.basis == GIVEN and not use.note for use in laws.values()):
         return []
     bases = _alike((use.basis, name) for name, use in laws.items())
-    notes = _alike((use.note, name) for name, use in laws.items() if use.note)
+    kinds = _alike((NUMBER.sub("#", use.note), name) for name, use in laws.items() if use.note)
     return [
         *(f"Law of {_named(names, len(laws))}: {basis}." for basis, names in bases.items()),
-        *(f"WARNING: {_named(names, len(laws))}: {note}." for note, names in notes.items()),
+        *(f"WARNING: {_named(names, len(laws))}{_noted(laws, names)}." for names in kinds.values()),
     ]
 
 
@@ -116,6 +119,15 @@ def _alike(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     for text, name in pairs:
         found.setdefault(text, []).append(name)
     return found
+
+
+def _noted(laws: Mapping[str, LawUse], names: Sequence[str]) -> str:
+    """Write one note of meshes whose notes differ in numbers alone, with the ranges of these."""
+    notes = [laws[name].note for name in names]
+    columns = zip(*map(NUMBER.findall, notes), strict=True)
+    ends = [list(dict.fromkeys(pick(c, key=float) for pick in (min, max))) for c in columns]
+    each = ", each" if len({*notes}) > 1 else ""
+    return f"{each}: " + NUMBER.sub(lambda _: " to ".join(ends.pop(0)), notes[0])
 
 
 def _named(names: Sequence[str], every: int) -> str:
