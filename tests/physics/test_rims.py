@@ -42,6 +42,17 @@ def test_a_rim_follows_from_the_outside_diameter():
     assert other.gears["ring"].rim_stiffnesses == pytest.approx(gear.rim_stiffnesses, rel=1e-12)
 
 
+def test_a_rim_that_contradicts_the_outside_diameter_is_told_the_one_that_follows():
+    """The rim counted, without a word."""
+    ring = shipped("planetary/four_planets").gears["ring"]
+    both = {"gears.ring.rim": "15 mm", "gears.ring.outside_diameter": "500 mm"}
+    follows = f"contradicts the rim: with it the diameter is {2e3 * ring.tooth.root + 30.0:g} mm"
+    with pytest.raises(ls.CaseError, match=follows):
+        shipped("planetary/four_planets").replace(both)
+    fits = both | {"gears.ring.outside_diameter": f"{2e3 * ring.tooth.root + 30.1} mm"}
+    assert shipped("planetary/four_planets").replace(fits).gears["ring"].rim_depth == 0.015
+
+
 def test_amplitudes_are_what_the_meshes_push():
     """Of every harmonic: forces times shapes over the stiffness, both written here again."""
     case = a_set()

@@ -427,6 +427,11 @@ class Gear(Element):
         if self.type == "internal" and depth is not None and depth <= 0.0:
             root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
             yield Rule(f"leaves no body beyond the teeth: {root}", ("outside_diameter",))
+        if self.type == "internal" and self.rim is not None and self.outside_diameter is not None:
+            follows = 2.0 * (tooth.root + self.rim.si)
+            if abs(self.outside_diameter.si - follows) > RADIUS_TOLERANCE * follows:
+                rim = f"with it the diameter is {1e3 * follows:.8g} mm"
+                yield Rule(f"contradicts the rim: {rim}", ("outside_diameter",))
         tip, base = 1e3 * tooth.tip, 1e3 * tooth.base_radius
         keys = ("tip_alteration", "addendum", "profile_shift", "thickness_allowance")
         key = next(iter(self.given(*keys)), "module")
