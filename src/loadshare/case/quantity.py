@@ -141,8 +141,9 @@ class Dimension:
         exact = Decimal(number) * Decimal(repr(factor))
         value = Quantity(str(text), float(exact))
         self._check(value.si)
-        if not (exact.is_zero() or ALLOWED.smallest <= abs(value.si) <= ALLOWED.largest):
-            limits = f"{ALLOWED.smallest:g} to {ALLOWED.largest:g} {self.unit}"
+        largest = ALLOWED.length if self.unit == "m" else ALLOWED.largest
+        if not (exact.is_zero() or ALLOWED.smallest <= abs(value.si) <= largest):
+            limits = f"{ALLOWED.smallest:g} to {largest:g} {self.unit}"
             raise self._problem(f"is of a size that no machine has (outside of {limits})")
         return value
 

@@ -38,6 +38,8 @@ class Allowed(NamedTuple):
     """Number other than zero, in SI units: its cube is a number still."""
     largest: float = 1e40
     """Number in SI units: likewise."""
+    length: float = 1e4
+    """Length [m]: beyond it lies what is meant in millimetres and written in megametres."""
     friction: float = 1e3
     """Coefficient of friction [-]."""
     teeth: int = 100_000
