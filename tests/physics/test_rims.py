@@ -51,6 +51,8 @@ def test_a_rim_that_contradicts_the_outside_diameter_is_told_the_one_that_follow
         shipped("planetary/four_planets").replace(both)
     fits = both | {"gears.ring.outside_diameter": f"{2e3 * ring.tooth.root + 30.1} mm"}
     assert shipped("planetary/four_planets").replace(fits).gears["ring"].rim_depth == 0.015
+    on_web = both | {"gears.ring.web": "10 mm"}
+    assert shipped("planetary/four_planets").replace(on_web).gears["ring"].rim_depth == 0.015
 
 
 def test_amplitudes_are_what_the_meshes_push():

@@ -427,7 +427,7 @@ class Gear(Element):
         if self.type == "internal" and depth is not None and depth <= 0.0:
             root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
             yield Rule(f"leaves no body beyond the teeth: {root}", ("outside_diameter",))
-        if self.type == "internal" and self.rim is not None and self.outside_diameter is not None:
+        if tooth.internal and self.rim and self.outside_diameter and not self.web:
             follows = 2.0 * (tooth.root + self.rim.si)
             if abs(self.outside_diameter.si - follows) > RADIUS_TOLERANCE * follows:
                 rim = f"with it the diameter is {1e3 * follows:.8g} mm"

@@ -178,7 +178,7 @@ def test_the_rim_follows_from_real_dimensions(case, planetary):
     on_web = case.replace({"gears.a.rim": "5 mm"})
     gear = inline_pair(on_web, "a-b").geometry.driver_gear
     assert gear.root - gear.rim_radius == pytest.approx(5e-3, rel=1e-12)
-    web = planetary.replace({"gears.r.rim": "9 mm"})
+    web = planetary.replace({"gears.r.rim": "9 mm", "gears.r.web": "8 mm"})
     ring = inline_pair(web, "p1-r").geometry.driven_gear
     assert ring.rim_radius - ring.root == pytest.approx(9e-3, rel=1e-12)
     bare = inline_pair(case.replace({"gears.a.bore": None}), "a-b").geometry.driver_gear
