@@ -176,8 +176,7 @@ def solve_many(
         with Numba without the energy gap, which follows from the others), ``torque_bound`` (largest
         distance of a torque from the exact one, over the largest), ``certified``, ``determined``,
         ``displaced`` (displacements over what their geometry allows without a warning; ``warned``
-        counts those above 1, not meshes without a backlash that are open far, of which `solve`
-        warns), ``convex`` (nothing that is not convex carries), ``arc_curvature``
+        counts those above 1), ``convex`` (nothing that is not convex carries), ``arc_curvature``
         [N/m] that arcs take from the stiffness across them, ``rung`` (see ``flag_meanings``; 0
         where nothing answered). What is refused is NaN; the attribute ``refused`` says why.
 
