@@ -116,7 +116,7 @@ def with_own_laws(case: Case, varied: Iterable[KeyPath]) -> Case:
     varied : iterable of tuple of str or int
         Paths and patterns of what varies.
     """
-    numbers = [path[:3] for path in varied if len(path) > 3]
+    numbers = [path[:3] for path in varied if len(path) > 3 and covers(path[:1], ("meshes",))]
     own = {m for m in case.meshes if any(covers(p, ("meshes", m, "law")) for p in numbers)}
     solved = resolve(case, leave=case.meshes.keys() - own)
     laws = {name: solved.meshes[name].power_law for name in own}
