@@ -138,7 +138,7 @@ WORDS = {
         "rings.4.float: is given twice, as '4 um' and '5 um'; give it once"
     ),
     ("run", RING, "--set", "rings.4.float=4 um", "--set", 'rings."4".float=5 um'): (
-        'changes: rings."4".float = "5 um": is given twice'
+        "rings.\"4\".float: is given twice, as '4 um' and '5 um'; give it once"
     ),
     ("run", RING, "--set", "4.float=4 um"): "Did you mean rings.4.float?",
     ("run", RING, "--set", "rings.4.flaot=4 um"): "Did you mean float?",

@@ -59,9 +59,7 @@ def revise(
         value = as_data(given, CHANGES, path)
         _own(changed, path, owned)
         lost = change(changed, path, value)
-        if path in moved:
-            problems.append(Problem(CHANGES, str(key), as_given(value), "is given twice"))
-        elif lost is None:
+        if lost is None:
             moved.add(path)
         else:
             problems.append(Problem(CHANGES, key, as_given(value), "does not exist", "", lost))

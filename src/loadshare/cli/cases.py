@@ -57,18 +57,29 @@ def read_changes(settings: Iterable[str]) -> dict[str, Any]:
     typer.BadParameter
         For a setting without a key or without an equals sign, or a key that is given twice.
     """
-    texts: dict[str, str] = {}
+    changes: dict[str, Any] = {}
+    texts: dict[Any, str] = {}
     for setting in settings:
         key, equals, value = map(str.strip, setting.partition("="))
         wrong = ""
         if not key or not equals:
             wrong = f"{setting!r} is not of the form KEY=VALUE, as in operating.torque='100 N*m'"
-        elif key in texts:
-            wrong = f"{key}: is given twice, as {texts[key]!r} and {value!r}; give it once"
+        elif (path := _path(key)) in texts:
+            wrong = f"{key}: is given twice, as {texts[path]!r} and {value!r}; give it once"
         if wrong:
             raise typer.BadParameter(wrong, param_hint="--set")
-        texts[key] = value
-    return {key: _value(text) for key, text in texts.items()}
+        texts[path], changes[key] = value, _value(value)
+    return changes
+
+
+def _path(key: str) -> object:
+    """What a key names, however it is written; itself where it is no key path."""
+    from loadshare.case.keys import parse
+
+    try:
+        return parse(key)
+    except ValueError:
+        return key
 
 
 def _value(text: str) -> Any:
