@@ -81,6 +81,18 @@ class _Files(IndexDataCacheFile):
         except Exception:  # noqa: BLE001 -- a damaged pickle may raise anything
             return {}
 
+    def save(self, key: Any, data: Any) -> None:
+        """Keep code, and with it what it is the code of: the index names it before it is there."""
+        super().save(key, (self._kept_for(key), data))
+
+    def load(self, key: Any) -> Any:
+        """Load what was kept; None where a kill or a full disk left the code of another version."""
+        kept_for, data = super().load(key) or (None, None)
+        return data if kept_for == self._kept_for(key) else None
+
+    def _kept_for(self, key: Any) -> Any:
+        return self._version, self._source_stamp, key
+
     def _load_data(self, name: str) -> Any:
         """Load what was kept; nothing is unpickled or run before its digest was compared."""
         data = Path(self._data_path(name)).read_bytes()

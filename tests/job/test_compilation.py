@@ -20,6 +20,7 @@ from tests.support import CASES, mostly_slow, shipped
 
 import loadshare as ls
 from loadshare import compilation, compile_watch
+from loadshare.code_cache import _Files
 from loadshare.compile_watch import Watch, watch
 from loadshare.job import engines
 from loadshare.job.engines import engine_at_hand, engine_named
@@ -222,6 +223,25 @@ def test_what_was_kept_and_is_damaged_is_compiled_again(tmp_path, monkeypatch, e
     mended = loaded(file)
     assert mended(2.0) == 4.0
     assert sum(mended.stats.cache_hits.values()) == 1
+
+
+def test_code_of_an_older_version_is_not_run_where_the_new_could_not_be_kept(tmp_path, monkeypatch):
+    """The index says so before the code is written, as on a full disk or at a kill between both."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    file = tmp_path / "kept.py"
+    file.write_text(MODULE, encoding="utf-8")
+    assert loaded(file)(2.0) == 4.0
+    file.write_text(MODULE.replace("2.0 * x", "3.0 * x  # now"), encoding="utf-8")
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(_Files, "_save_data", full)
+        assert loaded(file)(2.0) == 6.0
+    assert not compilation.at_hand(loaded(file))
+    assert loaded(file)(2.0) == 6.0
+    assert compilation.at_hand(loaded(file))
 
 
 def test_of_processes_that_miss_the_same_code_one_compiles_it(tmp_path, monkeypatch):
