@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from tests.cli.conftest import on_a_screen_of
+from tests.exchange.test_rexs_places import geared_carrier
 from tests.exchange.units import at, bearing, joint, planetary, rexsj, two_stages, xml
 
 import loadshare as ls
@@ -169,3 +170,64 @@ def test_a_copy_is_not_named_as_another_form(written, tmp_path) -> None:
         assert "give it that ending, .rexs" in done.stderr
         assert not (tmp_path / name).exists()
     assert command("export", case, unit, "-o", tmp_path / "found.REXS").exit_code == 0
+
+
+@pytest.mark.parametrize("names", [b'xmlns="http://x"', b'xmlns:x="http://x" x:y="1"', b'x:y="1"'])
+def test_a_copy_keeps_names_and_comments(written, names) -> None:
+    """Of a namespace, which the import does not ask for, declared or not."""
+    content = xml(*planetary()).replace(b"<model ", b"<model " + names + b" ")
+    unit = written(content.replace(b"<relations>", b"<!-- as built --><relations>"))
+    text = export_rexs(ls.solve(import_rexs(unit).case()), unit)
+    assert names.decode() in text
+    assert "<!-- as built -->" in text
+    assert import_rexs(written(text.encode(), "copy.rexs")).data["gears"]
+
+
+def test_a_copy_keeps_a_name_that_is_no_unicode(written, tmp_path) -> None:
+    """Half of a letter beyond the 16 bits of JSON, as a program leaves that cuts names."""
+    content = rexsj(*planetary(), "2.0").replace(b'"planet 0"', b'"planet \\ud83d"')
+    unit = written(content, "unit.rexsj")
+    copy = in_form_of(unit, export_rexs(ls.solve(import_rexs(unit).case()), unit))
+    assert b'"planet \\ud83d"' in copy
+    assert import_rexs(written(copy, "copy.rexsj")).text
+
+
+def test_a_case_without_all_gears_of_the_unit_is_refused(written) -> None:
+    """Their bearings would bear too little, and stages keep what was found for another case."""
+    unit = written(xml(*planetary()))
+    text = import_rexs(unit).text.replace("gear_247", "planet_1")
+    result = ls.solve(written(text.encode(), "unit.toml"))
+    with pytest.raises(ls.CaseError, match="gear_247: is not in the case: gears must be named"):
+        export_rexs(result, unit)
+
+
+def test_a_mesh_is_found_by_its_gears_and_without_a_stage_has_no_factor(written) -> None:
+    unit = written(xml(*planetary()))
+    imported = import_rexs(unit)
+    copy = written(export_rexs(ls.solve(imported.case()), unit).encode(), "copy.rexs")
+    assert read_model(copy).components["211"].number(FACTOR)
+    mesh = {"driver": "gear_53", "driven": "gear_247", "law": "iso"}
+    meshes = {"first": mesh, **imported.data["meshes"]}
+    del meshes["gear_53-gear_247"]
+    data = {key: value for key, value in imported.data.items() if key != "stages"}
+    found = export_rexs(ls.solve(ls.Case({**data, "meshes": meshes})), copy)
+    stage = read_model(written(found.encode(), "again.rexs")).components["211"]
+    assert stage.number(FACTOR) is None
+    assert "meshing_stiffness_characteristic" in stage.attributes
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_forces_on_the_housing_do_not_turn_with_the_carrier(written, way) -> None:
+    """Bearings of a carrier and of a gear on its shaft, both under forces fixed in the housing."""
+    unit = written(xml(*geared_carrier(plate=False)))
+    forces = {"carrier_3": ["0 N", "0 N", "3000 N"], "gear_80": ["0 N", f"{3000 * way} N", "0 N"]}
+    operating = {"operating.positions": 8, "operating.forces": forces}
+    result = ls.solve(import_rexs(unit).case().replace(operating))
+    found = read_model(written(export_rexs(result, unit).encode(), "copy.rexs")).components
+    taken = found["3"].attributes["custom_loadshare_force_on_bearings"]
+    assert taken == pytest.approx((0.0, 0.0, 3000.0), abs=1e-6)
+    taken = [
+        sum(found[id_].number(f"force_acting_on_outer_component_{axis}") for id_ in ("400", "401"))
+        for axis in "vw"
+    ]
+    assert taken == pytest.approx([3000.0 * way, 3000.0], abs=1e-6)

@@ -59,15 +59,17 @@ def repacked(path: Path, content: bytes, text: str) -> bytes:
     Unreadable
         If what it holds is too large.
     """
+    # Half a letter, which XML cannot hold, is written as JSON has it.
+    packed = text.encode(errors="backslashreplace")
     if content[:4] != START:
-        return text.encode()
+        return packed
     held = BytesIO()
     with _opened(path, content) as archive, zipfile.ZipFile(held, "w") as made:
         unit = _unit(path, archive)
         if sum(info.file_size for info in archive.infolist()) > ALLOWED.other_bytes:
             raise _too_large()
         for info in archive.infolist():
-            inside = text.encode() if info is unit else _read(path, archive, info)
+            inside = packed if info is unit else _read(path, archive, info)
             # What it says of sizes and places is that of the old archive.
             made.writestr(copy(info), inside)
         made.comment = archive.comment

@@ -12,16 +12,18 @@ from xml.etree import ElementTree
 import numpy as np
 
 from loadshare.array_types import Array
+from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import reading, refuse
 from loadshare.exchange.rexs.archive import repacked, unpacked
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.holding import borne_by
 from loadshare.exchange.rexs.model import Component
-from loadshare.exchange.rexs.reading import is_json, read_model, tables
+from loadshare.exchange.rexs.reading import is_json, parsed, read_model, tables
 from loadshare.input import read_file
 from loadshare.results import Result
 from loadshare.results.share import load_factors
 from loadshare.settings import ALLOWED
+from loadshare.train.offset import turned_about
 
 FACTOR = "mesh_load_factor_iso_6336_2019"
 STIFFNESS = "meshing_stiffness_characteristic"
@@ -37,12 +39,13 @@ def export_rexs(result: Result, unit: str | Path) -> str:
 
     It is in the components, or, if the file has load cases, in the first of these, of which the
     loads are. Of every cylindrical stage the mesh load factor K_γ, the largest force of its mesh
-    over the mean of its stage in the case, if it is in one; the stiffness over the positions, force
-    over compression along the line of action; normal force and transmission error over the
-    positions. If several meshes share one stage, it has the largest K_γ alone. Of every bearing of
-    a shaft, and every seat of a pin, the force on both its sides, of every gear and carrier
-    displacement and force on what holds it, each at the position at which it is largest. What has
-    no name in REXS has one that begins with ``custom_loadshare``.
+    over the mean of its stage in the case, if it is in one, else none; the stiffness over the
+    positions, force over compression along the line of action; normal force and transmission error
+    over the positions. If several meshes share one stage, it has the largest K_γ alone. Of every
+    bearing of a shaft, and every seat of a pin, the force on both its sides, of every gear and
+    carrier displacement and force on what holds it, each at the position at which it is largest:
+    of planets as seen from their carrier, in its directions at the first position, else as the
+    housing sees it. What has no name in REXS has one that begins with ``custom_loadshare``.
 
     Parameters
     ----------
@@ -55,22 +58,17 @@ def export_rexs(result: Result, unit: str | Path) -> str:
     Raises
     ------
     CaseError
-        If the file cannot be read, or has no mesh of the case.
+        If the file cannot be read, or has gears or meshes that the case has not.
     """
     unit = Path(unit)
-    found = _found(result, Gearing(read_model(unit)))
-    if not found:
-        refuse(unit, "has no mesh of this case: gears must be named as the import names them")
+    gearing = Gearing(read_model(unit))
+    _check_all_there(unit, gearing, result)
+    found = _of_meshes(result, gearing)
+    found |= _of_bodies(result, gearing) | _of_bearings(result, gearing)
     content = unpacked(unit, read_file(unit, ALLOWED.other_bytes))
     if is_json(content):
         return into_json(json.loads(content.decode("utf-8-sig")), found)
-    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
-    try:
-        root = ElementTree.fromstring(content, parser)
-    except ElementTree.ParseError as error:
-        # Prefixes without a namespace are read, as the import asks for none, but cannot be written.
-        refuse(unit, f"is not valid XML: {error}")
-    return into_xml(root, found)
+    return into_xml(parsed(content, comments=True), found)
 
 
 def in_form_of(unit: str | Path, text: str) -> bytes:
@@ -93,25 +91,33 @@ def in_form_of(unit: str | Path, text: str) -> bytes:
         return repacked(unit, read_file(unit, ALLOWED.other_bytes), text)
 
 
-def _found(result: Result, gearing: Gearing) -> Values:
-    """Attributes by id of the component: values and units; none without a mesh of the case."""
-    made = _of_meshes(result, gearing)
-    if made:
-        made |= _of_bodies(result, gearing) | _of_bearings(result, gearing)
-    return made
+def _check_all_there(unit: Path, gearing: Gearing, result: Result) -> None:
+    """Refuse a case that lacks gears or meshes of the file: bearings would bear too little."""
+    names, meshes, what = gearing.names, _by_gears(result), "gears must be named as the import"
+    pairs = [(names[one.id], names[other.id]) for _, one, other in gearing.stages]
+    if not any(frozenset(pair) in meshes for pair in pairs):
+        refuse(unit, f"has no mesh of this case: {what} names them")
+    lost = [name for name in names.values() if name not in result.frames]
+    lost = lost or ["-".join(pair) for pair in pairs if frozenset(pair) not in meshes]
+    if lost:
+        why = f"is not in the case: {what} named them"
+        raise CaseError([Problem(str(unit), name, "", why) for name in lost])
+
+
+def _by_gears(result: Result) -> dict[frozenset[str], str]:
+    """Names of meshes by their gears."""
+    meshes = result.positions[0].train.meshes
+    return {frozenset((mesh.driver, mesh.driven)): name for name, mesh in meshes.items()}
 
 
 def _of_meshes(result: Result, gearing: Gearing) -> Values:
     """Return what is written for stages; of one with several meshes the largest factor alone."""
     made: Values = {}
-    positions, meshes = result.positions, result.positions[0].train.meshes
+    positions, meshes = result.positions, _by_gears(result)
     several = Counter(stage.id for stage, *_ in gearing.stages)
     factors: dict[str, list[float]] = {}
     for stage, one, other in gearing.stages:
-        ends = gearing.names[one.id], gearing.names[other.id]
-        name = next((n for n in map("-".join, (ends, ends[::-1])) if n in meshes), None)
-        if name is None:
-            continue
+        name = meshes[frozenset((gearing.names[one.id], gearing.names[other.id]))]
         factors.setdefault(stage.id, []).extend(_load_factors(result, name))
         made[stage.id] = {}
         if several[stage.id] == 1:
@@ -121,8 +127,8 @@ def _of_meshes(result: Result, gearing: Gearing) -> Values:
                 ERROR: ([1e6 * p.elastic.mesh_transmission_error[name] for p in positions], "mum"),
             }
     for id_, known in factors.items():
-        if known:
-            made[id_][FACTOR] = (max(known), "none")
+        # One that was found before, of other forces, is taken away.
+        made[id_][FACTOR] = (max(known), "none") if known else None
     return made
 
 
@@ -135,17 +141,24 @@ def _load_factors(result: Result, mesh: str) -> Iterator[float]:
                 yield load_factors(train, p.torque, stage)[mesh]
 
 
-def _bodies(result: Result, gearing: Gearing) -> Iterator[tuple[Component, str]]:
-    """Gears and carriers of the file that the case has, with their names."""
+def _bodies(gearing: Gearing) -> Iterator[tuple[Component, str]]:
+    """Gears and carriers of the file, with their names."""
     for body in (*gearing.gears, *gearing.carriers):
-        if gearing.names[body.id] in result.frames:
-            yield body, gearing.names[body.id]
+        yield body, gearing.names[body.id]
 
 
 def _pushed(result: Result, name: str) -> Array:
     """Force of a body on what holds it at every position, (positions, 3) [N]."""
     forces = np.array([p.loads.bearings[name] for p in result.positions])
-    return np.asarray(forces @ np.array(result.frames[name]))
+    return _in_housing(result, name, forces @ np.array(result.frames[name]))
+
+
+def _in_housing(result: Result, name: str, seen: Array) -> Array:
+    """Vectors of a body at every position as the housing sees them; of a planet, as its carrier."""
+    train = result.positions[0].train
+    gear = train.gears[name]
+    turned = [train.frame_angle(name, train.rotations(p.position)) for p in result.positions]
+    return seen if gear.carrier or not any(turned) else turned_about(gear, seen, np.array(turned))
 
 
 def _largest(vectors: Array) -> Array:
@@ -156,8 +169,9 @@ def _largest(vectors: Array) -> Array:
 def _of_bodies(result: Result, gearing: Gearing) -> Values:
     """What is written for gears and carriers: x, y, z."""
     made: Values = {}
-    for body, name in _bodies(result, gearing):
-        moved = np.array([p.claim.displacement[name] for p in result.positions])
+    for body, name in _bodies(gearing):
+        found = np.array([p.claim.displacement[name] for p in result.positions])
+        moved = _in_housing(result, name, found)
         made[body.id] = {
             MOVED: ((1e6 * _largest(moved)).tolist(), "mum"),
             PUSHED: (_largest(_pushed(result, name)).tolist(), "N"),
@@ -172,7 +186,7 @@ def _of_bearings(result: Result, gearing: Gearing) -> Values:
     """
     pushed: dict[str, Array] = {}
     across: dict[str, Array] = {}
-    for body, name in _bodies(result, gearing):
+    for body, name in _bodies(gearing):
         for link, part in borne_by(gearing, body):
             along = part if link.side == "inner" else -part
             known = pushed.get(link.part.id, np.zeros(3))
@@ -206,8 +220,8 @@ def _stiffness(result: Result, name: str) -> list[float]:
 
 
 Value = tuple[float | list[float], str]
-Values = dict[str, dict[str, Value]]
-"""Values and units by attribute, by id of the component."""
+Values = dict[str, dict[str, Value | None]]
+"""Values and units by attribute, by id of the component; None of what is to be there no more."""
 ABOUT = ("id", "type", "name")
 """What a load case repeats of a component."""
 
@@ -218,9 +232,12 @@ def into_xml(root: ElementTree.Element, found: Values) -> str:
     case = root.find("load_spectrum/load_case")
     changed = whole if case is None else _all_in_case(case, whole, found)
     for component in changed:
-        for key, (value, unit) in found.get(component.get("id", ""), {}).items():
+        for key, new in found.get(component.get("id", ""), {}).items():
             for old in [a for a in component.iterfind("attribute") if a.get("id") == key]:
                 component.remove(old)
+            if new is None:
+                continue
+            value, unit = new
             attribute = ElementTree.SubElement(component, "attribute", id=key, unit=unit)
             if isinstance(value, list):
                 array = ElementTree.SubElement(attribute, "array")
@@ -262,7 +279,7 @@ def into_json(root: dict[str, Any], found: Values) -> str:
     for component in changed:
         new = found.get(str(component.get("id", "")), {})
         kept = [a for a in tables(component.get("attributes")) if str(a.get("id")) not in new]
-        for key, (value, unit) in new.items():
+        for key, (value, unit) in ((key, one) for key, one in new.items() if one is not None):
             kind = "floating_point_array" if isinstance(value, list) else "floating_point"
             kept.append({"id": key, "unit": unit, kind: value})
         component["attributes"] = kept

@@ -80,7 +80,7 @@ class _NoRexs(Exception):  # noqa: N818 -- reported as a problem, never raised t
 
 def _from_xml(content: bytes) -> Mapping[str, Any]:
     """Return the model of an XML file as a JSON file holds it."""
-    root = _parsed(content)
+    root = parsed(content)
     if root.tag != "model":
         raise _NoRexs(f"is no REXS: its first element is {root.tag}, not model")
     relations = root.iterfind("relations/relation")
@@ -94,9 +94,12 @@ def _from_xml(content: bytes) -> Mapping[str, Any]:
     }
 
 
-def _parsed(content: bytes) -> ElementTree.Element:
-    """Parse XML that declares no document type: entities are a way to make much of little."""
-    builder = ElementTree.TreeBuilder()
+def parsed(content: bytes, comments: bool = False) -> ElementTree.Element:
+    """Parse XML that declares no document type: entities are a way to make much of little.
+
+    Names keep their prefixes, whatever namespaces these are of. Comments are kept on request.
+    """
+    builder = ElementTree.TreeBuilder(insert_comments=comments)
     parser = expat.ParserCreate()
 
     def refuse(*_: Any) -> NoReturn:
@@ -120,6 +123,8 @@ def _parsed(content: bytes) -> ElementTree.Element:
     parser.StartElementHandler = start
     parser.EndElementHandler = end
     parser.CharacterDataHandler = builder.data
+    if comments:
+        parser.CommentHandler = builder.comment
     try:
         parser.Parse(content, True)
         return builder.close()
