@@ -7,6 +7,7 @@ import csv
 import math
 import sys
 import zipfile
+from datetime import datetime
 from pathlib import Path
 
 import pandas as pd
@@ -426,6 +427,22 @@ def test_a_formula_without_a_saved_value_is_no_empty_cell(book) -> None:
     sheets["gears"]["F2"] = '=""'
     empty = (b'<c r="F2"><f>', b'<c r="F2" t="str"><f>')
     assert read(calculated, value, empty) == whole
+
+
+@pytest.mark.parametrize(
+    ("cell", "value", "shown"),
+    [("A3", datetime(2026, 6, 4), None), ("B2", 20, "dd.mm.yyyy"), ("B2", 20, "h:mm")],
+)
+def test_a_date_is_told_to_be_no_name_and_no_number(book, cell, value, shown) -> None:
+    """Programs make one of the name 4-6, and show numbers as dates."""
+    sheets, read = book
+    sheet = sheets["gears"]
+    sheet[cell] = value
+    sheet[cell].number_format = shown or sheet[cell].number_format
+    place = f"row {cell[1]}, column {cell[0]}"
+    with pytest.raises(CaseError, match=f"sheet gears: {place}: is a date or a time") as caught:
+        read()
+    assert "Format the cell as text, or as a number" in str(caught.value)
 
 
 def test_merged_cells_have_their_value_in_every_row(book) -> None:

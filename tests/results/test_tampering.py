@@ -187,6 +187,7 @@ def refusal_of(document: Any) -> str:
         ),
         (("format",), FORMAT + 1, "Load it with that version, or a newer one."),
         (("format",), True, "format = true: was written by"),
+        (("format",), 99, f"which reads {min(OLDER)} and {FORMAT}"),
         (("refused",), {"message": "no"}, "holds a refusal and no result"),
         (("colour",), "red", "colour: is not known"),
         (("positions", 0, "claim", "flank_force", "4-6 drive"), 1.0, "position 1 is no equil"),

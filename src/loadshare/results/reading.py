@@ -174,7 +174,8 @@ def _parsed(text: str, file: str) -> dict[str, Any]:
         writer = as_given(document.get("version"))
         newer = isinstance(found, int) and found > FORMAT
         hint = "Load it with that version, or a newer one." if newer else AGAIN
-        message = f"was written by loadshare {writer}; this is {__version__}, which reads {FORMAT}"
+        forms = " and ".join(map(str, (*OLDER, FORMAT)))
+        message = f"was written by loadshare {writer}; this is {__version__}, which reads {forms}"
         _fail(file, message, hint, ("format",), as_given(found))
     return document
 

@@ -6,8 +6,8 @@ import re
 import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import date, time, timedelta
 from io import BytesIO
-from itertools import islice
 from pathlib import Path
 from typing import IO, Any
 
@@ -20,6 +20,15 @@ from loadshare.settings import ALLOWED
 ENDING = ".xlsx"
 NOT_CALCULATED = re.compile(rb"""\sfullCalcOnLoad\s*=\s*["'](?:1|true)["']""")
 """What programs that write formulas and calculate none ask of the one that opens the workbook."""
+NOT_SAVED = (
+    "is a formula whose value was not saved",
+    "Open the workbook in a spreadsheet program and save it, or write the value.",
+)
+DATES = (date, time, timedelta)
+DATE = (
+    "is a date or a time, as programs make of a name such as 4-6",
+    "Format the cell as text, or as a number, and write the value anew.",
+)
 
 
 def sheets_of_workbook(path: Path) -> list[Sheet]:
@@ -80,7 +89,9 @@ def _sheet(path: Path, sheet: Any, calculated: bool) -> Sheet:
     # The size that a file states may be one that its writer did not keep up to date.
     sheet.reset_dimensions()
     rows: list[list[str]] = []
+    dates: list[tuple[int, int]] = []
     for number, row in enumerate(sheet.iter_rows(values_only=True)):
+        dates += [(number + 1, column) for column, c in enumerate(row, 1) if isinstance(c, DATES)]
         texts = [_text(cell) for cell in row]
         if any(texts):
             if number > ALLOWED.entries:
@@ -89,7 +100,11 @@ def _sheet(path: Path, sheet: Any, calculated: bool) -> Sheet:
             rows.append(texts)
     with sheet._get_source() as source:
         notes = _Notes.read(source, calculated)
-    problems = [*_not_saved(place, notes), *_merged(place, rows, notes.merged)]
+    problems = [
+        *_told(place, notes.formulas, NOT_SAVED),
+        *_told(place, dates, DATE),
+        *_merged(place, rows, notes.merged),
+    ]
     return Sheet(name, place, rows, tuple(problems))
 
 
@@ -136,11 +151,10 @@ class _Notes:
         return notes
 
 
-def _not_saved(place: str, notes: _Notes) -> Iterator[Problem]:
-    hint = "Open the workbook in a spreadsheet program and save it, or write the value."
-    for row, column in islice(notes.formulas, ALLOWED.problems):
-        where = cell_of(place, row - 1, column - 1)
-        yield Problem(where, "", "", "is a formula whose value was not saved", hint=hint)
+def _told(place: str, cells: list[tuple[int, int]], words: tuple[str, str]) -> Iterator[Problem]:
+    """Yield a problem of some cells, in the same words for all."""
+    for row, column in cells[: ALLOWED.problems]:
+        yield Problem(cell_of(place, row - 1, column - 1), "", "", words[0], hint=words[1])
 
 
 def _merged(place: str, rows: list[list[str]], ranges: list[str]) -> Iterator[Problem]:
