@@ -335,6 +335,18 @@ def test_a_case_and_its_result_go_into_a_workbook_and_back(tmp_path) -> None:
     assert any(isinstance(value, float) for value in figures)
 
 
+@pytest.mark.parametrize("text", ["x" * 32768, "a\x07b", "a\rb", "a\ufffeb"])
+def test_what_no_workbook_can_hold_is_not_written_there(box, text) -> None:
+    """It was cut, or became something else: so did lists of thousands of positions."""
+    pytest.importorskip("openpyxl")
+    data = import_tables(box()).case().to_dict()
+    tables = dict(case_frames({**data, "notes": text}))
+    with pytest.raises(CaseError, match=r"case\.notes.*: no cell of a workbook can hold it"):
+        workbook_of(tables)
+    tables = dict(case_frames({**data, "notes": "x\n" + "x" * 32765}))
+    assert workbook_of(tables)
+
+
 def test_names_of_a_result_stay_texts_in_a_workbook(box, tmp_path) -> None:
     """A column is numbers because it holds numbers, not because its texts look like some."""
     openpyxl = pytest.importorskip("openpyxl")

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from io import BytesIO
 from itertools import chain
 from pathlib import Path as FilePath
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare.case.content import Content
 from loadshare.case.keys import Path, dotted, values_in, with_unit
+from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.spreadsheet.cells import (
     head_of,
@@ -26,6 +28,11 @@ from loadshare.output import clear, csv_of, without_formulas, write_together
 
 if TYPE_CHECKING:
     from loadshare.results import Result
+
+LONGEST = 32767
+"""Characters of a text in a cell of a workbook."""
+UNFIT = re.compile("[\x00-\x08\x0b-\x1f\ufffe\uffff\ud800-\udfff]")
+"""Characters that XML does not hold, or not as they are."""
 
 
 def export_tables(result: Result) -> dict[str, str]:
@@ -64,18 +71,21 @@ def workbook_of(tables: Mapping[str, pd.DataFrame]) -> bytes:
 
     Raises
     ------
+    CaseError
+        If a text is longer than a cell holds, or has characters that none holds.
     ImportError
         Without openpyxl.
     """
     from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell
 
+    safe = {name: without_formulas(frame) for name, frame in tables.items()}
+    for name, row in ((name, row) for name, table in safe.items() for row in _rows(table)):
+        _check_fit(name, row)
     book = Workbook(write_only=True)
-    for name, frame in tables.items():
+    for name, table in safe.items():
         sheet = book.create_sheet(name)
-        table = without_formulas(frame)
-        rows: Iterator[Iterable[Any]] = table.itertuples(index=False, name=None)
-        for row in chain([table.columns], rows):
+        for row in _rows(table):
             cells = [WriteOnlyCell(sheet, _cell(value)) for value in row]
             for cell in cells:
                 if isinstance(cell.value, str):
@@ -85,6 +95,21 @@ def workbook_of(tables: Mapping[str, pd.DataFrame]) -> bytes:
     content = BytesIO()
     book.save(content)
     return content.getvalue()
+
+
+def _rows(table: pd.DataFrame) -> Iterator[Sequence[Any]]:
+    """The heads of a table, then its rows."""
+    return chain([list(table.columns)], table.itertuples(index=False, name=None))
+
+
+def _check_fit(sheet: str, row: Sequence[Any]) -> None:
+    """Refuse a text that openpyxl would cut, or XML would change."""
+    for text in row:
+        if isinstance(text, str) and (len(text) > LONGEST or UNFIT.search(text)):
+            allowed = f"{LONGEST} characters, none of them a control character"
+            why, hint = "no cell of a workbook can hold it", "A table as CSV holds any text."
+            where = dotted((sheet, str(row[0])))
+            raise CaseError([Problem("", where, as_given(text), why, allowed, hint)])
 
 
 def _cell(value: Any) -> str | float | None:
