@@ -173,7 +173,10 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
     for value, cell in zip(values, cells, strict=True):
         # An empty text is as good as none.
         if value not in (None, "") and (
-            (read, read_unit) != ((*above, *path), unit) or value_of(cell, unit, options) != value
+            (read, read_unit) != ((*above, *path), unit)
+            or value_of(cell, unit, options) != value
+            # Half a line end, which CSV takes for a whole one.
+            or "\r" in cell.replace("\r\n", "")
         ):
             what = "cannot stand in a cell as it is"
             where = dotted((above[0], "…", *path) if len(above) > 1 else (*above, *path))

@@ -41,6 +41,8 @@ def sheets_of(path: Path) -> list[Sheet]:
 
 
 def _of_csv(file: Path) -> Sheet:
+    # A cell may be as long as its file; other users of the module keep their limit.
+    limit = csv.field_size_limit(ALLOWED.other_bytes)
     try:
         with reading(file):
             text = read_file(file, ALLOWED.other_bytes).decode("utf-8-sig")
@@ -49,6 +51,8 @@ def _of_csv(file: Path) -> Sheet:
         refuse(file, f"is not UTF-8 text at byte {error.start}")
     except csv.Error as error:
         refuse(file, f"is not CSV: {error}")
+    finally:
+        csv.field_size_limit(limit)
     first = next((cell for row in rows[:1] for cell in row), "")
     if rows and len(rows[0]) == 1 and (";" in first or "\t" in first):
         hint = "Save it with commas between cells, and points in numbers."
