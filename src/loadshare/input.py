@@ -6,6 +6,8 @@ import os
 import stat
 from pathlib import Path
 
+from loadshare.readable import readable
+
 
 class Unreadable(Exception):  # noqa: N818 -- reported as a problem, never raised to a user
     """Why a file is none that can be read."""
@@ -46,7 +48,7 @@ def stem(path: Path) -> str:
     A name may have bytes that are no UTF-8, as of a file from an old archive; each is a question
     mark, as on the screen.
     """
-    return path.stem.encode(errors="replace").decode()
+    return readable(path.stem.encode(errors="replace").decode())
 
 
 def real(path: Path) -> Path:

@@ -20,9 +20,6 @@ STANDARD = Path("-")
 LONG = 100
 """Bytes of a name that the temporary file has as well; file systems allow some 250."""
 
-UNFIT = re.compile("[\x00-\x08\x0b-\x1f\ufffe\uffff\ud800-\udfff]")
-"""Characters that XML, as of a workbook or a picture, does not hold, or not as they are."""
-
 
 class Closed(TextIOWrapper):
     """In place of a standard stream that is closed: what is printed there goes nowhere."""

@@ -41,20 +41,6 @@ def test_svg_pdf_and_json(picture, tmp_path):
     assert json.loads(figure.save(tmp_path / "a.json").read_text(encoding="utf-8")) == figure.spec
 
 
-def test_control_characters_of_a_text_end_no_process():
-    """The converter does that, past all that Python could catch."""
-    texts = {"title": "a\x07b", "datasets": {"one": [{"name": "c\x00\ufffe"}]}}
-    encoding = {"text": {"field": "name", "type": "nominal"}}
-    chart = {"data": {"name": "one"}, "mark": "text", "encoding": encoding, **texts}
-    script = f"""
-from loadshare.report import beside
-print(ascii(beside.begin("vegalite_to_svg", {chart!r}).result()))
-"""
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    assert {"a\\ufffdb", "c\\ufffd\\ufffd"} <= set(re.findall(r">([^<>]+)<", done.stdout))
-
-
 def test_html_holds_its_scripts_and_loads_nothing(picture, tmp_path):
     page = picture("limit_ring", "share").save(tmp_path / "a.html").read_text(encoding="utf-8")
     assert "vegaEmbed" in page

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import Field, PrivateAttr
 
-from loadshare.case.element import Element
+from loadshare.case.element import Element, Text
 from loadshare.case.gear_errors import Errors
 from loadshare.case.gears import Gear
 from loadshare.case.keys import Path, look_up, parse
@@ -36,13 +36,13 @@ class Sections(Element):
     _data: Mapping[str, Any] = PrivateAttr()
     _origin: Origin = PrivateAttr()
 
-    title: str = ""
+    title: Text = ""
     """One line that says what the case is."""
 
-    source: str = ""
+    source: Text = ""
     """Where its numbers come from."""
 
-    notes: str = ""
+    notes: Text = ""
     """Anything else a reader should know."""
 
     assumed: tuple[str, ...] = ()

@@ -192,7 +192,7 @@ def _read_section(
     if model is not None and not isinstance(value, Mapping):
         draft.tell((name,), "is not valid here", "a table")
     elif model is None or get_origin(about.annotation) is not dict:
-        element = _read(draft, (name,), value, model or about.annotation)
+        element = _read(draft, (name,), value, model or about.rebuild_annotation())
         if element is not None:
             setattr(draft, name, element)
     else:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Self, TypeVar, get_args
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     ConfigDict,
     Discriminator,
@@ -21,6 +22,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from loadshare.case.keys import Path, look_up
 from loadshare.case.quantity import Quantity
 from loadshare.case.table import fixed
+from loadshare.readable import CONTROL
 from loadshare.settings import ALLOWED
 
 # Marks a step of pydantic's error locations as the choice of a shape, which is no key of the case.
@@ -212,6 +214,18 @@ Number = Annotated[float, Strict(), Field(ge=-_HIGH, le=_HIGH, allow_inf_nan=Fal
 Positive = Annotated[float, Strict(), Field(ge=_LOW, le=_HIGH, allow_inf_nan=False)]
 NotNegative = Annotated[float, Strict(), Field(ge=0, le=_HIGH, allow_inf_nan=False)]
 Turns = Annotated[float, Strict(), Field(gt=0, le=ALLOWED.revolutions, allow_inf_nan=False)]
+
+
+def _readable(text: str) -> str:
+    if found := CONTROL.search(text):
+        message = f"holds a control character, {found[0]!a}"
+        context = {"message": message, "allowed": "text to read, in lines", "hint": ""}
+        raise PydanticCustomError("message", "{message}. Allowed: {allowed}. {hint}", context)
+    return text
+
+
+Text = Annotated[str, AfterValidator(_readable)]
+"""What is written for people."""
 
 Count = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.samples)]
 Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]

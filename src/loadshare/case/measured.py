@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated
 
-from loadshare.case.element import Count, Element, Number, Positive, Rule
+from loadshare.case.element import Count, Element, Number, Positive, Rule, Text
 from loadshare.case.quantity import TORQUE, Quantity, Torque
 
 COEFFICIENTS = ("share", "pair_share", "omega", "pair_omega")
@@ -38,7 +38,7 @@ class Measurement(Element):
     uncertainty: Positive | None = None
     """Standard deviation of each coefficient [-]."""
 
-    source: str = ""
+    source: Text = ""
     """Where the figures come from."""
 
     def rules(self) -> Iterator[Rule]:

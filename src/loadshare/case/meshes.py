@@ -18,6 +18,7 @@ from loadshare.case.element import (
     NotNegative,
     PerPosition,
     Rule,
+    Text,
     shaped,
     values,
     without_default,
@@ -65,7 +66,7 @@ class Law(Element):
     """What a list holds: values at the positions, or means over the parts of the cycle about them.
     """
 
-    basis: str = Field(default="", exclude=True)
+    basis: Text = Field(default="", exclude=True)
     """Where the law comes from."""
 
     holds_from: Annotated[Quantity, TORQUE.bounded(at_least=0)] | None = Field(
@@ -82,7 +83,7 @@ class Law(Element):
     """By how much the law is off at loads other than those it was fitted to, at most, as a part of
     the elastic angle; results warn from 0.03 on [-]."""
 
-    teeth: str = Field(default="", exclude=True)
+    teeth: Text = Field(default="", exclude=True)
     """Digest of the teeth that the numbers were computed from: while it is there, they are refused
     for gears with other teeth."""
 

@@ -9,8 +9,6 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from loadshare.output import UNFIT
-
 if TYPE_CHECKING:
     from concurrent.futures import Future, ThreadPoolExecutor
 
@@ -36,16 +34,7 @@ def begin(conversion: str, what: object, **settings: Any) -> Future[Any]:
 def _convert(conversion: str, what: object, settings: dict[str, Any]) -> Any:
     import vl_convert
 
-    return getattr(vl_convert, conversion)(_drawable(what), **settings)
-
-
-def _drawable(what: Any) -> Any:
-    """Return a specification whose texts XML can hold: others end the process in the converter."""
-    if isinstance(what, dict):
-        return {key: _drawable(value) for key, value in what.items()}
-    if isinstance(what, list | tuple):
-        return [_drawable(value) for value in what]
-    return UNFIT.sub("\ufffd", what) if isinstance(what, str) else what
+    return getattr(vl_convert, conversion)(what, **settings)
 
 
 @cache

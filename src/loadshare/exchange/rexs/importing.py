@@ -29,6 +29,7 @@ from loadshare.exchange.rexs.model import BEARINGS, COUPLINGS, GEARS, READ, Comp
 from loadshare.exchange.rexs.quantities import torque_of
 from loadshare.exchange.rexs.reading import read_model
 from loadshare.input import stem
+from loadshare.readable import readable
 
 ON_AXIS = 1e-6
 """How far from the axis of its shaft a gear may be unreported [m]."""
@@ -94,8 +95,8 @@ class _Importer:
             gears[name]["held"] = True
         data: Data = {
             "title": f"{stem(self.path)}, from REXS {self.of.model.version}",
-            "source": f"REXS file {self.path.name}",
-            "notes": "; ".join(self._name_notes()),
+            "source": readable(f"REXS file {self.path.name}"),
+            "notes": readable("; ".join(self._name_notes())),
             "operating": {
                 "input": flow.first,
                 "output": flow.last,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from io import BytesIO
 from itertools import chain
@@ -23,13 +24,15 @@ from loadshare.exchange.spreadsheet.cells import (
 from loadshare.exchange.spreadsheet.importing import ABOUT, ALONE, sheet_names
 from loadshare.exchange.spreadsheet.sheet import FOUND
 from loadshare.libraries import pd
-from loadshare.output import UNFIT, clear, csv_of, without_formulas, write_together
+from loadshare.output import clear, csv_of, without_formulas, write_together
 
 if TYPE_CHECKING:
     from loadshare.results import Result
 
 LONGEST = 32767
 """Characters of a text in a cell of a workbook."""
+UNFIT = re.compile("[\x00-\x08\x0b-\x1f\ufffe\uffff\ud800-\udfff]")
+"""Characters that XML does not hold, or not as they are."""
 
 
 def export_tables(result: Result) -> dict[str, str]:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from loadshare.case.element import Element, Rule
+from loadshare.case.element import Element, Rule, Text
 from loadshare.case.quantity import ANGLE, LENGTH, TORQUE, Angle, Dimension, Length, Quantity
 from loadshare.case.words import count
 from loadshare.settings import ALLOWED, TEETH
@@ -254,13 +254,13 @@ class Analysis(Element):
 class PairContent(Element):
     """What pair files of every kind say."""
 
-    title: str = ""
+    title: Text = ""
     """One line that says what the pair is."""
 
-    source: str = ""
+    source: Text = ""
     """Where its numbers come from."""
 
-    notes: str = ""
+    notes: Text = ""
     """Anything else a reader should know."""
 
     assumed: tuple[str, ...] = ()
