@@ -27,7 +27,7 @@ from loadshare.train.offset import Offset, polar, vector_of
 from loadshare.train.operation import forces_of, operation_of, stages_of
 from loadshare.train.rim import with_harmonics
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing, transverse
-from loadshare.train.thermal import fitted, flank_growth, grows, with_growth
+from loadshare.train.thermal import fitted, flank_growth, grows
 from loadshare.train.train import Train
 
 Element = TypeVar("Element")
@@ -93,11 +93,11 @@ def train_of(
     """
 
     def elements(
-        section: str, convert: Callable[[str, Any], Element], known: str = "", anew: bool = False
+        section: str, convert: Callable[[str, Any], Element], known: str = ""
     ) -> dict[str, Element]:
-        """Elements of a section; those that the base does not have are built, or all of them."""
+        """Elements of a section; those that the base does not have are built."""
         now = getattr(case, section)
-        if base is None or anew:
+        if base is None:
             return {name: convert(name, item) for name, item in now.items()}
         there = getattr(base[1], known or section)
         kept = _kept(section, now, getattr(base[0], section), changed)
@@ -131,8 +131,6 @@ def train_of(
     rings = elements("rings", ring_of)
     if problems:
         raise CaseError(problems)
-    # Those of a base that is warm have grown already.
-    offsets = elements("errors", lambda name, e: _offset(e, gears[name], gears), "offsets", warm)
     return Train(
         name=case.name,
         gears=gears,
@@ -141,7 +139,7 @@ def train_of(
         splines=elements("splines", _spline),
         rings={name: ring for name, ring in rings.items() if ring is not None},
         bearings=elements("bearings", bearing_of),
-        offsets=with_growth(case, gears, offsets) if warm else offsets,
+        offsets=elements("errors", lambda name, e: _offset(e, gears[name], gears), "offsets"),
         stages=stages_of(case),
         **operation_of(case, gears),
         forces=forces_of(case),

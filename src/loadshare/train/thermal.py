@@ -1,22 +1,21 @@
-"""Thermal growth: bodies that are warmer than they were made, as errors of known size.
+"""Thermal growth: bodies that are warmer than they were made, as gaps of known size.
 
 A body grows evenly by α ΔT. What a gear's flank gains at the pitch point is what the approach gains
-if the gear is moved that far towards it; the housing and carriers move the gears that sit in them.
+if the gear is moved that far towards it. Housing and carriers move the gears that sit in them along
+their line of centres: what grows as these do comes no closer.
 Source: formulation, section 14.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from loadshare import case as spec
 from loadshare.errors import CaseError
-from loadshare.train.gear import ORIGIN, Gear, Vector
+from loadshare.train.gear import Gear
 from loadshare.train.geometry import Pair
-from loadshare.train.offset import Offset
 from loadshare.train.ring import Bearing, transverse
 
 
@@ -47,33 +46,12 @@ def flank_growth(case: spec.Case, pair: Pair) -> float:
     # From a centre to the pitch point: in an internal mesh both point away from the ring's centre.
     ahead = -way if driven.kind == "internal" else way
     back = way if driver.kind == "internal" else -way
-    total = 0.0
+    total, seat = 0.0, growth_of(case, driver.carrier or driven.carrier)
     for gear, to_pitch, sign in ((driver, ahead, 1.0), (driven, back, -1.0)):
         radius = gear.base_radius / np.cos(pair.line.pressure_angle)
-        total += sign * growth_of(case, gear.name) * radius * float(normal @ to_pitch)
+        grown = growth_of(case, gear.name) - seat
+        total += sign * grown * radius * float(normal @ to_pitch)
     return total
-
-
-def with_growth(
-    case: spec.Case, gears: Mapping[str, Gear], offsets: Mapping[str, Offset]
-) -> dict[str, Offset]:
-    """Return centre offsets with what housing and carriers grow.
-
-    Parameters
-    ----------
-    case : spec.Case
-    gears : mapping of str to Gear
-    offsets : mapping of gear to Offset
-    """
-    origin = gears[case.operating.input].centre
-    found = dict(offsets)
-    for name, gear in gears.items():
-        pole = gears[gear.carrier].centre if gear.carrier is not None else origin
-        moved: Vector = growth_of(case, gear.carrier) * (gear.centre - pole)
-        if moved.any():
-            before = found.get(name, Offset(ORIGIN, np.zeros(2)))
-            found[name] = replace(before, installation=before.installation + moved)
-    return found
 
 
 def fitted(case: spec.Case, bearing: Bearing, gear: Gear) -> Bearing:
