@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.support import shipped
 
 import loadshare as ls
 from loadshare.train import build_train
@@ -297,3 +298,16 @@ def test_a_brake_is_where_its_coast_flanks_put_the_teeth():
         for case in (with_play, without)
     ]
     np.testing.assert_allclose(*(r - r.mean() for r in rotations), rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("first", ["wheel", "sun"])
+def test_the_cycle_of_a_carrier_that_drives_is_that_of_its_planets(first):
+    """A pitch of the held ring, whatever gear of another pitch the file names before the set."""
+    data = shipped("planetary/four_planets").to_dict()
+    data["operating"] |= {"input": "carrier", "output": "wheel", "torque": "100 N*m"}
+    wheel = {"base_radius": "50 mm", "teeth": 77, "centre": ["0 mm", "0 mm"]}
+    gears = {"wheel": wheel, **data["gears"]}
+    data["gears"] = {first: gears[first]} | gears
+    data["shafts"] = {"sun-wheel": {"stiffness": "rigid"}}
+    train = build_train(ls.Case(data))
+    assert train.turning.whole == pytest.approx(2.0 * math.pi / data["gears"]["ring"]["teeth"])

@@ -7,7 +7,7 @@ leads, the walk begins again. All senses that it found are turned to those of th
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from loadshare.case.power_flow import on_one_shaft
@@ -115,10 +115,29 @@ def settle(
     if planetary and not conflicts:
         try:
             turning = _as_shafts_turn(settled, shafts)
-            return Kinematics(*members(turning, meshes, shafts, first))
+            turned, determined = members(turning, meshes, shafts, first)
+            way = _on_the_way(turned, (*meshes.values(), *shafts.values()), first)
+            return Kinematics({name: turned[name] for name in way}, determined)
         except ValueError as error:
             conflicts.append(Conflict("operating.input", str(error)))
     return Kinematics(settled, conflicts=tuple(conflicts))
+
+
+def _on_the_way(
+    gears: Mapping[str, Gear], links: Collection[tuple[str, str]], first: str
+) -> list[str]:
+    """Names in the order in which meshes and shafts lead to them, or else pins of carriers."""
+    pins = [{gear.carrier, name} for name, gear in gears.items() if gear.carrier is not None]
+    way = [first]
+    for here in way:
+        for ends in links:
+            way += [name for name in ends if here in ends and name not in way]
+        if here == way[-1]:
+            left = [name for name in gears if name not in way]
+            way += sorted(left, key=lambda n: not any(n in pin and pin & {*way} for pin in pins))[
+                :1
+            ]
+    return way
 
 
 def _as_shafts_turn(
