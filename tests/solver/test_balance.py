@@ -11,6 +11,7 @@ from tests.support import round_ring, shipped
 
 import loadshare as ls
 from benchmarks.random_trains.draw import draw
+from loadshare.contact import ContactProblem
 from loadshare.contact.runaway import runaway
 from loadshare.errors import Refused
 from loadshare.job import machine
@@ -81,3 +82,46 @@ def test_what_would_balance_a_differential_has_the_sign_of_its_key():
     wrong = case.replace({"operating.external.right": "-480 N*m"})
     with pytest.raises(Refused, match=r'external\.right = "-500 N\*m"'):
         ls.solve(wrong)
+    third = case.replace({"operating.torque": f"{1000 / 3!r} N*m"})
+    with pytest.raises(Refused, match=r'external\.right = "([-\d.]+ N\*m)"') as caught:
+        ls.solve(third)
+    told = re.search(r'external\.right = "(.*?)"', str(caught.value))
+    assert told is not None
+    assert ls.solve(third.replace({"operating.external.right": told[1]})).passed
+
+
+def test_a_soft_spring_beside_stiff_ones_holds():
+    """A shaft of twelve decades less than what it leads to, and the same without it."""
+    for soft, held in ((1.0, True), (0.0, False)):
+        stiffness = np.array([[soft, -soft, 0.0], [-soft, soft + 1e11, 1e11], [0.0, 1e11, 2e11]])
+        problem = ContactProblem(("x", "y", "z"), stiffness, np.array([1.0, 0.0, 0.0]))
+        assert runaway(problem) == ({} if held else {"x": 1.0})
+
+
+def freed(gear: str) -> ls.Case:
+    """A pinion, an idler and a ring that is not about the pinion, of which one is free."""
+    places = {"a": ("0, 0", 0.6), "b": ("1.525, 1.328", 1.37), "c": ("-0.1, -0.642", 3.68)}
+    gears: dict[str, dict[str, object]] = {
+        name: {"centre": [f"{x} m" for x in centre.split(", ")], "base_radius": f"{r} m"}
+        for name, (centre, r) in places.items()
+    }
+    gears["c"]["type"] = "internal"
+    gears[gear]["support"] = "free"
+    meshes = {m: {"stiffness": "1e6 N*m/rad"} for m in ("a-b", "b-c")}
+    operating = {"input": "a", "output": "c", "torque": "10 N*m"}
+    return ls.Case(gears=gears, meshes=meshes, operating=operating)
+
+
+@pytest.mark.parametrize(("gear", "stops"), [("b", True), ("c", False)])
+def test_a_backlash_is_asked_for_where_it_stops_what_moves(gear, stops):
+    """Pinion and ring hold an idler between their flanks; an idler pushes a ring away with all."""
+    case = freed(gear)
+    with pytest.raises(Refused, match=f"nothing limits the float of gear {gear}") as caught:
+        ls.solve(case)
+    assert ("a backlash: " in str(caught.value)) == stops
+    both = case.replace({f'meshes."{m}".backlash': "1 um" for m in case.meshes})
+    if stops:
+        assert ls.solve(both).passed
+    else:
+        with pytest.raises(Refused, match=f"nothing limits the float of gear {gear}"):
+            ls.solve(both)

@@ -26,12 +26,11 @@ def runaway(problem: ContactProblem) -> dict[str, float]:
     """
     from scipy.optimize import linprog
 
-    stiffest = float(np.abs(problem.stiffness).max(initial=0.0)) or 1.0
     strengths = {r.name: r.at_rest.strength if r.at_rest else math.inf for r in problem.radials}
     rubbing = [r for r in problem.radials if strengths[r.name] < math.inf]
     held = np.vstack(
         [
-            problem.stiffness / stiffest,
+            _resisted(problem.stiffness),
             *(r.matrix for r in problem.radials if strengths[r.name] == math.inf),
         ]
     )
@@ -60,6 +59,22 @@ def runaway(problem: ContactProblem) -> dict[str, float]:
     moving = np.flatnonzero(np.abs(move) > PLACES.named).tolist()
     moving.sort(key=lambda k: -float(work[k]))
     return {problem.coordinates[k]: float(move[k]) for k in moving}
+
+
+def _resisted(stiffness: Array) -> Array:
+    """Rows (k, n), largest entry 1, that vanish along the moves that no spring resists.
+
+    Those of elimination with the largest part of a diagonal left as pivot: beside the stiffest
+    spring, the softest one has a row as good.
+    """
+    left, rows = stiffness.copy(), [np.zeros(len(stiffness))]
+    alone = np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), math.inf)
+    while np.any(np.diag(left) > PLACES.resists * alone):
+        pivot = np.argmax(np.diag(left) / alone)
+        row = left[pivot]
+        rows.append(row / np.abs(row).max())
+        left = left - np.outer(row, row) / row[pivot]
+    return np.array(rows)
 
 
 def _facets() -> Array:

@@ -9,7 +9,7 @@ power-cone programme; then it is refused with figures.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
@@ -187,7 +187,7 @@ def _refuse_if_driven(scene: Scene) -> None:
             hint = hint or _still_output(scene) or "hold one (held = true) or give it a torque"
             also = f"; gears {named} turn together: {hint}"
         closing = _other_flanks(scene, moves)
-        if closing:
+        if closing and not runaway(_with_backlash(scene, closing)):
             named = f"{', '.join(closing[:_NAMED])}{', …' if len(closing) > _NAMED else ''}"
             one = f"mesh {named} a backlash: its other flank"
             more = f"meshes {named} a backlash: their other flanks"
@@ -227,18 +227,23 @@ def _balancing_torque(scene: Scene, moves: Mapping[str, float]) -> str:
             sign = -1.0 if scene.train.gears[name].ratio < 0.0 else 1.0
             return (
                 f"their torques do not cancel, as they would with operating.external.{name} = "
-                f'"{sign * needed:.8g} N*m"'
+                f'"{sign * needed:.15g} N*m"'
             )
     return ""
 
 
 def _balancing_with_backlash(scene: Scene) -> str:
     """Say the same with both flanks: a torque of the wrong sense presses the wrong ones."""
-    train = scene.train
-    meshes = {n: m if m.flanks[1:] else replace(m, backlash=0.0) for n, m in train.meshes.items()}
-    both = assemble(replace(train, meshes=meshes), scene.position) if train.external else None
+    both = _with_backlash(scene, scene.train.meshes) if scene.train.external else None
     moves = runaway(both) if both is not None else {}
     return _balancing_torque(both, moves) if both is not None and moves else ""
+
+
+def _with_backlash(scene: Scene, names: Iterable[str]) -> Scene:
+    """Return the scene with both flanks of the meshes named."""
+    meshes = dict(scene.train.meshes)
+    meshes |= {n: replace(m, backlash=0.0) for n in names if not (m := meshes[n]).flanks[1:]}
+    return assemble(replace(scene.train, meshes=meshes), scene.position)
 
 
 def _still_output(scene: Scene) -> str:

@@ -41,6 +41,9 @@ class Places(NamedTuple):
     yields: float = 1e-7
     """Part of a move, over that work, that elements may still seem to resist: forces that balance
     the load in spite of it would be ten million times as large."""
+    resists: float = 1e-13
+    """Stiffness of a coordinate, over its own, that is left where the others may move freely, from
+    which on a spring resists: less is round-off."""
     overlap: float = 1e-12
     """Overlap, over the lengths at hand, that counts as round-off."""
     named: float = 1e-6
