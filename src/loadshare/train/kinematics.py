@@ -132,11 +132,9 @@ def _on_the_way(
     for here in way:
         for ends in links:
             way += [name for name in ends if here in ends and name not in way]
-        if here == way[-1]:
-            left = [name for name in gears if name not in way]
-            way += sorted(left, key=lambda n: not any(n in pin and pin & {*way} for pin in pins))[
-                :1
-            ]
+        left = [name for name in gears if name not in way] if here == way[-1] else []
+        if left:
+            way.append(min(left, key=lambda n: not any(n in pin and pin & {*way} for pin in pins)))
     return way
 
 
