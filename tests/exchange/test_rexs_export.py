@@ -199,6 +199,10 @@ def test_a_case_without_all_gears_of_the_unit_is_refused(written) -> None:
     result = ls.solve(written(text.encode(), "unit.toml"))
     with pytest.raises(ls.CaseError, match="gear_247: is not in the case: gears must be named"):
         export_rexs(result, unit)
+    case, copy = unit.with_name("unit.toml"), unit.with_name("copy.rexs")
+    done = on_a_screen_of(200)("export", case, unit, "-o", copy)
+    assert done.exit_code == 2
+    assert done.stderr.endswith("nothing was written.\n")
 
 
 def test_a_mesh_is_found_by_its_gears_and_without_a_stage_has_no_factor(written) -> None:

@@ -74,7 +74,7 @@ def export(
     if to.suffix and to.suffix.lower() != unit.suffix.lower():
         message = f"{to}: it will be what {unit.name} is; give it that ending, {unit.suffix}"
         raise typer.BadParameter(message, param_hint="--output")
-    with reporting_problems():
+    with reporting_problems("written"):
         loaded = open_case(case, change)
         try:
             copy = in_form_of(unit, export_rexs(solve(loaded), unit))

@@ -54,12 +54,12 @@ def fail_of(problems: Iterable[Problem], more: str) -> NoReturn:
 
 
 @contextmanager
-def reporting_problems() -> Iterator[None]:
-    """Turn an invalid case into its list of problems, one per line and their count last."""
+def reporting_problems(done: str = "solved") -> Iterator[None]:
+    """Turn problems into a list, one per line, and last their count and what was not done."""
     try:
         yield
     except CaseError as error:
-        fail_of(error.problems, "; nothing was solved.")
+        fail_of(error.problems, f"; nothing was {done}.")
 
 
 @contextmanager

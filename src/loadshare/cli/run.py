@@ -189,7 +189,7 @@ def _write(
 def _tables(result: Result) -> dict[str, pd.DataFrame]:
     from loadshare.exchange.spreadsheet import export_frames
 
-    with reporting_problems():
+    with reporting_problems("written"):
         return export_frames(result)
 
 
