@@ -68,6 +68,15 @@ def test_a_name_of_wide_letters_may_be_as_long_as_the_file_system_has_it(tmp_pat
     assert [one.name for one in tmp_path.iterdir()] == [file.name]
 
 
+def test_a_name_of_a_file_commands_no_terminal(tmp_path):
+    case = tmp_path / "red \x1b[31m.toml"
+    case.write_text(ls.load_case(CASE).to_toml(), encoding="utf-8")
+    for name, words in ((case, ("-o", tmp_path / "\x1b]0;.json")), (tmp_path / "\x1bc.toml", ())):
+        done = call("run", name, *words)
+        assert "\ufffd" in done.output
+        assert "\x1b" not in done.output
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are texts there")
 def test_a_case_whose_name_is_no_text_is_solved_and_written_with_question_marks(
     tmp_path, monkeypatch

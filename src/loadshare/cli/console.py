@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from loadshare.cli.files import is_stdout_taken
 from loadshare.cli.waiting import echo, is_hushed, speak
+from loadshare.readable import readable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -82,7 +83,8 @@ def say(*parts: object, style: str | None = None, whole: bool = False) -> None:
     """Print an answer; `whole` leaves its lines to be broken by the terminal, as paths need."""
     if is_hushed():
         return
-    console().print(*parts, style=style, soft_wrap=whole)
+    shown = (readable(part) if isinstance(part, str) else part for part in parts)
+    console().print(*shown, style=style, soft_wrap=whole)
 
 
 def say_all(lines: Iterable[str], *, whole: bool = False) -> None:

@@ -14,6 +14,8 @@ from contextvars import ContextVar
 
 import typer
 
+from loadshare.readable import readable
+
 LINE = "Loading libraries …"
 DELAY = 0.4
 """Time after which it is shown [s]; what is quicker than that shows nothing."""
@@ -68,9 +70,9 @@ def speak() -> None:
 
 
 def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
-    """Print a line to stdout or stderr."""
+    """Print a line to stdout or stderr; names of files in it command no terminal."""
     speak()
-    typer.echo(text, err=err, nl=nl)
+    typer.echo(readable(text), err=err, nl=nl)
 
 
 _hushed: ContextVar[bool] = ContextVar("hushed", default=False)
