@@ -46,16 +46,33 @@ def test_a_pin_yields_as_the_matrix_of_its_stiffnesses():
         assert place == pytest.approx(other.displacement[gear], abs=1e-15)
 
 
-def test_stiffnesses_of_a_pin_vary_from_sample_to_sample():
+@pytest.mark.parametrize("ways", [PIN, ["radial"], ["tangential"]], ids=", ".join)
+def test_stiffnesses_of_a_pin_vary_from_sample_to_sample(ways):
     case = shipped("planetary/four_planets").replace({"gears.planet1.support": PIN})
-    samples = {f"gears.planet1.support.{way} [N/m]": [1e9, 2e8] for way in PIN}
-    found = ls.solve_many(case, samples)
+    found = ls.solve_many(case, {f"gears.planet1.support.{w} [N/m]": [1e9, 2e8] for w in ways})
     for k, stiffness in enumerate(("1e9 N/m", "2e8 N/m")):
-        alone = case.replace({f"gears.planet1.support.{way}": stiffness for way in PIN})
-        alike = case.replace({"gears.planet1.support": stiffness})
-        for one in (alone, alike):
-            torque = [*ls.solve(one).positions[0].torque.values()]
-            assert found.torque.values[k, 0] == pytest.approx(torque, rel=1e-12)
+        alone = case.replace({f"gears.planet1.support.{way}": stiffness for way in ways})
+        torque = [*ls.solve(alone).positions[0].torque.values()]
+        assert found.torque.values[k, 0] == pytest.approx(torque, rel=1e-12)
+
+
+def test_a_pin_as_stiff_both_ways_is_one_stiffness():
+    case = shipped("planetary/four_planets")
+    alike = case.replace({"gears.planet1.support": dict.fromkeys(PIN, "1e9 N/m")})
+    for one, other in zip(ls.solve(alike).positions, ls.solve(case).positions, strict=True):
+        assert one.torque == pytest.approx(other.torque, rel=1e-12)
+
+
+def test_studies_vary_a_pin():
+    case = shipped("planetary/four_planets").replace({"gears.planet1.support": PIN})
+    key = "gears.planet1.support.tangential"
+    rate = ls.sensitivity(case, key).rates[1, key, "rising"].torque["sun-planet1"]
+    ends = [
+        ls.solve(case.replace({key: f"{k!r} N/m"})).positions[0].torque for k in (39.9e7, 40.1e7)
+    ]
+    slope = (ends[1]["sun-planet1"] - ends[0]["sun-planet1"]) / 2e6
+    assert rate == pytest.approx(slope, rel=1e-4)
+    assert not ls.critical(case, key, "1e8 N/m", "1e10 N/m").events
 
 
 def test_only_planets_have_a_pin():

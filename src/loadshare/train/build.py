@@ -163,7 +163,8 @@ def _supported(case: spec.Case, gears: Mapping[str, Gear], name: str) -> Gear:
         return replace(gear, support=np.zeros(2) if given == "free" else None)
     if isinstance(given, spec.PinSupport):
         outwards = gear.frame @ (gear.centre - gears[str(gear.carrier)].centre)
-        stiffness = np.stack([given.radial.si, given.tangential.si], axis=-1)
+        both = np.broadcast_arrays(given.radial.si, given.tangential.si)
+        stiffness = np.stack(both, axis=-1)
         return _seen_along(gear, math.atan2(outwards[1], outwards[0]), stiffness)
     rows = given if isinstance(given, tuple) else (given, given)
     if alike := [k.si for k in rows if isinstance(k, spec.Quantity)]:
