@@ -311,3 +311,20 @@ def test_the_cycle_of_a_carrier_that_drives_is_that_of_its_planets(first):
     data["shafts"] = {"sun-wheel": {"stiffness": "rigid"}}
     train = build_train(ls.Case(data))
     assert train.turning.whole == pytest.approx(2.0 * math.pi / data["gears"]["ring"]["teeth"])
+
+
+@pytest.mark.parametrize("links", [("input-p", "input-q"), ("input-q", "input-p")])
+def test_of_two_gears_as_near_to_the_input_the_first_by_name_gives_the_cycle(links):
+    """Whichever of the two, here on shafts of an input without teeth, the file puts first."""
+    gears: dict[str, Any] = {"input": {"type": "carrier", "centre": ["0 mm", "0 mm"]}}
+    for name, teeth, partner in (("q", 31, "b"), ("p", 20, "a")):
+        gears[name] = {"module": "2 mm", "teeth": teeth, "centre": ["0 mm", "0 mm"]}
+        angle = {"about": name, "angle": "0 deg"}
+        gears[partner] = {"module": "2 mm", "teeth": 71 - teeth, "centre": angle}
+    case = ls.Case(
+        operating={"input": "input", "output": "a", "torque": "9 N*m", "external": {"b": "1 N*m"}},
+        gears=gears,
+        meshes={name: {"stiffness": "1e5 N*m/rad"} for name in ("p-a", "q-b")},
+        shafts={name: {"stiffness": "rigid"} for name in links},
+    )
+    assert build_train(case).cycle == "p"

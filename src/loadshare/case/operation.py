@@ -69,9 +69,9 @@ class Operating(Element):
     rotation: Literal["teeth", "neglected"] = "teeth"
     """How far gears turn over a mesh cycle: by their `teeth`, or not at all.
 
-    One cycle is one tooth of the input gear or, if its tooth number is unknown, of the first gear
-    on the way from it whose number is known. If neglected, eccentricities keep their direction of
-    the first position. A march turns the gears in any case.
+    One cycle is one tooth of the input gear or, if its tooth number is unknown, of the gear nearest
+    to it whose number is known (of several, that whose name comes first). If neglected,
+    eccentricities keep their direction of the first position. A march turns the gears in any case.
     """
 
     external: dict[str, Torque] = Field(default_factory=dict)

@@ -50,6 +50,27 @@ def on_one_shaft(gears: Iterable[str], shafts: Iterable[tuple[str, str]]) -> lis
     return [tuple(sorted(group, key=order.__getitem__)) for group in groups.values()]
 
 
+def nearest_first(
+    carriers: Mapping[str, str | None], links: Iterable[tuple[str, str]], first: str
+) -> list[str]:
+    """Return all gears, those nearer to one first, and as near by name, however they are written.
+
+    Over meshes and shafts, and over pins from gears to their carriers.
+    """
+    beside: dict[str, set[str]] = {name: set() for name in carriers}
+    pins = [(name, carrier) for name, carrier in carriers.items() if carrier]
+    for one, other in (*links, *pins):
+        beside[one].add(other)
+        beside[other].add(one)
+    found: dict[str, None] = {}
+    for start in (first, *sorted(carriers)):
+        level = {start} - found.keys()
+        while level:
+            found |= dict.fromkeys(sorted(level))
+            level = {name for here in level for name in beside[here]} - found.keys()
+    return list(found)
+
+
 def reach(sources: Iterable[str], taken: Steps, avoiding: str | None = None) -> set[str]:
     """Return the gears that steps lead to, the sources among them, through all gears but one."""
     ahead: dict[str, list[str]] = {}

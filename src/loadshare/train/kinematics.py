@@ -7,10 +7,10 @@ leads, the walk begins again. All senses that it found are turned to those of th
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from loadshare.case.power_flow import on_one_shaft
+from loadshare.case.power_flow import nearest_first, on_one_shaft
 from loadshare.train.gear import Gear
 from loadshare.train.mesh import MeshGeometryError, contact_of
 from loadshare.train.planetary import members
@@ -112,30 +112,17 @@ def settle(
                     queue.append(found.name)
                 elif not planetary:
                     conflicts += _compare(key, known, found)
+    carriers = {name: gear.carrier for name, gear in gears.items()}
+    way = nearest_first(carriers, (*meshes.values(), *shafts.values()), first)
     if planetary and not conflicts:
         try:
             turning = _as_shafts_turn(settled, shafts)
             turned, determined = members(turning, meshes, shafts, first)
-            way = _on_the_way(turned, (*meshes.values(), *shafts.values()), first)
             return Kinematics({name: turned[name] for name in way}, determined)
         except ValueError as error:
             conflicts.append(Conflict("operating.input", str(error)))
-    return Kinematics(settled, conflicts=tuple(conflicts))
-
-
-def _on_the_way(
-    gears: Mapping[str, Gear], links: Collection[tuple[str, str]], first: str
-) -> list[str]:
-    """Names in the order in which meshes and shafts lead to them, or else pins of carriers."""
-    pins = [{gear.carrier, name} for name, gear in gears.items() if gear.carrier is not None]
-    way = [first]
-    for here in way:
-        for ends in links:
-            way += [name for name in ends if here in ends and name not in way]
-        left = [name for name in gears if name not in way] if here == way[-1] else []
-        if left:
-            way.append(min(left, key=lambda n: not any(n in pin and pin & {*way} for pin in pins)))
-    return way
+    in_order = {name: settled[name] for name in way if name in settled}
+    return Kinematics(in_order, conflicts=tuple(conflicts))
 
 
 def _as_shafts_turn(

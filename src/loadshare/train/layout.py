@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loadshare import case as spec
+from loadshare.case.power_flow import nearest_first
 from loadshare.errors import CaseError, Problem
 from loadshare.train.gear import Gear
 from loadshare.train.phases import MEETS, Meeting, Misfit, is_whole, phases
@@ -39,7 +39,10 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
         )
         for name, p in pairs.items()
     }
-    found, misfits = phases(meetings, _from_the_input(case))
+    links = [mesh.ends for mesh in case.meshes.values()]
+    links += [shaft.ends for shaft in case.shafts.values()]
+    carriers = {name: gear.carrier for name, gear in case.gears.items()}
+    found, misfits = phases(meetings, nearest_first(carriers, links, case.operating.input))
     problems = [
         _misfit_problem(case, pairs, m)
         for m in misfits
@@ -85,29 +88,6 @@ def _halves(case: spec.Case, pair: Pair, pairs: Mapping[str, Pair]) -> tuple[flo
         for end in (pair.driver, pair.driven)
     )
     return first, second
-
-
-def _from_the_input(case: spec.Case) -> list[str]:
-    """All gears, those that are nearer to the input first, whatever order the case is written in.
-
-    Over meshes, shafts, and the pins of carriers.
-    """
-    beside: dict[str, set[str]] = {name: set() for name in case.gears}
-    pins = [(name, gear.carrier) for name, gear in case.gears.items() if gear.carrier]
-    meshes = [mesh.ends for mesh in case.meshes.values()]
-    shafts = [shaft.ends for shaft in case.shafts.values()]
-    for one, other in (*meshes, *shafts, *pins):
-        beside[one].add(other)
-        beside[other].add(one)
-    found: dict[str, None] = {}
-    for start in (case.operating.input, *sorted(case.gears)):
-        queue = deque([start])
-        while queue:
-            here = queue.popleft()
-            if here not in found:
-                found[here] = None
-                queue += sorted(beside[here])
-    return list(found)
 
 
 def _twists(case: spec.Case, driver: Gear, driven: Gear) -> tuple[float, float]:

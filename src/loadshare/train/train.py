@@ -165,8 +165,8 @@ class Train:
     def cycle(self) -> str | None:
         """Gear one tooth of which is a mesh cycle; None if gears do not rotate over the cycle.
 
-        The input gear, or else the first on the way from it whose teeth are known. In a march it
-        decides nothing.
+        The input gear, or else the nearest to it whose teeth are known. In a march it decides
+        nothing.
         """
         return cycle_gear(self.gears) if self.rotating else None
 

@@ -65,7 +65,6 @@ def turning_of(
 def cycle_gear(gears: Mapping[str, Gear]) -> str | None:
     """Return the gear one tooth of which is a mesh cycle.
 
-    The input gear, or else the first on the way from it whose teeth are known; None if there is
-    none.
+    The input gear, or else the nearest to it whose teeth are known; None if there is none.
     """
     return next((n for n, g in gears.items() if g.teeth is not None and g.relative), None)
