@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from tests.support import shipped
 
 import loadshare as ls
 
@@ -48,6 +49,17 @@ def test_a_differential_halves_the_torque():
     assert sum(meshes[f"right-second{k}"] for k in (1, 2, 3)) == pytest.approx(500.0, rel=1e-12)
     first = sum(meshes[f"first{k}-left"] for k in (1, 2, 3))
     assert first == pytest.approx(500.0 * 16.0 / 21.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("first", ["right", "first"])
+def test_flanks_that_go_round_with_a_carrier_hang_on_no_order(first):
+    """Where nothing rolls, no speed tells which flank is the drive flank."""
+    case = shipped("planetary/differential")
+    gears = case.to_dict()["gears"]
+    before = [name for name in gears if name.startswith(first)]
+    other = ls.Case(case.to_dict() | {"gears": {name: gears[name] for name in before} | gears})
+    found = ls.solve(other).positions[0].torque
+    assert found == pytest.approx(ls.solve(case).positions[0].torque, rel=1e-12)
 
 
 @pytest.mark.parametrize("sun", ["left", "right"])

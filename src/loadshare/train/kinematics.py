@@ -61,6 +61,9 @@ def settle(
     first : str
         The input gear.
     """
+    carriers = {name: gear.carrier for name, gear in gears.items()}
+    way = nearest_first(carriers, (*meshes.values(), *shafts.values()), first)
+    starts = sorted(way, key=lambda name: carriers[name] is not None)
     planetary = any(gear.kind == "carrier" or gear.held for gear in gears.values())
     settled = {first: gears[first]}
     conflicts: list[Conflict] = []
@@ -97,8 +100,10 @@ def settle(
     queue = deque([first])
     while queue or (planetary and len(settled) < len(gears)):
         if not queue:
-            seed = next(name for name in gears if name not in settled)
-            settled[seed] = gears[seed]
+            # What goes round with a carrier as one piece keeps this sense: that of the input.
+            seed = next(name for name in starts if name not in settled)
+            along = 1 if gears[seed].axis @ gears[first].axis > -1e-9 else -1
+            settled[seed] = replace(gears[seed], sense=along * gears[first].sense)
             queue.append(seed)
         here = queue.popleft()
         for name, ends, key, partner in links:
@@ -112,8 +117,6 @@ def settle(
                     queue.append(found.name)
                 elif not planetary:
                     conflicts += _compare(key, known, found)
-    carriers = {name: gear.carrier for name, gear in gears.items()}
-    way = nearest_first(carriers, (*meshes.values(), *shafts.values()), first)
     if planetary and not conflicts:
         try:
             turning = _as_shafts_turn(settled, shafts)
