@@ -251,7 +251,7 @@ def test_an_output_that_stands_still_as_the_input_turns_is_named(command, tmp_pa
     result = command("run", neutral)
     assert result.exit_code == 1
     assert (
-        "gears in, wheel, carrier, pinion, back, … turn together: gear out, the output, stands "
+        "gears in, carrier, wheel, pinion, planet1, … turn together: gear out, the output, stands "
         "still as gear in turns (a geared neutral), so no torque on it balances that of the input"
     ) in result.stderr
 
