@@ -631,3 +631,28 @@ def test_a_set_that_cannot_act_is_tried_without_a_warning() -> None:
         "splines.planet5.bending_stiffness",
     )
     assert len(found.inputs) == 1
+
+
+@pytest.mark.parametrize("key", ['meshes."in-wheelA".table.deflection[2]', "rings.4.float"])
+def test_a_value_below_all_steps_of_its_kind_has_both_sides(key):
+    """Steps in proportion to 1e-4 rad or 1 um would pass the next value of a table, or zero."""
+    if key == "rings.4.float":
+        case, value, unit = shipped("fgfbstts/limit_ring").replace({key: "1e-9 m"}), 1e-9, "m"
+    else:
+        table = {
+            "torque": [f"{t} N*m" for t in (50, 100, 300, 400)],
+            "deflection": [f"{d}e-8 rad" for d in (1, 3, 6, 8)],
+        }
+        case = shipped("two_path/clocking_error").replace(
+            {'meshes."in-wheelA"': {"pressure_angle": "20 deg", "table": table}}
+        )
+        value, unit = 6e-8, "rad"
+    found = ls.sensitivity(case, [key], positions=[1])
+    low, high = (
+        ls.solve(case.replace({key: f"{value * by!r} {unit}"})).positions[0].torque
+        for by in (0.8, 1.2)
+    )
+    for side in SIDES:
+        rates = found.rates[1, key, side]
+        slopes = {mesh: (high[mesh] - low[mesh]) / (0.4 * value) for mesh in low}
+        assert rates.torque == pytest.approx(slopes, rel=1e-2, abs=1e-3 * max(slopes.values()))

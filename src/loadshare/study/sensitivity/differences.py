@@ -39,7 +39,7 @@ LEAST = {
     "rad/(N*m)": 1e-12,
     "rad/(N*m)^(2/3)": 1e-11,
 }
-"""Least step of every kind of input, in its SI unit: for inputs that are zero."""
+"""Least step of every kind of input, in its SI unit, where the input has room for it."""
 # Weights of f(0), f(h), f(2h), f(4h) times 1/h: the forward difference of third order and, without
 # the last point, of second order.
 _FORWARD = np.array([-21.0, 32.0, -12.0, 1.0]) / 12.0
@@ -158,8 +158,10 @@ def _relative(found: Derivative) -> float:
 def _differentiated(of: Function, value: Value, rounding: Array, usual: float) -> Derivative:
     here: Array | None = None
     sides: dict[int, tuple[Points, float] | Exception] = {}
-    for share in SENSITIVITY.shorter:
-        h = usual * share
+    # A value far below the least step of its kind may have no room but its own.
+    own = SENSITIVITY.step * abs(value.number)
+    shorter = [usual * share for share in SENSITIVITY.shorter]
+    for h in (*shorter, own) if 0.0 < own < shorter[-1] else shorter:
         left = [sign for sign in (-1, 1) if not isinstance(sides.get(sign), tuple)]
         if not left:
             break
