@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -193,6 +193,16 @@ def waiting(browser: Any, seconds: float) -> Any:
     from selenium.webdriver.support.ui import WebDriverWait
 
     return WebDriverWait(browser, seconds, 0.02)
+
+
+def steady(browser: Any, look: Callable[[Any], Any]) -> Any:
+    """Return what a look at the page finds; again if anything is drawn anew meanwhile."""
+    from selenium.common.exceptions import StaleElementReferenceException
+
+    for _ in range(20):
+        with suppress(StaleElementReferenceException):
+            return look(browser)
+    return look(browser)
 
 
 def on_screen(browser: Any, width: int, height: int = 900, dark: bool = False) -> None:

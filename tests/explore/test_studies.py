@@ -14,7 +14,7 @@ import pytest
 from selenium.common.exceptions import TimeoutException
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
-from tests.chromium import badly_set, waiting
+from tests.chromium import badly_set, steady, waiting
 from tests.explore.asking import ask
 from tests.explore.conftest import SEED
 from tests.explore.walks import opened, settled, whole
@@ -277,16 +277,23 @@ def test_ticks_trace_and_a_study_on_the_page(browser, seed):
         end.send_keys(value, Keys.ENTER)
     buttons = browser.find_elements(By.CSS_SELECTOR, ".control[data-name] .row button")
     buttons[0].click()
-    ticks = waiting(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, ".ticks button"))
-    assert any("gear 5 leaves its ring" in one.get_attribute("aria-label") for one in ticks)
+    tick = By.CSS_SELECTOR, ".ticks button"
+    waiting(browser, 120).until(lambda b: b.find_elements(*tick))
+    # Further stretches of the slider draw them anew.
+    labels = steady(
+        browser, lambda b: [one.get_attribute("aria-label") for one in b.find_elements(*tick)]
+    )
+    assert any("gear 5 leaves its ring" in label for label in labels)
     buttons[1].click()
     waiting(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trace svg"))
-    ticks[0].send_keys(Keys.ENTER)
+    steady(browser, lambda b: b.find_element(*tick).send_keys(Keys.ENTER))
     says = settled(browser)
     assert says["fields"]["rings.*.float"].startswith("2.976")
     assert browser.find_elements(By.CSS_SELECTOR, "#trace svg .here")
-    for picture in browser.find_elements(By.CSS_SELECTOR, "figure:not([hidden]) > svg"):
-        assert badly_set(browser, picture) == []
+    drawn = By.CSS_SELECTOR, "figure:not([hidden]) > svg"
+    bad = steady(browser, lambda b: [badly_set(b, picture) for picture in b.find_elements(*drawn)])
+    assert bad
+    assert not any(bad)
     assert browser.get_log("browser") == []
 
 

@@ -89,10 +89,9 @@ def settle(
     def shaft_partner(name: str, here: str) -> Iterator[Gear]:
         """Settle the gear at the other end of a shaft; opposed axes reverse the sense."""
         a, b = shafts[name]
-        other = b if here == a else a
-        turned = -1 if settled[here].axis @ gears[other].axis < -1e-9 else 1
-        sense, ratio = settled[here].sense * turned, settled[here].ratio
-        yield replace(gears[other], sense=sense, ratio=ratio, relative=ratio)
+        other = gears[b if here == a else a]
+        sense, ratio = _sense_of(other, settled[here]), settled[here].ratio
+        yield replace(other, sense=sense, ratio=ratio, relative=ratio)
 
     links = [(n, e, f'meshes."{n}"', mesh_partner) for n, e in meshes.items()]
     links += [(n, e, f'shafts."{n}"', shaft_partner) for n, e in shafts.items()]
@@ -101,10 +100,9 @@ def settle(
     while queue or (planetary and len(settled) < len(gears)):
         if not queue:
             # What goes round with a carrier as one piece keeps this sense: that of the input.
-            seed = next(name for name in starts if name not in settled)
-            along = 1 if gears[seed].axis @ gears[first].axis > -1e-9 else -1
-            settled[seed] = replace(gears[seed], sense=along * gears[first].sense)
-            queue.append(seed)
+            start = next(name for name in starts if name not in settled)
+            settled[start] = replace(gears[start], sense=_sense_of(gears[start], gears[first]))
+            queue.append(start)
         here = queue.popleft()
         for name, ends, key, partner in links:
             if here not in ends or key in walked:
@@ -128,6 +126,11 @@ def settle(
     return Kinematics(in_order, conflicts=tuple(conflicts))
 
 
+def _sense_of(gear: Gear, other: Gear) -> int:
+    """Sense of a gear that turns as another does: of opposed axes, the other one."""
+    return -other.sense if gear.axis @ other.axis < -1e-9 else other.sense
+
+
 def _as_shafts_turn(
     gears: Mapping[str, Gear], shafts: Mapping[str, tuple[str, str]]
 ) -> dict[str, Gear]:
@@ -139,8 +142,7 @@ def _as_shafts_turn(
     found = dict(gears)
     for first, *others in on_one_shaft(gears, shafts.values()):
         for other in others:
-            along = 1 if gears[other].axis @ gears[first].axis > 0.0 else -1
-            found[other] = replace(gears[other], sense=along * gears[first].sense)
+            found[other] = replace(gears[other], sense=_sense_of(gears[other], gears[first]))
     return found
 
 

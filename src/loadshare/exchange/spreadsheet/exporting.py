@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from io import BytesIO
 from itertools import chain
@@ -25,14 +24,13 @@ from loadshare.exchange.spreadsheet.importing import ABOUT, ALONE, sheet_names
 from loadshare.exchange.spreadsheet.sheet import FOUND
 from loadshare.libraries import pd
 from loadshare.output import clear, csv_of, without_formulas, write_together
+from loadshare.readable import CONTROL
 
 if TYPE_CHECKING:
     from loadshare.results import Result
 
 LONGEST = 32767
 """Characters of a text in a cell of a workbook."""
-UNFIT = re.compile("[\x00-\x08\x0b-\x1f\ufffe\uffff\ud800-\udfff]")
-"""Characters that XML does not hold, or not as they are."""
 
 
 def export_tables(result: Result) -> dict[str, str]:
@@ -105,7 +103,7 @@ def _rows(table: pd.DataFrame) -> Iterator[Sequence[Any]]:
 def _check_fit(sheet: str, row: Sequence[Any]) -> None:
     """Refuse a text that openpyxl would cut, or XML would change."""
     for text in row:
-        if isinstance(text, str) and (len(text) > LONGEST or UNFIT.search(text)):
+        if isinstance(text, str) and (len(text) > LONGEST or "\r" in text or CONTROL.search(text)):
             allowed = f"{LONGEST} characters, none of them a control character"
             why, hint = "no cell of a workbook can hold it", "A table as CSV holds any text."
             where = dotted((sheet, str(row[0])))
