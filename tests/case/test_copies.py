@@ -136,7 +136,7 @@ def test_a_gear_with_the_name_of_a_copy_is_told_apart_from_what_is_said_of_the_c
         data["gears"]["planet2"] = own
         with pytest.raises(CaseError) as caught:
             Case(data)
-        message = "is a gear of its own, and the name of copy 2 of planet"
+        message = "is a gear of its own with the name of copy 2 of planet"
         assert [(p.key, p.message) for p in caught.value.problems] == [("gears.planet2", message)]
     data["gears"]["planet2"] = {"teeth": 36, "centre": {"angle": "131 deg", "height": "1 mm"}}
     gears = Case(data).gears
