@@ -219,7 +219,11 @@ Turns = Annotated[float, Strict(), Field(gt=0, le=ALLOWED.revolutions, allow_inf
 def _readable(text: str) -> str:
     if found := CONTROL.search(text):
         message = f"holds a control character, {found[0]!a}"
-        context = {"message": message, "allowed": "printable characters, line breaks and tabs", "hint": ""}
+        context = {
+            "message": message,
+            "allowed": "printable characters, line breaks and tabs",
+            "hint": "",
+        }
         raise PydanticCustomError("message", "{message}. Allowed: {allowed}. {hint}", context)
     return text
 
