@@ -23,7 +23,7 @@ from benchmarks.machine_facts import facts
 from benchmarks.peers import PEERS
 from benchmarks.peers.form import form_of
 from benchmarks.peers.loop import Failure
-from loadshare.results.share import coefficients, flank_torques, largest, largest_of
+from loadshare.results.share import forces_of, largest_shares, mesh_torques
 from loadshare.scene import assemble
 from loadshare.study.tolerance.result import Tolerance
 from loadshare.train import build_train
@@ -129,7 +129,7 @@ def peer_way(case: ls.Case, found: Tolerance, count: int, ours: float) -> list[t
     positions = found.settings["positions"]
     for sample, values in enumerate(inputs):
         train = build_train(case.replace(found.inputs.changes(values.tolist())))
-        shares = []
+        forces = []
         for index in positions:
             form = form_of(assemble(train, index), like)
             if like is None:
@@ -144,14 +144,11 @@ def peer_way(case: ls.Case, found: Tolerance, count: int, ours: float) -> list[t
                 continue
             finally:
                 spent += time.perf_counter() - start
-            equilibrium = form.equilibrium(claim.x, claim.forces, claim.pulls)
-            flanks = flank_torques(train, equilibrium.flank_force)
-            torque = {name: sum(both) for name, both in flanks.items()}
-            stages = [stage.meshes for stage in train.stages]
-            shares.append(coefficients(torque, stages, largest_of(flanks)))
-        top = largest(shares, train.stages)["system"]
-        if len(shares) == len(positions) and top is not None:
-            apart = max(apart, abs(float(np.subtract(top, omega[sample]))))
+            forces.append(form.equilibrium(claim.x, claim.forces, claim.pulls).flank_force)
+        torques = mesh_torques(train, forces_of(train, forces))
+        top = largest_shares(torques, train.stages)["system"]
+        if len(forces) == len(positions) and not np.isnan(top).all():
+            apart = max(apart, abs(float(np.nanmax(top)) - omega[sample]))
     each = spent / (count * len(positions))
     return [
         ("peer: CVXPY with parameters, samples", f"{count} at tolerance {tolerance:g}"),

@@ -15,7 +15,7 @@ from tests.support import shipped
 import loadshare as ls
 from loadshare.job.ladder import climb_all
 from loadshare.job.machine import Machine
-from loadshare.results.derive import position_of
+from loadshare.results.derive import positions_of
 from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.train import build_train
@@ -119,7 +119,7 @@ def test_even_surroundings_placed_anew_are_those_seen_from_the_carrier() -> None
     for uneven in (False, True):
         machine = Machine(replace(train, uneven=uneven))
         found = list(climb_all(machine, range(1, STEPS + 1), Options(), CERTIFY.tolerance))
-        ways.append([position_of(a.train, a.index, a.flank_force, a) for a in found])
+        ways.append(positions_of([(a.train, a.index, a.flank_force, a) for a in found]))
     for one, other in zip(*ways, strict=True):
         assert one.torque == pytest.approx(other.torque, rel=1e-10)
         size = max(np.hypot(*p) for p in one.displacement.values())

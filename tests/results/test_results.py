@@ -13,8 +13,9 @@ from tests.support import CASES, shipped
 
 import loadshare as ls
 from loadshare.certify import Claims, certified
-from loadshare.results.share import coefficients
+from loadshare.results.share import MeshTorques, shares
 from loadshare.settings import CERTIFY
+from loadshare.train.elements import Stage
 
 NAMES = ("fgfbstts/all_elements", "fgfbstts/limit_ring", "star/floating_sun_4")
 
@@ -135,9 +136,10 @@ def test_a_file_that_holds_no_result_is_refused(tmp_path):
 
 def test_coefficients():
     """Ω is the torque over the mean of its group; a group that carries nothing has none."""
-    torque = {"a": 1.0, "b": 3.0, "c": 0.0, "d": 0.0, "e": 2.0, "f": -2.0 + 1e-15}
-    found = coefficients(torque, [("a", "b"), ("c", "d"), ("e", "f")], largest=3.0)
-    assert found == {"a": 0.5, "b": 1.5, "c": None, "d": None, "e": None, "f": None}
+    net = np.array([[1.0, 3.0, 0.0, 0.0, 2.0, -2.0 + 1e-15]])
+    stages = [Stage(pair, tuple(pair), (tuple(pair),)) for pair in ("ab", "cd", "ef")]
+    found = shares(MeshTorques(tuple("abcdef"), net, np.array([3.0])), stages)
+    np.testing.assert_array_equal(found, [[0.5, 1.5, np.nan, np.nan, np.nan, np.nan]])
 
 
 def test_an_unloaded_train_has_no_coefficients(tmp_path):

@@ -20,7 +20,7 @@ import loadshare as ls
 from benchmarks.limit import limited
 from loadshare.certify import certify
 from loadshare.results.claim import claim_of
-from loadshare.results.derive import position_of, result_from
+from loadshare.results.derive import positions_of, result_from
 from loadshare.results.digest import sealed
 from loadshare.results.document import DOCUMENT, FORMAT, OLDER, as_data
 from loadshare.results.reading import read_document
@@ -258,9 +258,9 @@ def test_a_meaningless_equilibrium_is_refused_on_loading_too(small):
     assert certificate.passed
     p = small.positions[0]
     judged = SimpleNamespace(equilibrium=found, certificate=certificate, effort=p.effort)
-    position = position_of(train, 1, found.flank_force, judged)
+    positions = positions_of([(train, 1, found.flank_force, judged)])
     stamp = replace(small.stamp, case=soft.name, case_hash=soft.hash, positions=(1,))
-    made = result_from(soft, soft, train, [position], lambda: stamp)
+    made = result_from(soft, soft, train, positions, lambda: stamp)
     assert "the displacements are too large for the geometry" in refusal_of(made.to_json())
 
 

@@ -25,7 +25,7 @@ from loadshare.job.hot import HOT, SEARCHED, left_out
 from loadshare.job.ladder import AUTO, climb_all
 from loadshare.job.machine import Machine
 from loadshare.later import known
-from loadshare.results.derive import position_of, result_from
+from loadshare.results.derive import positions_of, result_from
 from loadshare.results.result import Result, Stamp
 from loadshare.scene.units import units_of
 from loadshare.settings import CERTIFY, JOB
@@ -320,7 +320,7 @@ def result_of(
     wanted : sequence of int
         1-based positions that were requested.
     """
-    found = [position_of(a.train, a.index, a.flank_force, a) for a in answers]
+    found = positions_of([(a.train, a.index, a.flank_force, a) for a in answers])
     return result_from(
         case, solved, train, found, partial(_stamp, solved, options, tolerance, wanted)
     )

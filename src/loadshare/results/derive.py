@@ -2,44 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
+import numpy as np
+
+from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.table import Table
 from loadshare.results.result import Answered, Position, Result, Stamp
-from loadshare.results.share import coefficients, flank_torques, largest, largest_of
+from loadshare.results.share import (
+    forces_of,
+    largest,
+    mesh_torques,
+    over_meshes,
+    shares,
+    torques_of_flanks,
+)
 from loadshare.train.train import Train
 
+Found = tuple[Train, int, Mapping[str, float], Answered]
+"""Train as a position finds it, 1-based index, forces of flanks [N], and the answer."""
 
-def position_of(
-    train: Train, index: int, flank_force: Mapping[str, float], answer: Answered
-) -> Position:
-    """Return what an answer says of a position.
 
-    Parameters
-    ----------
-    train : Train
-        As the position finds it.
-    index : int
-        1-based.
-    flank_force : mapping of flank to float
-        Of the answer [N].
-    answer : Answered
-    """
-    flanks = flank_torques(train, flank_force)
-    torque = Table({name: sum(both) for name, both in flanks.items()})
-    coast = Table({n: sum(max(-part, 0.0) for part in both) for n, both in flanks.items()})
-    largest_torque = largest_of(flanks)
-    stages = train.stages
-    return Position(
-        position=index,
-        torque=torque,
-        coast_torque=coast,
-        share=coefficients(torque, [s.meshes for s in stages], largest_torque),
-        pair_share=coefficients(torque, [g for s in stages for g in s.groups], largest_torque),
-        train=train,
-        answer=answer,
+def positions_of(found: Sequence[Found]) -> list[Position]:
+    """Return what the answers of one machine say of their positions."""
+    if not found:
+        return []
+    train = found[0][0]
+    force = forces_of(train, (forces for _, _, forces, _ in found))
+    torques, stages = mesh_torques(train, force), train.stages
+    coast = over_meshes(train, np.maximum(-torques_of_flanks(train, force), 0.0))
+    shared = [m for stage in stages for m in stage.meshes]
+    tables = zip(
+        _tables(torques.meshes, torques.net),
+        _tables(torques.meshes, coast),
+        _tables(torques.meshes, shares(torques, stages), shared),
+        _tables(torques.meshes, shares(torques, stages, pairs=True), shared),
+        strict=True,
     )
+    return [
+        Position(index, *each, here, answer)
+        for (here, index, _, answer), each in zip(found, tables, strict=True)
+    ]
+
+
+def _tables(
+    meshes: Sequence[str], figures: Array, wanted: Sequence[str] | None = None
+) -> Iterator[Table[Any]]:
+    """Yield figures of meshes, (S, meshes), answer by answer: of all or some; None for NaN."""
+    names = meshes if wanted is None else wanted
+    columns = [meshes.index(name) for name in names]
+    for row in figures[:, columns].tolist():
+        yield Table(
+            {name: None if math.isnan(v) else v for name, v in zip(names, row, strict=True)}
+        )
 
 
 def result_from(

@@ -21,6 +21,7 @@ from loadshare.results.share import (
     MeshTorques,
     carries,
     mesh_torques,
+    over_meshes,
     shares,
     torques_of_flanks,
 )
@@ -82,10 +83,6 @@ class Figures:
         """What is measured on displacements."""
         return measuring(self.train)
 
-    def _over_meshes(self, figures: Array) -> Array:
-        """Sums of figures of flanks, (S, flanks), over those of every mesh."""
-        return np.asarray(self.columns.over_meshes(figures))
-
     @cached_property
     def _torques(self) -> MeshTorques:
         return mesh_torques(self.train, self.answers.flank_force)
@@ -99,7 +96,7 @@ class Figures:
     def coast_torque(self) -> Array:
         """Part on the coast flank [N·m], (S, meshes)."""
         torques = torques_of_flanks(self.train, self.answers.flank_force)
-        return self._over_meshes(np.maximum(-torques, 0.0))
+        return over_meshes(self.train, np.maximum(-torques, 0.0))
 
     @cached_property
     def share(self) -> Array:
@@ -126,7 +123,7 @@ class Figures:
         """
         flanks = self.columns.all_flanks
         signs = [1.0 if mesh.is_drive(drive) else -1.0 for mesh, drive in flanks]
-        return self._over_meshes(self.answers.flank_force * np.array(signs))
+        return over_meshes(self.train, self.answers.flank_force * np.array(signs))
 
     @cached_property
     def shaft_torque(self) -> Array:
@@ -227,7 +224,7 @@ class Figures:
         """
         force = self.answers.flank_force
         carry = carries(force, force.max(axis=1, initial=0.0)[:, None])
-        return self._over_meshes(np.where(carry, self._tangents.flanks, 0.0))
+        return over_meshes(self.train, np.where(carry, self._tangents.flanks, 0.0))
 
     @cached_property
     def mesh_torsional_stiffness(self) -> Array:

@@ -26,7 +26,7 @@ from loadshare.certify.validity import refusal_text
 from loadshare.errors import CaseError, Problem, ResultError
 from loadshare.later import known
 from loadshare.results.claim import Claim, misnamed
-from loadshare.results.derive import position_of, result_from
+from loadshare.results.derive import positions_of, result_from
 from loadshare.results.differences import DIGITS, ROUND_OFF, differences
 from loadshare.results.digest import DIGEST, digest_of
 from loadshare.results.document import FORMAT, OLDER, as_data, to_document
@@ -269,8 +269,8 @@ def _positions(train: Train, given: Sequence[_Position], tolerance: float) -> li
         given, trains, found, certify_all(trains, found, tolerance), strict=True
     ):
         claimed = _Claimed(answer, certificate, p.effort)
-        positions.append(position_of(here, p.position, p.claim.flank_force, claimed))
-    return positions
+        positions.append((here, p.position, p.claim.flank_force, claimed))
+    return positions_of(positions)
 
 
 def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:

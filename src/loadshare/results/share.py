@@ -36,24 +36,11 @@ class MeshTorques:
     largest: Array
 
 
-def flank_torques(train: Train, flank_force: Mapping[str, float]) -> dict[str, list[float]]:
-    """Return the torques of the flanks of every mesh on its driver [N·m], coast flanks negative.
-
-    Parameters
-    ----------
-    train : Train
-    flank_force : mapping of flank to float
-        [N].
-    """
-    return {
-        name: [lever * float(flank_force[flank]) for flank, lever in flanks]
-        for name, flanks in train.driving.items()
-    }
-
-
-def largest_of(flanks: Mapping[str, Iterable[float]]) -> float:
-    """Largest of the torques of flanks [N·m]."""
-    return max((abs(torque) for both in flanks.values() for torque in both), default=0.0)
+def forces_of(train: Train, answers: Iterable[Mapping[str, float]]) -> Array:
+    """Return the forces of flanks of S answers, given by name [N], as `mesh_torques` takes them."""
+    flanks = [flank for each in train.driving.values() for flank, _ in each]
+    rows = [[force[flank] for flank in flanks] for force in answers]
+    return np.array(rows, dtype=float).reshape(-1, len(flanks))
 
 
 def carries(mean: Torque, largest: Torque) -> Any:
@@ -63,27 +50,6 @@ def carries(mean: Torque, largest: Torque) -> Any:
     passes through: a coefficient over a mean that is round-off says nothing.
     """
     return abs(mean) > CERTIFY.carries * largest
-
-
-def coefficients(
-    torque: Mapping[str, float], groups: Iterable[tuple[str, ...]], largest: float
-) -> dict[str, float | None]:
-    """Ω of every branch: its torque over its group's mean; None where a group carries nothing.
-
-    Parameters
-    ----------
-    torque : mapping of mesh to float
-        [N·m].
-    groups : iterable of tuple of str
-        Meshes that share a torque.
-    largest : float
-        Torque on any flank [N·m].
-    """
-    found: dict[str, float | None] = {}
-    for group in groups:
-        mean = math.fsum(torque[m] for m in group) / len(group)
-        found |= {m: torque[m] / mean if carries(mean, largest) else None for m in group}
-    return Table(found)
 
 
 def largest(
@@ -131,14 +97,20 @@ def torques_of_flanks(train: Train, force: Array) -> Array:
     return np.asarray(force * lever)
 
 
+def over_meshes(train: Train, figures: Array) -> Array:
+    """Return the sums of figures of flanks, (S, flanks), over those of every mesh."""
+    flanks = [*map(len, train.driving.values())]
+    if len(set(flanks)) != 1:
+        return np.asarray(np.add.reduceat(figures, np.cumsum([0, *flanks[:-1]]), axis=1))
+    first, *others = (figures[:, k :: flanks[0]] for k in range(flanks[0]))
+    return np.asarray(sum(others, first))
+
+
 def mesh_torques(train: Train, force: Array) -> MeshTorques:
     """Return the torques that forces of flanks, (S, flanks) [N], exert on the drivers."""
-    flanks, torque = [*map(len, train.driving.values())], torques_of_flanks(train, force)
-    if len(set(flanks)) == 1:
-        net = sum((torque[:, k :: flanks[0]] for k in range(1, flanks[0])), torque[:, :: flanks[0]])
-    else:
-        net = np.add.reduceat(torque, np.cumsum([0, *flanks[:-1]]), axis=1)
-    return MeshTorques(tuple(train.meshes), net, np.abs(torque).max(axis=1, initial=0.0))
+    torque = torques_of_flanks(train, force)
+    largest = np.abs(torque).max(axis=1, initial=0.0)
+    return MeshTorques(tuple(train.meshes), over_meshes(train, torque), largest)
 
 
 def shares(torques: MeshTorques, stages: Iterable[Stage], pairs: bool = False) -> Array:
@@ -159,7 +131,8 @@ def shares(torques: MeshTorques, stages: Iterable[Stage], pairs: bool = False) -
         for group in stage.groups if pairs else (stage.meshes,):
             columns = [order[m] for m in group]
             of_group = torques.net[:, columns]
-            mean = of_group.mean(axis=1)
+            # Column by column, so that no digit depends on the number of answers.
+            mean = sum(of_group.T, np.zeros(len(found))) / len(group)
             mean = np.where(carries(mean, torques.largest), mean, np.nan)
             found[:, columns] = of_group / mean[:, None]
     return found

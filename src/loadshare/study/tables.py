@@ -121,8 +121,7 @@ def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
         force = answers.flank_force.copy()
         force[list(part.refused)] = np.nan
         for number, answer in part.others.items():
-            flanks = (m.flank_name(drive) for m in train.meshes.values() for drive in m.flanks)
-            force[number] = [answer.flank_force[flank] for flank in flanks]
+            force[number] = share.forces_of(train, [answer.flank_force])[0]
         torques = share.mesh_torques(train, force)
         points = np.array(sweep.usable)[part.rows]
         for name in ("omega", "pair_omega"):

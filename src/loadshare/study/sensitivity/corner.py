@@ -10,7 +10,7 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
-from loadshare.results.share import carries, flank_torques, largest_of
+from loadshare.results.share import carries
 from loadshare.settings import SENSITIVITY
 from loadshare.study.sensitivity.branch import Setting
 from loadshare.study.sensitivity.differenced import NoDifference, differenced
@@ -58,10 +58,8 @@ class Corner:
     position : int
         1-based.
     neighbourhood : Neighbourhood
-    torque : dict of mesh to float
-        On the driver [N·m].
-    largest_torque : float
-        On any flank [N·m].
+    torques : MeshTorques
+        Of this answer alone.
     remarks : list of Remark
         What was found about the inputs differentiated by so far.
     """
@@ -73,8 +71,7 @@ class Corner:
         setting = Setting.at(train, self.position)
         self.structure = setting.structure
         self.neighbourhood = Neighbourhood(setting, self._answer)
-        self.torque = torques_of(train, self._answer)
-        self.largest_torque = largest_of(flank_torques(train, self._answer.flank_force))
+        self.torques = torques_of(train, self._answer)
         self.remarks: list[Remark] = []
         self._caught: dict[str, None] = {}
 
@@ -209,14 +206,13 @@ class Corner:
     ) -> Iterator[tuple[tuple[str, ...], Array]]:
         """Yield groups that carry, and dΩ over dT (group, meshes)."""
         for group in groups:
-            mean = sum(self.torque[m] for m in group) / len(group)
-            if not carries(mean, self.largest_torque):
-                continue
-            weights = np.zeros((len(group), len(order)))
-            for row, m in zip(weights, group, strict=True):
-                row[[order.index(other) for other in group]] -= self.torque[m] / mean / len(group)
-                row[order.index(m)] += 1.0
-            yield group, weights / mean
+            columns = [order.index(m) for m in group]
+            torque = self.torques.net[0, columns]
+            mean = torque.mean()
+            if carries(mean, self.torques.largest[0]):
+                weights = np.eye(len(order))[columns]
+                weights[:, columns] -= torque[:, None] / mean / len(group)
+                yield group, weights / mean
 
     def _loose(self, motion: Motion | None = None) -> dict[str, Array]:
         """Which components of each gear's displacement are left undetermined, here or beside.

@@ -100,7 +100,7 @@ def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
 def _stacked(train: Train, found: Equilibrium) -> Array:
     """Torques, then displacements in every gear's frame, side by side."""
     moved = [gear.plane @ found.displacement[name] for name, gear in train.gears.items()]
-    return np.concatenate([list(torques_of(train, found).values()), *moved])
+    return np.concatenate([torques_of(train, found).net[0], *moved])
 
 
 def _sizes(stacked: Array, torques: int) -> Array:

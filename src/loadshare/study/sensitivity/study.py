@@ -15,7 +15,7 @@ from loadshare.case.reader import opened
 from loadshare.errors import CaseError
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
-from loadshare.results.share import coefficients
+from loadshare.results.share import shares
 from loadshare.settings import SENSITIVITY
 from loadshare.study.positions import each_certified, loaded
 from loadshare.study.sensitivity.corner import Corner
@@ -142,13 +142,13 @@ def _largest(
     for key, side in dict.fromkeys((key, side) for _, key, side in rates):
         here = found[key, side] = {}
         for stage in train.stages:
-            groups = [stage.meshes] if kind == "share" else stage.groups
             near: list[Slope] = []
             for corner in corners:
-                shares = coefficients(corner.torque, groups, corner.largest_torque)
+                omega = shares(corner.torques, [stage], pairs=kind == "pair_share")[0].tolist()
                 own = rates[corner.position, key, side]
                 slopes, errors = getattr(own, kind), getattr(own.error, kind)
-                near += [Slope(s, slopes[m], errors[m]) for m, s in shares.items() if s is not None]
+                every = zip(corner.torques.meshes, omega, strict=True)
+                near += [Slope(s, slopes[m], errors[m]) for m, s in every if not math.isnan(s)]
             here[stage.name] = _steepest(near, side)
         here["system"] = _steepest(list(here.values()), side)
     return found

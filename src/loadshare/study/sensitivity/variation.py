@@ -9,7 +9,7 @@ from functools import lru_cache
 from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.errors import CaseError
-from loadshare.results.share import flank_torques
+from loadshare.results.share import MeshTorques, forces_of, mesh_torques
 from loadshare.scene.structure import Structure
 from loadshare.settings import SENSITIVITY
 from loadshare.study.follow.active import WorkingSet
@@ -180,7 +180,6 @@ class Variation:
         return passing
 
 
-def torques_of(train: Train, found: Equilibrium) -> dict[str, float]:
-    """Torque of every mesh of an equilibrium, drive flank less coast flank [N·m]."""
-    flanks = flank_torques(train, found.flank_force)
-    return {name: sum(both) for name, both in flanks.items()}
+def torques_of(train: Train, found: Equilibrium) -> MeshTorques:
+    """Torques of an equilibrium on the drivers of the meshes [N·m]."""
+    return mesh_torques(train, forces_of(train, [found.flank_force]))
