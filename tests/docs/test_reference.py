@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import pkgutil
 import re
 from pathlib import Path
 
@@ -31,6 +32,20 @@ def test_every_key_of_a_case_is_in_the_reference():
         assert rows == list(table["properties"])
     keys = {key for table in _tables(schema) for key in table["properties"]}
     assert all(f"| `{key}` |" in page for key in keys)
+
+
+def test_every_name_of_the_library_in_the_pages_is_there():
+    text = "".join(page.read_text("utf-8") for page in (ROOT / "docs").rglob("*.md"))
+    names = set(re.findall(r"\b(?:loadshare|ls)\.([A-Za-z_.]*[A-Za-z_])", text))
+    missing = [name for name in sorted(names) if not _resolved(f"loadshare.{name}")]
+    assert not missing
+
+
+def _resolved(name):
+    try:
+        return pkgutil.resolve_name(name) is not None
+    except (ImportError, AttributeError):
+        return False
 
 
 def test_every_row_has_a_form_and_a_description():

@@ -207,6 +207,18 @@ def test_two_gears_mesh_in_one_stage(written) -> None:
     assert any("stage 42" in line and "in stage 40" in line for line in found.left_out)
 
 
+@pytest.mark.parametrize("roles", [None, {"gear_2": 248}, {"gear_1": 220, "gear_2": 248}])
+def test_a_stage_that_joins_no_gears_is_reported(written, roles) -> None:
+    """A planet that has lost its sun was in the case without a word."""
+    components, relations = planetary()
+    at = next(k for k, (_, both) in enumerate(relations) if both.get("stage") == 212)
+    relations[at : at + 1] = [("stage", {"stage": 212, **roles})] if roles else []
+    found = import_rexs(written(xml(components, relations)))
+    assert [line for line in found.left_out if "stage" in line] == [
+        "cylindrical_stage 212: it joins no two cylindrical gears"
+    ]
+
+
 def test_an_id_is_that_of_one_component(written) -> None:
     components, relations = two_stages()
     components.append((20, "cylindrical_gear", "other", teeth(25, 2.0)))

@@ -97,7 +97,7 @@ def unknown_gears(path: Path, of: Gearing) -> list[Problem]:
 
 
 def unused(of: Gearing, used: set[str]) -> list[str]:
-    """Return what of bearings, couplings and loads is not in the case.
+    """Return what of stages, bearings, couplings and loads is not in the case.
 
     Parameters
     ----------
@@ -112,6 +112,12 @@ def unused(of: Gearing, used: set[str]) -> list[str]:
     found += [
         f"stage {stage.id}: {one.title()} and {other.title()} mesh in stage {first.id} already"
         for (stage, one, other), (first, *_) in of.repeated
+    ]
+    joined = {stage.id for stage, *_ in (*of.stages, *of.loose, *(two for two, _ in of.repeated))}
+    found += [
+        f"{stage.title()}: it joins no two cylindrical gears"
+        for stage in of.model.of_type("cylindrical_stage")
+        if stage.id not in joined
     ]
     loads = applied_loads(of)
     used = used | {joint.part.id for each in loads for joint in each.route}
