@@ -1,6 +1,7 @@
 """Centres that follow from teeth, along chains of meshes."""
 
 import math
+import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -234,6 +235,17 @@ def test_tips_in_an_internal_gear_pass_as_their_paths_show(more: int):
     else:
         assert more > 6
         pair(*arguments)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.011, 0.02, 0.033])
+def test_tips_pass_with_the_alteration_that_is_told(shift: float):
+    """A tip radius was told, of six figures: as often as not it was just too small."""
+    ring = {"type": "internal", "addendum": 0.8, "dedendum": 1.6, "profile_shift": shift}
+    one, two = gear(30, dedendum=1.6, profile_shift=-shift), gear(37, **ring)
+    message = refusal(pair, one, two, "14 mm")
+    assert "meet beside the line of action" in message
+    (told,) = re.findall(r'gears\.b\.tip_alteration = "(.+?)" would do', message)
+    pair(one, two | {"tip_alteration": told}, "14 mm")
 
 
 def star(copies: int, **planet) -> Case:

@@ -53,6 +53,15 @@ def test_pointed_teeth():
     )
 
 
+@pytest.mark.parametrize(("distance", "told"), [(0.0745, True), (None, False)])
+def test_tips_that_find_no_room_for_want_of_distance(distance, told):
+    """Of teeth that overlap, addenda below the root were asked for, and nothing else."""
+    with pytest.raises(CaseError) as caught:
+        helicoid_pair(gear(addendum=1.3), gear(53), distance)
+    hints = {problem.hint for problem in caught.value.problems}
+    assert hints == {"Without backlash the centre distance would be 77 mm." if told else ""}
+
+
 @pytest.mark.parametrize(
     ("build", "expected"),
     [

@@ -91,7 +91,7 @@ def check_tips(draft: Draft) -> Iterator[Problem]:
                     f"{ring.teeth - pinion.teeth} teeth difference"
                 )
                 allowed = f"a tip radius of gear {outer} of at least {mm(fits)}"
-                hint = f"It is {mm(ring.tip)}; tip_alteration shortens the teeth."
+                hint = f"It is {mm(ring.tip)}; {_lowered(draft, outer, ring, fits)}"
                 yield draft.problem(("meshes", name), what, allowed, hint)
 
 
@@ -108,9 +108,14 @@ def _too_high(draft: Draft, mesh: str, one: str, two: str, other: Tooth, room: f
     """Say how far the tip of a gear is too high for another, and what would fit."""
     side = "at least" if other.internal else "at most"
     what = f"the tip of gear {two}, at a radius of {mm(other.tip)}, finds no room in gear {one}"
-    lower = other.addendum_to(room) - (draft.gears[two].addendum or 1.0)
-    hint = f"gears.{two}.tip_alteration = {shortened(lower * other.module)} would do."
+    hint = _lowered(draft, two, other, room)
     return draft.problem(("meshes", mesh), what, f"a tip radius of {side} {mm(room)}", hint)
+
+
+def _lowered(draft: Draft, gear: str, tooth: Tooth, tip: float) -> str:
+    """Say by which alteration the tip of a gear comes to a radius [m]."""
+    lower = tooth.addendum_to(tip) - (draft.gears[gear].addendum or 1.0)
+    return f"gears.{gear}.tip_alteration = {shortened(lower * tooth.module)} would do."
 
 
 def _passing(pinion: Tooth, ring: Tooth, distance: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 
 from loadshare.errors import CaseError, Problem
 from loadshare.involute import (
@@ -170,12 +171,23 @@ def _tip_problems(
     if other.kind * (other.tip_roll - limit) > TEETH.fits:
         largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
         cuts = f"the tip of this gear cuts into the root fillet of the {name}"
-        yield problem(key, other.addendum, cuts, f"at most {digits(down(largest))}")
+        allowed = f"at most {digits(down(largest))}"
+        yield problem(key, other.addendum, cuts, allowed, _too_near(pair))
     clearance = root_clearance(gear, other, pair.actual_distance)
     if clearance <= 0.0:
         allowed = f"less than {digits(down(other.addendum + clearance / other.module))}"
         runs = f"the tip of this gear runs into the root of the {name}"
-        yield problem(key, other.addendum, runs, allowed)
+        yield problem(key, other.addendum, runs, allowed, _too_near(pair))
+
+
+def _too_near(pair: HelicoidPair) -> str:
+    """Say which centre distance has no backlash, where teeth are nearer one another."""
+    gears = pair.driver_gear, pair.driven_gear
+    with suppress(ValueError):  # no distance is without backlash
+        fits = distance_without_backlash(*gears)
+        if pair.kind * (fits - pair.actual_distance) > TEETH.fits * fits:
+            return f"Without backlash the centre distance would be {millimetres(fits)}."
+    return ""
 
 
 def _fouling(pair: HelicoidPair) -> Iterator[Problem]:
