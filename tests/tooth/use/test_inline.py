@@ -244,6 +244,19 @@ def test_problems_stand_with_the_keys_of_the_case(case):
         resolve(short)
 
 
+def test_a_tip_that_cuts_counts_its_alteration(case):
+    """Of an addendum of 1.2, at most 1.26971 was allowed."""
+    few = {"teeth": 16, "profile_shift": 0.1}
+    many = {"teeth": 60, "profile_shift": 0.0, "addendum": 1.2, "tip_alteration": "0.4 mm"}
+    gears = {f"gears.{g}.{key}": v for g, of in (("a", few), ("b", many)) for key, v in of.items()}
+    with pytest.raises(CaseError) as caught:
+        resolve(case.replace(gears | {"gears.b.centre": ["0 mm", "115.8 mm"]}))
+    (problem,) = caught.value.problems
+    assert problem.key == "gears.b.addendum"
+    assert problem.given == "1.33333 with its tip_alteration"
+    assert problem.allowed == "at most 1.26971"
+
+
 def test_a_result_says_what_its_laws_are_from(case, tmp_path):
     given = case.replace(
         {

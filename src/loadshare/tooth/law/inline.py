@@ -141,4 +141,6 @@ def _in_case(case: Case, name: str, problem: Problem) -> Problem:
         key = next(iter(gear.given("rim", "bore", "outside_diameter")), "module")
     path = ("gears", ends[which], key)
     found = case.problem(path, problem.message, problem.allowed, problem.hint)
+    if key == "addendum" and gear.tip_alteration is not None:
+        return replace(found, given=f"{problem.given} with its tip_alteration")
     return found if found.given else replace(found, given=problem.given)
