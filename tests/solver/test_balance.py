@@ -55,6 +55,15 @@ def test_nothing_is_searched_for_without_balance(monkeypatch):
         ls.solve(case)
 
 
+@pytest.mark.parametrize("off", ["1e-5 mm", "1e-7 mm"])
+def test_a_load_that_rounded_centres_alone_do_not_balance_is_told(off):
+    """Sun, ring and carrier float, and the sun is not quite in the middle."""
+    case = shipped("planetary/four_planets")
+    free = {f"gears.{gear}.support": "free" for gear in ("sun", "ring", "carrier")}
+    with pytest.raises(Refused, match=r"rounding in the geometry only.* float of gear sun, carr"):
+        ls.solve(case.replace(free | {"gears.sun.centre": [off, off], "errors": None}))
+
+
 @pytest.mark.parametrize("given", ["1 N*m", "-7000 N*m"])
 @pytest.mark.parametrize("running", ["counter-clockwise", "clockwise"])
 def test_torques_that_do_not_cancel_are_told_what_would(running, given):
