@@ -51,6 +51,7 @@ def basis_of(columns: Numbers, directions: Array) -> Basis:
     left, sizes, right = np.linalg.svd(directions, full_matrices=True)
     rank = _rank(sizes)
     particular = left[:, :rank] / sizes[:rank] @ right[:rank]
-    return Basis(
-        columns, directions, particular, np.ascontiguousarray(left[:, rank:]), right[rank:].T
-    )
+    redundant = np.ascontiguousarray(left[:, rank:])
+    # Of an element that the load alone determines: a soft shaft winds by more than round-off bears.
+    redundant[np.abs(redundant).max(axis=1, initial=0.0) <= STATICS.nothing] = 0.0
+    return Basis(columns, directions, particular, redundant, right[rank:].T)

@@ -1,12 +1,17 @@
-"""Without a torque, what round-off leaves in contacts is none. Source: formulation, section 5."""
+"""Without a torque, what round-off leaves in contacts is none. Source: formulation, section 5.
+
+Nor does a shaft that winds by a thousand turns lend its round-off to what shares the load.
+"""
 
 import math
+import tomllib
 from typing import Any
 
 import numpy as np
 import pytest
 
 import loadshare as ls
+from benchmarks import families
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
 from loadshare.train import build_train
@@ -86,3 +91,20 @@ def test_a_set_without_torque_has_none(turn: int) -> None:
     # To the end of the clearance, and then the shaft of the spline bends.
     expected = CLEARANCE + (FORCE - FRICTION) / STIFFNESS
     assert np.hypot(*moved) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_soft_shaft_between_two_splits_costs_no_digits() -> None:
+    """It takes the whole load, so no self-stress has a part of it; the bound was 1e-10."""
+    star, box = (
+        tomllib.loads(case.to_toml())
+        for case in (families.star(6), families.two_path("0.0012 rad"))
+    )
+    case = ls.Case(
+        {
+            "operating": {"input": "sun", "output": "out", "torque": "1 kN*m"},
+            "gears": star["gears"] | box["gears"],
+            "meshes": star["meshes"] | box["meshes"],
+            "shafts": {**box["shafts"], "ring-in": {"stiffness": "1 N*m/rad"}},
+        }
+    )
+    assert ls.solve(case, engine="vectorised").positions[0].certificate.proved < 1e-12
