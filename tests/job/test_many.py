@@ -390,6 +390,14 @@ def test_the_size_of_blocks_does_not_matter(name, block, monkeypatch):
         np.testing.assert_array_equal(whole[name], parts[name])
 
 
+def test_sets_in_uneven_surroundings_are_learned_of_at_one_position_too(monkeypatch):
+    """More samples than one block holds, all at one position: that was a traceback."""
+    small_blocks(monkeypatch, 400)
+    case = shipped("planetary/four_planets").replace({"gears.ring.support": ["1e9 N/m", "2e9 N/m"]})
+    torques = {"operating.torque [N*m]": np.linspace(500.0, 1500.0, 1000)}
+    assert ls.solve_many(case, torques, engine="vectorised").certified.all()
+
+
 def test_the_company_does_not_matter():
     """The first ten of forty samples are the ten alone."""
     many_, few = floats(40), {key: v[:10] for key, v in floats(40).items()}
@@ -419,6 +427,16 @@ def test_samples_of_different_machines_come_back_in_their_places():
         )
         torque = dict(zip(found.mesh.values, found.torque.values[sample, 0], strict=True))
         assert furthest(alone.positions[0].torque, torque) < 1e-9
+
+
+def test_a_backlash_that_follows_from_teeth_stands_beside_lengths():
+    case, key = shipped("two_path/from_teeth"), 'meshes."in-wheel1".backlash'
+    values = ["teeth", "100 um"]
+    found = ls.solve_many(case, {key: values})
+    for sample, value in enumerate(values):
+        alone = ls.solve(case.replace({key: value})).positions[0]
+        torque = dict(zip(found.mesh.values, found.torque.values[sample, 0], strict=True))
+        assert furthest(alone.torque, torque) < 1e-9
 
 
 def test_gears_that_float_in_some_samples_only_are_all_reported():

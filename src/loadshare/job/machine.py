@@ -203,7 +203,7 @@ class Machine:
 
     def learn(self, samples: Samples, positions: Sequence[int], engine: Engine) -> None:
         """Learn from some of many samples, over all positions, where all begin."""
-        if self.train.is_placed_anew and len(positions) > 1:
+        if self.train.is_placed_anew:
             for position in positions:
                 self.at(position).learn(samples, [position], engine)
             return
