@@ -293,7 +293,8 @@ def _stiffness_text(found: Rings) -> str:
             f"K of {kind} and its like",
             " … ".join(f"{end / 1e6:.2f}" for end in printed.STIFFNESS[kind]),
             f"{sum(printed.STIFFNESS[kind]) / 2e6:.3f}",
-            f"{u.value / 1e6:.3f}" + (" (bound)" if u.at_bound else ""),
+            # Two decimals: the third of what is not determined is round-off.
+            f"{u.value / 1e6:.2f}" + (" (bound)" if u.at_bound else ""),
             f"{u.deviation / 1e6:.2f}" if math.isfinite(u.deviation) else "not determined",
         )
         for u, kind in zip(found.stiffness.unknowns, FITTED, strict=True)
