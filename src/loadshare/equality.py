@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-import numpy as np
-
 
 class Comparable:
     """What is equal to another of its kind that says the same, such as its own pickle."""
@@ -36,7 +34,10 @@ def same(one: Any, other: Any) -> bool:
         return alike and all(same(one[key], other[key]) for key in one)
     if isinstance(one, tuple | list):
         return len(one) == len(other) and all(map(same, one, other))
-    if isinstance(one, np.ndarray):
+    if hasattr(one, "dtype"):
+        # Here, so that commands that compute nothing do without it.
+        import numpy as np
+
         return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
     if is_dataclass(one) and not isinstance(one, Comparable):
         return type(one) is type(other) and same(_fields(one), _fields(other))
