@@ -174,12 +174,11 @@ def solve_many(
         [-] over mesh; ``displacement`` [m] over gear and component, for gears that can be
         displaced; ``contact_force`` [N] of ring contacts; ``residual`` (largest scaled one;
         with Numba without the energy gap, which follows from the others), ``torque_bound`` (largest
-        distance of a torque from the exact one, over the largest on a flank, coast flanks too, or
-        from outside), ``certified``, ``determined``,
-        ``displaced`` (displacements over what their geometry allows without a warning; ``warned``
-        counts those above 1), ``convex`` (nothing that is not convex carries), ``arc_curvature``
-        [N/m] that arcs take from the stiffness across them, ``rung`` (see ``flag_meanings``; 0
-        where nothing answered). What is refused is NaN; the attribute ``refused`` says why.
+        distance of a torque from the exact one, over the largest on a flank or from outside),
+        ``certified``, ``determined``, ``displaced`` (displacements over those of a warning;
+        ``warned`` counts those above 1), ``convex`` (nothing that is not convex carries),
+        ``arc_curvature`` [N/m] that arcs take from the stiffness across them, ``rung`` (see
+        ``flag_meanings``; 0: no answer). What is refused is NaN; ``refused`` (attribute) says why.
 
     Raises
     ------
