@@ -301,9 +301,8 @@ def uncertified(index: int, certificate: Certificate) -> Refused:
     """Return the refusal of an answer whose certificate does not pass."""
     figures = {name: r.scaled for name, r in certificate.failing.items()}
     if figures:
-        text = _runs_away(certificate)
-        text = text or f"the answer is not an equilibrium: {certificate.shortfall}"
-        return Refused(f"position {index}: {text}", figures)
+        shortfall = f"the answer is not an equilibrium: {certificate.shortfall}"
+        return Refused(f"position {index}: {_runs_away(certificate) or shortfall}", figures)
     error, allowed = certificate.proved, certificate.tolerance
     proved = "not proved at all" if math.isinf(error) else f"proved to {error:.1e} only"
     return Refused(
@@ -315,15 +314,14 @@ def uncertified(index: int, certificate: Certificate) -> Refused:
 
 
 def _runs_away(certificate: Certificate) -> str:
-    """Say that a load is balanced up to some digits only, where what is left knows no end."""
+    """Say that an attempt ends farther off than any gear is large, where something floats."""
     train = certificate.claims.train
     far = max((r.value for r in certificate.failing.values() if r.unit == "m"), default=0.0)
-    if not far > max(gear.base_radius for gear in train.gears.values()):
+    free = [gear for gear in train.floating if gear not in train.limits]
+    if not free or not far > max(gear.base_radius for gear in train.gears.values()):
         return ""
-    free = ", ".join(gear for gear in train.floating if gear not in train.limits)
-    hint = f"; nothing limits the float of gear {free}" if free else ""
     return (
-        "forces balance the load up to rounding in the geometry only, and nothing holds what is "
-        f"left (the attempt ends {far:.1e} m off){hint}; support what floats, or give what is even "
-        "by teeth and copies"
+        f"what floats runs away: the attempt ends {far:.1e} m off, as where the load is balanced "
+        "up to rounding in the geometry only; nothing limits the float of gear "
+        f"{', '.join(free)}: support one, or give what is even by teeth and copies"
     )
