@@ -307,3 +307,10 @@ def test_a_spline_without_an_end_beside_a_rolling_bearing_has_its_graph():
     found = at.graph(np.array([spline, ball]), np.zeros(2), np.array([0.0, 2e-5]))
     assert found.reach.tolist() == pytest.approx([np.inf, 1e-5 + 1e-5 / 3.0])
     assert found.last.tolist() == pytest.approx([1.0, 1.5e9 * np.sqrt(1e-5)])
+
+
+def test_friction_without_an_end_stands_beside_a_ball_bearing():
+    friction = [0.0, np.nan, np.inf, 2.0, np.nan, np.inf, 1.0]
+    ball = [0.0, 0.0, 1e-5, 0.0, np.nan, 8e6, 1.5]
+    found = at.graph(np.array([friction, ball]), np.zeros(2), np.array([np.inf, 2e-5]))
+    assert found.reach[0] == found.last[0] == np.inf

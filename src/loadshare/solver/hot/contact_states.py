@@ -76,9 +76,11 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
     stick = np.where(throughout, np.inf, stick)
     power = numbers[:, 6]
     if (power != 1.0).any():
-        begin, slope = tangent_wall(
-            reach, last, power, radius + np.zeros_like(reach), LAWS.wall_start
-        )
+        # Of what is not curved, such as friction without an end, nothing is taken.
+        with np.errstate(invalid="ignore"):
+            begin, slope = tangent_wall(
+                reach, last, power, radius + np.zeros_like(reach), LAWS.wall_start
+            )
         reach, last = (np.where(power != 1.0, v, w) for v, w in ((begin, reach), (slope, last)))
     found = (first, stick, bound, reach, last, valid)
     if any(v.shape != torque.shape for v in found):
