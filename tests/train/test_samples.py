@@ -250,7 +250,11 @@ WRONG = {
     "negative text": ({"rings.4.clearance": ["1 um", "-2 um", "1 um"]}, "rings.4.clearance"),
     "text without a unit": ({"rings.4.clearance": ["1 um", "2", "1 um"]}, "rings.4.clearance"),
     "empty": ({}, "there is no key"),
-    "no values": ({"rings.4.float [um]": []}, "not a list of values"),
+    "no values": ({"rings.4.float [um]": []}, "holds no value"),
+    "lists in place of numbers": (
+        {"rings.4.offset": [["1 um", "2 um"], ["3 um", "4 um"]]},
+        "is not a list of values; a list has a key for each number, as in rings.4.offset[0]",
+    ),
     "a table of values": ({"rings.4.float [um]": [[1.0, 2.0]]}, "not a list of values"),
     "lists of several lengths": ({"rings.4.float [um]": [[1.0], [1.0, 2.0]]}, "not a list of"),
     "twice": ({"rings.4.float [um]": [1.0], "rings.4.float [mm]": [1.0]}, "is given twice"),

@@ -153,15 +153,18 @@ def _values(given: object) -> NDArray[np.generic]:
             return np.array([as_text(value) for value in values])
     except ValueError:
         # Lists of several lengths.
-        return np.array([], dtype=object)
+        return np.array([[]], dtype=object)
     return values
 
 
 def _fault(column: Column, before: list[Column]) -> str:
     """What is wrong with a column, given those before it; empty where nothing is."""
     values = column.values
-    if values.ndim != 1 or not len(values):
-        return "is not a list of values"
+    if values.ndim != 1:
+        number = f"{dotted(column.path)}[0]"
+        return f"is not a list of values; a list has a key for each number, as in {number}"
+    if not len(values):
+        return "holds no value"
     if before and len(values) != len(before[0].values):
         count = len(before[0].values)
         return f"has {len(values)} values, the keys before it have {count}"
