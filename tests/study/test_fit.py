@@ -123,6 +123,15 @@ def test_inputs_that_the_data_cannot_tell_apart_are_named():
     assert found.singular_values[-1] < 1e-6 * found.singular_values[0]
 
 
+def test_more_inputs_than_figures_leave_no_freedom():
+    case = shipped("fgfbstts/installation_error").replace(
+        {"measured.bench": {"position": 1, "pair_share": {"6-10": 0.8}, "uncertainty": 0.01}}
+    )
+    found = ls.fit(case, {f"errors.6.installation[{k}]": ("-90 um", "100 um") for k in (0, 1)})
+    assert found.freedom == -1
+    assert ", 0 degrees of freedom" in str(found)
+
+
 def test_an_input_that_moves_nothing_is_not_determined():
     """By itself: there is no other input to compare its effect with."""
     measured = {"position": 1, "pair_share": {"8-10": 1.02}, "uncertainty": 0.01}

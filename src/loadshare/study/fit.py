@@ -16,6 +16,7 @@ from loadshare.arguments import check_mapping, whole
 from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.reader import opened
+from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import solve
 from loadshare.libraries import optimize, pd, qmc, special
@@ -131,7 +132,7 @@ class Fit(Viewed):
 
     def _view(self) -> View:
         """Show the fitted inputs, how well they fit, and what the data leave open."""
-        degrees = "1 degree" if self.freedom == 1 else f"{self.freedom} degrees"
+        degrees = count(max(self.freedom, 0), "degree")
         facts = (
             ("χ²", f"{self.chi_square:.4g}, {degrees} of freedom"),
             ("starts", f"{len(self.starts)}, {self.evaluations} sets of equilibria"),
