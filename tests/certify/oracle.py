@@ -24,6 +24,7 @@ from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.mesh import Mesh
+from loadshare.train.ring import RoundRing
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
@@ -251,9 +252,9 @@ class ClaimedState:
             moved = self.moved(gear)
             found.append(Pull(spline.name, gear, law, moved, np.zeros(3), reaction, False))
         for ring in self.train.rounds:
-            law = round_ring_law(ring.radius, ring.stiffness)
             reaction = np.asarray(self.answer.radial_reaction[ring.name])
             offset = self.moved(ring.gear) - ring.offset
+            law = round_ring_law(*_tangent(ring, float(np.linalg.norm(offset))))
             found.append(Pull(ring.name, ring.gear, law, offset, ring.offset, reaction, True))
         return tuple(found)
 
@@ -632,6 +633,16 @@ UNITS = {
     "energy_gap": "J",
 }
 """The residuals and their units."""
+
+
+def _tangent(ring: RoundRing, radius: float) -> tuple[float, float]:
+    """Where the tangent of a ring's wall at a radius begins [m], and its slope [N/m]."""
+    gap = max(radius - ring.radius, (ring.radius or 1.0) * EPS)
+    force = ring.stiffness * gap**ring.power
+    if ring.power == 1.0:
+        return ring.radius, ring.stiffness
+    slope = ring.power * force / gap
+    return ring.radius + gap - force / slope, slope
 
 
 def interval(law: RadialLaw, radius: float, band: float = 0.0) -> tuple[float, float]:

@@ -71,6 +71,36 @@ def clocked() -> ls.Case:
     return families.two_path("1.2 mrad").replace({**rigid, "assumed": []})
 
 
+def rolling(idle: bool = False) -> ls.Case:
+    """A star of four on balls, of which a planet may carry nothing."""
+    bearing = {"clearance": "5 um", "ball_stiffness": "6e10 N/m^1.5"}
+    aside = {"installation": {"amount": "4 um", "direction": "90 deg"}}
+    case = families.star(4).replace(
+        {
+            "bearings": {f"planet{k}": bearing for k in range(1, 5)},
+            "errors": {"planet1": aside, "planet2": aside},
+        }
+    )
+    idling = {
+        "meshes.sun-planet1.backlash": "5 mm",
+        "meshes.planet1-ring.backlash": "5 mm",
+        "meshes.sun-planet1.gap": "20 mrad",
+        "bearings.planet1.clearance": "0 um",
+    }
+    return case.replace(idling if idle else {})
+
+
+def idler_on_a_spline() -> ls.Case:
+    """A planet on a spline over which no torque passes, so that its friction is round-off."""
+    spline = {
+        "bending_stiffness": "1e9 N/m",
+        "clearance": "50 um",
+        "friction": 0.1,
+        "radius": "10 mm",
+    }
+    return families.star(3).replace({"splines": {"planet1": spline}})
+
+
 WAYS = {name: (lambda name=name: shipped(name)) for name in SHIPPED} | {
     "clocked rigid shaft": clocked,
     "round ring": round_ring,
@@ -79,6 +109,8 @@ WAYS = {name: (lambda name=name: shipped(name)) for name in SHIPPED} | {
     "coast flanks": coasting,
     "tables": tabled,
     "spline that never slips": never_slipping,
+    "ball bearings": rolling,
+    "idler on a spline": idler_on_a_spline,
     "no load": lambda: loaded(shipped("fgfbstts/limit_ring"), "0 N*m"),
 }
 

@@ -84,10 +84,6 @@ class Judge:
         """Tell whether answers in some situations are judged with Numba where that is wanted."""
         return is_covered(self.columns) and not situations.push.any()
 
-    def bounds_at_once(self, situations: Situations) -> bool:
-        """Tell whether Numba also bounds them: not where the walls of bearings are powers."""
-        return self.compiles(situations) and bool((situations.round_power == 1.0).all())
-
     def _compiled(
         self, situations: Situations, answers: Equilibria, tolerance: float, bounded: bool
     ) -> Verdicts:

@@ -227,7 +227,7 @@ class Machine:
         searched = np.zeros(loading.count, dtype=bool)
         judging = Judging(self.structure, self.judge, situations, iterate, tolerance, quick)
         # What a rule has end on the verge takes long to bound; another way may end clear of it.
-        at_once = by_rule and quick and self.judge.bounds_at_once(situations)
+        at_once = by_rule and quick and self.judge.compiles(situations)
         while True:
             found.solved[left] = False
             renewed = ~found.solved

@@ -108,6 +108,8 @@ class Bound(NamedTuple):
     secant: float = 0.9
     """Part of the tangent compliance that the secant to the exact force keeps. The bound is far
     below a tenth of the force wherever it is of use; elsewhere it is refused."""
+    bent: float = 0.05
+    """Error, over the force, up to which `secant` holds for a wall that is a power."""
     endless: float = 1e300
     """Compliance, over the tangent's, of a Hertz contact without force: there is no largest."""
     near: float = 1e-6

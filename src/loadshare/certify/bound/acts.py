@@ -38,7 +38,7 @@ OPEN, CLOSED, LIGHT, ENDLESS = range(4)
 """How an element acts in large batches.
 
 Not at all; by its law; by that of a light Hertz contact, which is soft; without force, where it
-yields without end.
+yields without end, which a radial element with next to no force may do as well.
 """
 
 

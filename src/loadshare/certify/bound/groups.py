@@ -146,12 +146,24 @@ class Plan:
         found = self._statics.get(acts.tobytes())
         if found is not None:
             return found
-        contacts = acts[: len(self.contacts)]
-        some = self.pulls[acts[len(contacts) :] != OPEN].reshape(-1, self.springs.shape[1])
+        contacts, radials = np.split(acts, [len(self.contacts)])
+        found = self._operators(contacts, radials)
+        if not found.is_covered:
+            # Radial elements that are light, but yield in proportion, may carry after all.
+            found = self._operators(contacts, np.minimum(radials, CLOSED))
+        if len(self._statics) >= BOUND.sets:
+            self._statics.clear()
+        self._statics[acts.tobytes()] = found
+        return found
+
+    def _operators(self, contacts: Acts, radials: Acts) -> Operators:
+        pulls = self.pulls[radials != OPEN].reshape(-1, self.springs.shape[1])
         closed = self.contacts[contacts != OPEN]
-        whole = Statics.of(np.concatenate([closed, self.springs, some]))
+        whole = Statics.of(np.concatenate([closed, self.springs, pulls]))
         classes = np.full(len(whole.directions), CLOSED)
+        first = len(classes) - len(pulls)
         classes[: len(closed)] = contacts[contacts != OPEN]
+        classes[first:] = np.repeat(radials[radials != OPEN], 2)
         lasting = classes == CLOSED
         carrying = whole if lasting.all() else Statics.of(whole.directions[lasting])
         # What is light may open, and then move by any length: it carries no load, but may hold what
@@ -160,22 +172,17 @@ class Plan:
         borne, is_covered = held_moves(carrying.moves, others, self._force_at_end)
         particular = np.zeros(whole.particular.shape)
         particular[lasting] = carrying.particular
-        if len(some):
-            first = len(lasting) - len(some)
-            firm = np.flatnonzero(lasting[:first])
-            known = Statics.of(whole.directions[firm])
+        if lasting[first:].any():
+            firm, last = (k + np.flatnonzero(lasting[k:n]) for k, n in ((0, first), (first, None)))
+            some, known = whole.directions[last], Statics.of(whole.directions[firm])
             held = some @ known.moves
             held[np.abs(held) < BOUND.rank] = 0.0
             part = np.linalg.pinv(held.T, rcond=BOUND.rank) @ known.moves.T
             particular[firm] = known.particular @ (np.eye(len(part.T)) - some.T @ part)
-            particular[first:] = part
-        if len(self._statics) >= BOUND.sets:
-            self._statics.clear()
+            particular[last] = part
         moves = whole.moves
         ended = self._force_at_end(moves) if moves.size else 0.0
-        found = Operators(particular, whole.redundant, moves, ended, borne, is_covered)
-        self._statics[acts.tobytes()] = found
-        return found
+        return Operators(particular, whole.redundant, moves, ended, borne, is_covered)
 
     def groups(self, acts: Acts, least: Array, most: Array) -> Groups:
         """Return what is the same for the claims of some sets.

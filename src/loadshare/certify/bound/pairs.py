@@ -62,9 +62,9 @@ def put_pairs(
     lined = (act == Act.STOP) | (act == Act.STEP) | (act == Act.SLIP)
     off = normal - sign * yields * (size - preload)
     off = np.where(act == Act.SLIP, 0.0, off)
-    light = np.zeros(here.round_power.shape, dtype=bool)
-    if claim.rolls and verge is not None:
-        light = _light_walls(claim, found, act, verge, least, (size, distance), (yields, off))
+    by_force = np.zeros(here.round_power.shape, dtype=bool)
+    if claim.rolls:
+        by_force = _by_force(claim, found, act, verge, least, (size, distance), (yields, off))
     spread = EPS * (reach + yields * np.abs(size)) + np.where(begins, distance, 0.0)
     most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
     across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
@@ -94,7 +94,7 @@ def put_pairs(
     found.line[:], found.distance[:], found.size[:] = line, distance, size
     found.begins[:], found.along[:] = begins, yields
     if claim.rolls:
-        _bends(claim, acts, found, arcs, light)
+        _bends(claim, acts, found, arcs, by_force)
     true = np.where(size > 0.0, sign / across, 0.0)
     wrong = np.where(begins, 0.0, np.abs(true - 1.0 / lateral) * (1.0 + EPS))
     wrong += np.where(act == Act.SLIP, 1.0 / along, 0.0)
@@ -122,19 +122,20 @@ def _lose_torque(claim: Claim, found: Elements) -> None:
     found.width[:, first:] += np.repeat(found.shrinks * lost, 2, axis=1)
 
 
-def _light_walls(
+def _by_force(
     claim: Claim,
     found: Elements,
     act: Acts,
-    verge: Flags,
+    verge: Flags | None,
     least: Array,
     where: tuple[Array, Array],
     laws: tuple[Array, Array],
 ) -> Flags:
-    """Put in walls that are powers on the verge, and return which these are, (S, rounds).
+    """Put in walls that are powers by their forces, and return which these are, (S, rounds).
 
-    As of a light Hertz contact, their tangent is taken at more than their force. Up to there the
-    wall is softer: it answers by something between that tangent and none.
+    Those on the verge: as of a light Hertz contact, their tangent is taken at more than their
+    force. Up to there the wall is softer: it answers by something between that tangent and none.
+    Where secants take the place of curvatures, all that act.
 
     Parameters
     ----------
@@ -142,7 +143,8 @@ def _light_walls(
     found : Elements
         Whose `room` is filled in.
     act : ndarray of int8, shape (S, pairs)
-    verge : ndarray of bool, shape (S, pairs)
+    verge : ndarray of bool, shape (S, pairs), or None
+        As in `elements`.
     least : ndarray, shape (S, 1)
         Smallest force at which a tangent is taken [N].
     where : (ndarray, ndarray)
@@ -155,23 +157,29 @@ def _light_walls(
     first = (columns.arcs.stop - columns.arcs.start) // 2
     rounds = slice(first, first + power.shape[1])
     size, distance = (v[:, rounds] for v in where)
-    light = (power != 1.0) & (act[:, rounds] == Act.STOP) & (verge[:, rounds] | (size == 0.0))
-    at = np.maximum(BOUND.reached * size, least)
+    chosen = (power != 1.0) & (act[:, rounds] == Act.STOP)
+    if verge is None:
+        at = np.maximum(size, least)
+        spare = BOUND.bent * at
+    else:
+        chosen &= verge[:, rounds] | (size == 0.0)
+        at = np.maximum(BOUND.reached * size, least)
+        spare = at - size
     soft = (at / stiffness) ** (1.0 / power) / (power * at)
     off = distance - radius - (size / stiffness) ** (1.0 / power)
     for target, value in zip(laws, (soft, off), strict=True):
-        target[:, rounds] = np.where(light, value, target[:, rounds])
-    # A force stays below that all along its line while its two components change by less than this.
-    room = np.where(light, np.sqrt(0.5) * (at - size), np.inf)
+        target[:, rounds] = np.where(chosen, value, target[:, rounds])
+    # A force changes by less than that all along its line while its components change by less.
+    room = np.where(chosen, np.sqrt(0.5) * spare, np.inf)
     found.room[:, columns.all_of(columns.claims.rounds)] = np.repeat(room, 2, axis=1)
-    return np.asarray(light)
+    return np.asarray(chosen)
 
 
-def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int, light: Flags) -> None:
-    """Curvature of the walls that are powers, and what their tangents leave at the claim."""
+def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int, by_force: Flags) -> None:
+    """Curvature of the other walls that are powers, and what tangents leave at the claim."""
     power = claim.situations.round_power
     rounds = slice(arcs, arcs + power.shape[1])
-    acting = (power != 1.0) & (acts[:, : power.shape[1]] != Act.OPEN) & ~light
+    acting = (power != 1.0) & (acts[:, : power.shape[1]] != Act.OPEN) & ~by_force
     size = np.abs(found.size[:, rounds])
     compliance = found.along[:, rounds]
     with np.errstate(divide="ignore", invalid="ignore"):

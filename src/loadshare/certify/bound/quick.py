@@ -52,13 +52,8 @@ def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) ->
     box = Box.unproved(claim, act)
     act, doubled = _with_near(claim, act)
     found = elements(claim, act, scale, None)
-    if (
-        _rolls(claim, act)
-        or found.shrinks.any()
-        or (claim.columns.train.slip is not None and found.follows.any())
-    ):
-        # With memory, what follows the torque is the room of a stop, a length and no force. What
-        # rolls has no least compliance.
+    if found.shrinks.any() or (claim.columns.train.slip is not None and found.follows.any()):
+        # With memory, what follows the torque is the room of a stop, a length and no force.
         return box
     left, rounding = claim.balance(found.force)
     arms = np.abs(claim.columns.moments).sum(axis=1)
@@ -78,15 +73,6 @@ def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) ->
             if not len(rows):
                 break
     return box
-
-
-def _rolls(claim: Claim, act: Acts) -> bool:
-    """Whether a bearing acts whose wall is a power."""
-    if not claim.rolls:
-        return False
-    first = act.shape[1] - len(claim.columns.claims.radials)
-    bent = (claim.situations.round_power != 1.0).any(axis=0)
-    return bool((act[:, first : first + len(bent)][:, bent] != Act.OPEN).any())
 
 
 def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
@@ -206,6 +192,8 @@ class _Group:
         over = _over_tangents(claim, found, self.pick, scale)
         flanks = np.flatnonzero(self.scalar < columns.flanks.stop)
         self.over[:, flanks] = over[:, self.scalar[flanks]]
+        light = found.size[self.pick][:, self.lined] < BOUND.light * scale[:, None]
+        self.over[:, self.line][light & claim.rolling[self.lined]] = BOUND.endless
         self.is_endless = (self.over > 1.0 / BOUND.secant).any(axis=0)
         self.may_open = (self._at_ends(self._pushed()) < BOUND.light * scale[:, None]).any(axis=0)
         self._set_particular()
@@ -417,6 +405,7 @@ class _Group:
         at = self.scalar[self.scalar < columns.flanks.stop]
         arcs = claim.arcs[1].shape[1]
         total, most = np.zeros_like(errors), np.zeros(len(errors))
+        followed = set()
         for pair in np.flatnonzero(rates.any(axis=0)).tolist():
             first = columns.first_pair + 2 * pair
             push = found.line[pick][:, pair] @ columns.matrix.high[first : first + 2]
@@ -424,7 +413,8 @@ class _Group:
             total += (force + bent[:, None] * self.sizes) * rates[:, pair, None]
             k = (pair - arcs - len(columns.train.rounds)) % len(arms)
             most = np.maximum(most, errors[:, : len(at)] @ arms[k, at])
-        back = (total[:, : len(at)] @ arms[:, at].T).max(axis=1)
+            followed.add(k)
+        back = (total[:, : len(at)] @ arms[np.ix_(sorted(followed), at)].T).max(axis=1)
         enough = np.where(back < BOUND.gain, most / (1.0 - np.minimum(back, BOUND.gain)), np.inf)
         return np.asarray(enough[:, None] * total)
 

@@ -231,6 +231,8 @@ def _followed(of, found, group, g, s, residual, push, tilt, due):  # type: ignor
     if rates == 0.0:
         return residual, energy
     for k in range(len(of.moment)):
+        if found.rate[s, of.rounds + k] == 0.0:
+            continue
         by, gain = group.moment_by[g, k], 0.0
         most = max(most, by[0] * residual + by[1] * push + by[2] * energy)
         for i in range(len(of.moment)):

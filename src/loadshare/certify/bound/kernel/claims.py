@@ -161,6 +161,7 @@ def _put_acts(of, work):  # type: ignore[no-untyped-def]
         if of.twin[c] > c:
             _put_opposed(work, c, of.twin[c])
     fill(room, np.inf)
+    fill(work.reach, np.inf)
     fill(aside, 0.0)
     for c in range(contacts):
         acts, claimed, gap = work.acts[c], work.claimed[c], work.gap[c]

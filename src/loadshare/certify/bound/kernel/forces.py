@@ -22,6 +22,7 @@ from loadshare.certify.bound.kernel.laws import (
     nearest,
     put_laws,
     rate_of,
+    rolling_at,
     sticks,
     stiffest,
 )
@@ -44,7 +45,6 @@ def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignor
     fill(work.weakest, np.inf)
     fill(work.turned_lines, 0.0)
     fill(work.bow, 0.0)
-    fill(work.reach, np.inf)
     for c in range(len(of.twin)):
         claimed, acts, push, carried = work.claimed[c], work.acts[c], work.push, 0.0
         for v in range(BOUND.abreast):
@@ -237,12 +237,24 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
         lawful &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
         noise, next_to = BOUND.noise * work.top[v], BOUND.near * work.widest[v]
         acts = level > 0.0 or force > noise or reach - distance <= next_to
-        found.acts[s, contacts + q] = CLOSED if acts else OPEN
+        # What is light carries no load.
+        endless = max(force, level) < work.light[v]
+        found.acts[s, contacts + q] = (ENDLESS if endless else CLOSED) if acts else OPEN
         soft, spare, misfit_x, misfit_y, slips, near = 0.0, np.inf, 0.0, 0.0, 0.0, 0.0
+        least = stiffest(law)
         if acts:
-            near, along, soft, spare = nearest(law, force, distance, BOUND.corner)
+            near, along, soft, spare = nearest(law, force, distance, endless)
+            if q < of.rounds and here.round_power[0, q] != 1.0:
+                near, soft, least = rolling_at(here, s, q, force, work.light[v])
+                near = near if force > 0.0 else min(near, distance)
+                spare = 0.0 if endless else spare
+                # Of either component of the force.
+                holds = np.sqrt(0.5) * BOUND.bent * max(force, work.light[v])
+                work.reach[v] = min(work.reach[v], holds)
+                covered &= distance > 0.0 or force == 0.0
             if near <= 0.0 or distance == 0.0:
                 # On the first piece, or pinned: a spring about the centre.
+                soft = soft if force > 0.0 else 0.0
                 misfit_x, misfit_y = x - fx * soft, y - fy * soft
                 longest = max(longest, distance + force * soft)
             else:
@@ -250,7 +262,6 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
                 fx, fy = along * x / distance, along * y / distance
                 longest = max(longest, distance + near)
                 slips = 1.0 / distance if along == level else 0.0
-            covered &= q >= of.rounds or here.round_power[0, q] == 1.0
             if q >= of.rounds:
                 rate = rate_of(of, here, s, q)
                 covered &= rate == 0.0 or work.aside[v] == 0.0
@@ -264,13 +275,14 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
             work.graph[q, k, v] = law[k]
         work.offset[q, 0, v], work.offset[q, 1, v] = away_x, away_y
         work.pull[q, 0, v], work.pull[q, 1, v], work.pull[q, 2, v] = claimed_x, claimed_y, lifting
-        work.stiffest[q, v] = stiffest(law)
+        work.stiffest[q, v] = least
         work.apart[at + 2 * q, v], work.apart[at + 2 * q + 1, v] = misfit_x, misfit_y
         found.held[s, q] = np.inf
-        if rate > 0.0 and near <= 0.0 and sticks(law, force):
+        if rate > 0.0 and near <= 0.0 and not endless and sticks(law, force):
             # So it does until the torque is half of what it is.
             found.held[s, q], rate = 0.5 * level / rate, 0.0
-        found.soft[s, q], found.spare[s, q], found.rate[s, q] = soft, spare, rate
+        found.soft[s, q] = soft if soft < np.inf else 0.0
+        found.spare[s, q], found.rate[s, q] = spare, rate
         found.slip[s, q, 0], found.slip[s, q, 1] = slips * x, slips * y
     work.longest[v], work.lawful[v] = longest, 1.0 if lawful else 0.0
     work.covered[v] = 1.0 if lawful and covered else 0.0

@@ -54,6 +54,21 @@ def law_of(of, here, claim, s, q, distance):  # type: ignore[no-untyped-def]
 
 
 @inlined
+def rolling_at(here, s, q, force, light):  # type: ignore[no-untyped-def]
+    """Distance [m] at which a wall that is a power bears a force.
+
+    Further the largest and the smallest compliance [m/N] next to it; the tangents of a force that
+    is light are taken at more than that.
+    """
+    reach = here.round_radius[row_of(here.round_radius, s), q]
+    stiffness = here.round_stiffness[row_of(here.round_stiffness, s), q]
+    power, at = here.round_power[0, q], max(force, light)
+    least = (at / stiffness) ** (1.0 / power) / (power * at)
+    far = reach + (force / stiffness) ** (1.0 / power)
+    return far, max(least, far / at), least
+
+
+@inlined
 def stiffest(law):  # type: ignore[no-untyped-def]
     """Compliance of a graph that no two of its points undercut [m/N].
 
@@ -167,17 +182,19 @@ def _by_table(forces, compressions, force, near):  # type: ignore[no-untyped-def
 
 
 @inlined
-def nearest(law, force, distance, corner):  # type: ignore[no-untyped-def]
+def nearest(law, force, distance, light):  # type: ignore[no-untyped-def]
     """Point of a graph at a force that is nearest to a distance: distance [m], force [N].
 
     A distance below 0 stands for the first piece. Further the compliance [m/N] there (of a slip
-    across it, wherever it ends), and by how much the force may change.
+    across it, wherever it ends), and by how much the force may change. What is light slips where
+    the place says so.
     """
     first, stick, level, reach, last, end = law
     if np.isinf(stick):
         return -1.0, force, 1.0 / first, np.inf
     slips = stick * (1.0 + BOUND.slack) < distance < reach * (1.0 - BOUND.slack)
-    if abs(force - level) <= (BOUND.slack if slips else corner) * level:
+    near = abs(force - level) <= (BOUND.slack if slips else BOUND.corner) * level
+    if near or (slips and light):
         return min(max(distance, stick), reach), level, reach / level, BOUND.slip_turns * level
     if force > level:
         far = reach + (force - level) / last
