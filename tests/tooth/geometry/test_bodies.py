@@ -67,6 +67,15 @@ def test_fillet_is_tangent_to_the_flank(body):
         assert cosine == pytest.approx(1.0, abs=1e-8)
 
 
+def test_a_root_without_radius_is_a_sharp_corner():
+    bodies = [
+        HelicoidBody(gear(80, internal=True, addendum=0.8, tip_radius=r)) for r in (0.0, 1e-6)
+    ]
+    u = np.linspace(0.0, 1.0, 41)
+    sharp, round_ = (body.outline(u, 0.5, 1) for body in bodies)
+    np.testing.assert_allclose(sharp, round_, atol=1e-8)
+
+
 def test_the_rack_touches_all_of_the_root_and_cuts_none_of_it():
     # Second way: the rack's tip circle, rolled in small steps, against points of the root.
     made = gear(20, profile_shift=0.2)

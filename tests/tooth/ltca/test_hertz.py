@@ -13,6 +13,7 @@ from tests.tooth.ltca.hertz import (
     surfaces,
 )
 
+from loadshare.errors import Refused
 from loadshare.tooth.contact.strips import (
     StripLine,
     axis_ratio,
@@ -193,7 +194,7 @@ def test_surfaces_of_lines_are_those_of_their_strips(load):
 
 
 def test_flanks_that_do_not_part_are_refused():
-    with pytest.raises(ValueError, match="allowed > 0"):
+    with pytest.raises(Refused, match=r"relative curvature -1 1/m\); make the modifications"):
         StripLine(np.ones(2), np.array([1.0, -1.0]), np.zeros(2), *STEEL)
     with pytest.raises(ValueError, match="two positive relative curvatures"):
         PointContact((1.0, 0.0), E_STAR)

@@ -40,6 +40,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loadshare.errors import Refused
 from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array
 
@@ -183,7 +184,7 @@ class StripLine:
 
     Raises
     ------
-    ValueError
+    Refused
         If the flanks do not part across the line.
     """
 
@@ -198,9 +199,10 @@ class StripLine:
 
     def __post_init__(self) -> None:
         if np.any(self.curvature <= 0.0):
-            raise ValueError(
-                "the flanks must part on both sides of the contact line: relative curvature "
-                f"{float(np.min(self.curvature)):.4g} 1/m, allowed > 0"
+            raise Refused(
+                "the flanks do not part on both sides of a contact line (relative curvature "
+                f"{float(np.min(self.curvature)):.4g} 1/m); make the modifications smaller, or "
+                "longer"
             )
 
     @cached_property

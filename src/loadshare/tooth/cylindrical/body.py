@@ -171,6 +171,8 @@ def _by_length(curve: Curve) -> Curve:
     chord = np.abs(np.diff(curve(grid)))
     chord[0] = abs(curve(np.zeros(1))[0]) * abs(np.angle(curve(grid[:1]) / curve(grid[1:2]))[0])
     length = np.concatenate([[0.0], np.cumsum(chord)])
+    if length[1] >= length[-1]:  # a sharp corner
+        return lambda v: curve(v - 1.0)
     flat = length[1] <= TEETH.fits * length[-1]
     if flat:
         grid, length = grid[1:], length[1:] - length[1]
