@@ -1,6 +1,7 @@
 """What cannot be built is refused, naming the dimension at fault; what is doubtful is a finding."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -70,6 +71,10 @@ def test_tips_that_find_no_room_for_want_of_distance(distance, told):
         (lambda: helicoid_pair(gear(), gear(26, internal=True)), {"driven.addendum",
                                                                  "driven.tip_radius"}),
         (lambda: helicoid_pair(gear(), gear(80, internal=True)), {"driven.addendum"}),
+        (lambda: helicoid_pair(gear(10), gear(53, module=3e-3)),
+         {"driver.profile_shift", "driven.module"}),
+        (lambda: face_gear_pair(replace(PINION, teeth=29, dedendum=4.0), face_gear()),
+         {"driver.tip_radius", "driver.profile_shift", "driver.teeth"}),
         (lambda: helicoid_pair(gear(60), gear(50, internal=True, addendum=0.5)),
          {"driven.teeth"}),
         (lambda: helicoid_pair(gear(80, internal=True), gear(90, internal=True)),

@@ -6,16 +6,18 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 
+from loadshare.case.checks.fit import OVERLAP
 from loadshare.errors import CaseError, Problem
 from loadshare.involute import (
     base_distance,
     distance_without_backlash,
     inv,
+    normal_backlash,
     root_clearance,
     tips_pass,
 )
 from loadshare.settings import TEETH
-from loadshare.tooth.cylindrical.checks import gear_problems
+from loadshare.tooth.cylindrical.checks import gear_problems, value_problems
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import (
     HelicoidPair,
@@ -64,8 +66,9 @@ def helicoid_pair(
         With everything that is wrong with the gears or with their mesh.
     """
     misalignment = misalignment or Misalignment()
-    refuse(gear_problems(driver, "driver") + gear_problems(driven, "driven"))
-    refuse(_partner_problems(driver, driven, misalignment))
+    refuse(value_problems(driver, "driver") + value_problems(driven, "driven"))
+    found = gear_problems(driver, "driver") + gear_problems(driven, "driven")
+    refuse([*found, *_partner_problems(driver, driven, misalignment)])
     base = base_distance(driver, driven)
     if centre_distance is None:
         try:
@@ -78,6 +81,26 @@ def helicoid_pair(
     refuse(_mesh_problems(pair))
     refuse(meeting_problems(pair))
     return pair
+
+
+def overlap_problems(pair: HelicoidPair) -> Iterator[Problem]:
+    """Yield the centre distance at which there is no room for the flanks that carry no load.
+
+    It is a check of its own: a case has done it, with the thickness allowances of its gears.
+    """
+    gears, distance = (pair.driver_gear, pair.driven_gear), pair.centre_distance
+    backlash = normal_backlash(*gears, max(distance, base_distance(*gears)))
+    if backlash >= -OVERLAP * pair.driver_gear.module:
+        return
+    overlap = f"at this centre distance the teeth overlap by {millimetres(-backlash)}"
+    try:
+        fits = distance_without_backlash(*gears)
+    except ValueError:
+        yield _no_working_angle(*gears)
+        return
+    least, to = ("at least", up) if pair.kind > 0 else ("at most", down)
+    hint = "If the teeth are thinner, take off profile_shift and add as much to addendum."
+    yield problem("centre_distance", distance, overlap, f"{least} {millimetres(fits, to)}", hint)
 
 
 def _partner_problems(

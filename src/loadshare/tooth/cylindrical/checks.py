@@ -14,9 +14,13 @@ from loadshare.tooth.problems import Check, digits, down, failed, millimetres, p
 
 def gear_problems(gear: HelicoidGear, key: str) -> list[Problem]:
     """Everything that is wrong with one gear, keys below `key`."""
+    return value_problems(gear, key) or list(_tooth_problems(gear, key))
+
+
+def value_problems(gear: HelicoidGear, key: str) -> list[Problem]:
+    """Values that are none of a gear, each for itself."""
     found = failed(key, "this value makes no gear", _values(gear))
-    found += failed(key, "not an amount of material taken off", _amounts(gear))
-    return found or list(_tooth_problems(gear, key))
+    return found + failed(key, "not an amount of material taken off", _amounts(gear))
 
 
 def _values(gear: HelicoidGear) -> Iterator[Check]:

@@ -12,6 +12,7 @@ from loadshare.tooth.cylindrical.checks import (
     elasticity_checks,
     gear_problems,
     pressure_angle_check,
+    value_problems,
 )
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.face.flank import NoLimitError, pointing_limit, undercut_limit
@@ -57,8 +58,10 @@ def face_gear_pair(
     CaseError
         With everything that is wrong with the gears or with their mesh.
     """
-    refuse(gear_problems(pinion, "driver") + _value_problems(gear))
-    refuse(_partner_problems(pinion, gear.shaper))
+    none = "this value makes no face gear"
+    refuse(value_problems(pinion, "driver") + failed("driven", none, _values(gear)))
+    found = gear_problems(pinion, "driver") + _partner_problems(pinion, gear.shaper)
+    refuse([*found, *_shaper_problems(gear)])
     pair = FaceGearPair(pinion, gear, misalignment or FaceMisalignment())
     try:
         refuse((*_limit_problems(gear), *_mesh_problems(pair)))
@@ -67,11 +70,6 @@ def face_gear_pair(
         refuse([problem("driven.addendum", gear.addendum, what, "a smaller one")])
     refuse(meeting_problems(pair))
     return pair
-
-
-def _value_problems(gear: FaceGear) -> list[Problem]:
-    found = failed("driven", "this value makes no face gear", _values(gear))
-    return found or list(_shaper_problems(gear))
 
 
 def _values(gear: FaceGear) -> Iterator[Check]:

@@ -23,13 +23,14 @@ from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.analysis.sampling import cells
-from loadshare.tooth.cylindrical.build import helicoid_pair
+from loadshare.tooth.cylindrical.build import helicoid_pair, overlap_problems
 from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
 from loadshare.tooth.face.build import face_gear_pair
 from loadshare.tooth.face.gear import FaceGear, Shaper
 from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
 from loadshare.tooth.geometry.body import PitchDeviations
+from loadshare.tooth.pair.findings import thin_tips
 from loadshare.tooth.pair.model import (
     ABOUT,
     CONTENTS,
@@ -38,6 +39,7 @@ from loadshare.tooth.pair.model import (
     FaceGearContent,
     HelicoidContent,
 )
+from loadshare.tooth.problems import refuse
 from loadshare.tooth.unloaded.positions import transmission_error
 
 Tick = Callable[[int, int], None]
@@ -164,7 +166,8 @@ class PairFile:
             )
             self._refuse_crushed(found)
         except Refused as refusal:
-            raise Refused(f"{self.name}: {refusal}", refusal.figures) from refusal
+            thin = "".join(f"; {tip.key}: {tip.message}" for tip in thin_tips(self.geometry))
+            raise Refused(f"{self.name}: {refusal}{thin}", refusal.figures) from refusal
         return found
 
     def _refuse_crushed(self, found: Ltca) -> None:
@@ -215,6 +218,8 @@ def load_pair(path: str | Path) -> PairFile:
         raise CaseError(problems)
     try:
         geometry = built(content)
+        if isinstance(geometry, HelicoidPair):
+            refuse(overlap_problems(geometry))
     except CaseError as error:
         raise CaseError([_placed(problem, data, origin) for problem in error.problems]) from None
     return PairFile(stem(path), content, geometry)
