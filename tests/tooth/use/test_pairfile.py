@@ -8,7 +8,7 @@ import pytest
 from tests.tooth.use.pairs import FACE, PAIRS, SPUR, written
 
 from loadshare.case.described import schema_of
-from loadshare.errors import CaseError
+from loadshare.errors import CaseError, Refused
 from loadshare.tooth.cylindrical.pair import Misalignment
 from loadshare.tooth.face.pair import FaceGearPair
 from loadshare.tooth.law.file import law_of
@@ -155,6 +155,55 @@ def test_a_limit_that_is_told_may_be_written(text, key, line, tmp_path):
     except CaseError as error:
         left = [found.message for found in error.problems]
     assert problem.message not in left
+
+
+RING = "internal = true\naddendum = 0.8\nteeth = 80"
+
+
+@pytest.mark.parametrize(
+    ("driven", "near", "told", "fits"),
+    [
+        ("teeth = 50", "112.4 mm", "0.0681738 mm", "at least 112.5 mm"),
+        (RING, "82.6 mm", "0.0687156 mm", "at most 82.5 mm"),
+    ],
+)
+def test_teeth_have_room_for_one_another_as_in_a_case(tmp_path, driven, near, told, fits):
+    text = SPUR.replace("[driven]\nteeth = 50", f"[driven]\n{driven}")
+    text = text.replace("title", f'centre_distance = "{near}"\ntitle')
+    problem = problems_in(written(tmp_path, text))["centre_distance"]
+    assert problem.message == f"at this centre distance the teeth overlap by {told}"
+    assert problem.allowed == fits
+    for there in (fits[-8:], "112.498 mm" if fits[3] == "l" else "82.502 mm"):
+        load_pair(written(tmp_path, text.replace(near, there)))
+    # Thinner teeth, as the hint says.
+    thin = text.replace("[driven]", "profile_shift = -0.04\naddendum = 1.04\n[driven]")
+    load_pair(written(tmp_path, thin))
+
+
+SHARP = """helix_angle = "20 deg"
+profile_shift = 0.8
+tip_radius = 0.2
+addendum = {}
+[driven]
+tip_radius = 0.2"""
+"""To be pointed with an addendum of 1.21484, and a pinion that would carry there."""
+
+
+@pytest.mark.parametrize(
+    ("addendum", "torque", "model", "what"),
+    [
+        (1.20984, "100 N*m", "slices", "did not settle"),
+        (1.20984, "2 kN*m", "slices", "yield less under more load"),
+        (1.214839, "100 N*m", "finite elements", "did not settle"),
+    ],
+)
+def test_thin_tips_are_named_where_contact_is_refused(tmp_path, addendum, torque, model, what):
+    """A law had a negative stiffness, elements a traceback, and the remedy was more points."""
+    text = SPUR.replace("20 deg", "25 deg").replace("100 N*m", torque).replace("slices", model)
+    text = text.replace("positions = 2\npoints = 8", "positions = 5\npoints = 16")
+    pair = load_pair(written(tmp_path, text.replace("[driven]", SHARP.format(addendum))))
+    with pytest.raises(Refused, match=rf"{what}.*; driver\.addendum: the tip land is"):
+        pair.analyse()
 
 
 def test_a_misaligned_centre_distance_is_named_where_it_is_written(tmp_path):

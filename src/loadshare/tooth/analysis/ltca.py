@@ -139,7 +139,8 @@ def ltca(
     ValueError
         If torque, loads or the number of points are out of range.
     Refused
-        If a position has no contact, or one that its certificate does not pass.
+        If a position has no contact, one that its certificate does not pass, or one wider than its
+        teeth are thick.
     """
     parts = sorted({float(p) for p in (*loads, *FIT_LOADS)})
     if not (torque > 0.0 and parts[0] > 0.0):
@@ -169,6 +170,7 @@ def ltca(
             if progress is not None:
                 progress(len(found) * count // len(places), count)
     contacts = tuple(found[k] for k in range(len(positions)))
+    _refuse_falling(problems, contacts)
     return Ltca(
         rated=torque,
         torque=torques,
@@ -263,6 +265,23 @@ def _under_all(problems: Sequence[ContactProblem], loads: Array) -> Iterator[tup
     found = iter(solve_contacts(batch, np.tile(loads, len(problems))))
     for _ in problems:
         yield tuple(islice(found, len(loads)))
+
+
+def _refuse_falling(
+    problems: Sequence[ContactProblem], contacts: Sequence[tuple[Contact, ...]]
+) -> None:
+    """Refuse teeth that would yield less under more load.
+
+    Where a contact is much wider than the depth to the middle surface, as at a thin tip, more is
+    taken off for the half-space below that depth than the surface yields.
+    """
+    for problem, row in zip(problems, contacts, strict=True):
+        steps = np.diff([contact.approach for contact in row])
+        if steps.min() <= 0.0 or min(contact.tangent for contact in row) <= 0.0:
+            raise Refused(
+                f"{problem.name}: the teeth would yield less under more load, as the contact is "
+                "wider than a tooth is thick there; a thicker tip or less torque helps"
+            )
 
 
 def _line_loads(

@@ -181,14 +181,17 @@ def block_mesh(
 def _merged(blocks: Sequence[Array]) -> tuple[Array, list[Index]]:
     """Section nodes (m, layers, 3) of blocks (a, b, layers, 3), and their numbers (a, b) in each.
 
-    Nodes at one place are one node.
+    Nodes of different blocks at one place are one node; those of one block are never, however
+    thin a tip is.
     """
     points = np.concatenate([block.reshape(-1, *block.shape[2:]) for block in blocks])
     section = points[:, points.shape[1] // 2]
     near = KDTree(section).query_ball_point(section, ONE_PLACE * np.ptp(section))
-    used, number = np.unique([min(same) for same in near], return_inverse=True)
-    ends = np.cumsum([block.shape[0] * block.shape[1] for block in blocks])[:-1]
-    parts = np.split(number, ends)
+    sizes = [block.shape[0] * block.shape[1] for block in blocks]
+    own = np.repeat(np.arange(len(blocks)), sizes)
+    first = [min(j for j in same if j == i or own[j] != own[i]) for i, same in enumerate(near)]
+    used, number = np.unique(first, return_inverse=True)
+    parts = np.split(number, np.cumsum(sizes)[:-1])
     grids = [part.reshape(block.shape[:2]) for part, block in zip(parts, blocks, strict=True)]
     return points[used], grids
 

@@ -48,26 +48,30 @@ def findings(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Pr
     NoContactError
         If at some position no pair of teeth is within both active flanks.
     """
-    return (*_tip_findings(pair), *edge_contacts(pair, positions))
+    return (*thin_tips(pair), *_not_localised(pair), *edge_contacts(pair, positions))
 
 
-def _tip_findings(pair: HelicoidPair | FaceGearPair) -> Iterator[Problem]:
+def thin_tips(pair: HelicoidPair | FaceGearPair) -> Iterator[Problem]:
+    """Tips that are thinner than is common."""
     for name, gear in (("driver", pair.driver.gear), ("driven", pair.driven.gear)):
         if isinstance(gear, HelicoidGear):
             land = 2.0 * gear.tip * gear.half_angle(gear.tip)
             yield from _thin_tip(f"{name}.addendum", gear.addendum, land, gear.module)
     if isinstance(pair, FaceGearPair):
-        face, shaper = pair.gear, pair.gear.shaper
+        face = pair.gear
         land = 2.0 * face.outer * tip_half_angle(pair.driven.flank, face.outer)
-        yield from _thin_tip("driven.outer", face.outer, land, shaper.module)
-        if pair.pinion.teeth == shaper.teeth:
-            yield problem(
-                "driven.shaper.teeth",
-                shaper.teeth,
-                "the pinion has as many teeth as the shaper: contact is along a line and "
-                "moves to an end of the teeth when the pair is misaligned",
-                f"{pair.pinion.teeth + 1} to {pair.pinion.teeth + 3} for localised contact",
-            )
+        yield from _thin_tip("driven.outer", face.outer, land, face.shaper.module)
+
+
+def _not_localised(pair: HelicoidPair | FaceGearPair) -> Iterator[Problem]:
+    if isinstance(pair, FaceGearPair) and pair.pinion.teeth == pair.gear.shaper.teeth:
+        yield problem(
+            "driven.shaper.teeth",
+            pair.pinion.teeth,
+            "the pinion has as many teeth as the shaper: contact is along a line and "
+            "moves to an end of the teeth when the pair is misaligned",
+            f"{pair.pinion.teeth + 1} to {pair.pinion.teeth + 3} for localised contact",
+        )
 
 
 def edge_contacts(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Problem, ...]:
