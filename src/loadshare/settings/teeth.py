@@ -87,8 +87,8 @@ class Teeth(NamedTuple):
     least_deflection: float = 1e-6
     """Deflection [m] of flanks that do not yield at all."""
     shortest: float = 1e-4
-    """Part of a face width below which a contact line is none: it is far shorter than its contact
-    is wide, of which line contact makes a width of metres and too stiff a point."""
+    """Part of a face width below which a contact line is none: what it bears falls with its
+    length."""
     at_end: float = 1e-12
     """Distance [m] within which a station is the end of its line."""
 

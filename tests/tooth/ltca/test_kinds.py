@@ -74,6 +74,25 @@ def test_one_helix_of_two_carries_half():
     np.testing.assert_allclose(two.angle, one.angle, rtol=1e-9)
 
 
+@pytest.mark.parametrize("model", ["slices", "finite elements"])
+def test_a_line_about_to_leave_the_flanks_lets_go_of_its_load(model):
+    """The shorter it was, the wider its contact, and the more it bore: 6 % of the load next to
+    none on a helical pair.
+    """
+    pair = helicoid_pair(
+        HelicoidGear(3e-3, 25, 20e-3, helix_angle=0.3),
+        HelicoidGear(3e-3, 50, 20e-3, helix_angle=-0.3),
+    )
+    last = max(pair.changes)
+    phases = [last + step for step in (-1e-2, 3e-2, 1e-2, 3e-3, 1e-3, 2e-4)]
+    found = ltca(pair, 100.0, phases, compliance=model, points=8)
+    shares = [min(shares.values()) for shares in found.shares()[1:]]
+    assert np.all(np.diff(shares) < 0.0)
+    assert shares[-1] < 0.003
+    # The approach goes on from where there is no line any more.
+    assert found.approach[-1, -1] == pytest.approx(found.approach[0, -1], rel=0.02)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["herringbone", "internal", "face gear"])
 def test_slices_against_finite_elements(kind):

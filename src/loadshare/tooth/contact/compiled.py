@@ -81,8 +81,8 @@ def surface(strips, n, force, least, secant, tangent):  # type: ignore[no-untype
     """Compliance (N, N) of the surfaces of one position, at any forces (N,)."""
     number, place, half = strips.number[n], strips.place[n], strips.half[n]
     scale, count, terms = strips.scale[n], len(force), strips.series.shape[1]
-    square = np.maximum(force, least) * strips.square[n]
-    width = np.sqrt(square)
+    square = np.minimum(np.maximum(force, least) * strips.square[n], strips.widest[n])
+    width, grows = np.sqrt(square), square < strips.widest[n]
     for i in range(count):
         secant[i], tangent[i] = 0.0, 0.0
         for k in range(terms - 1, -1, -1):
@@ -90,7 +90,7 @@ def surface(strips, n, force, least, secant, tangent):  # type: ignore[no-untype
             for j in range(count):
                 term = strips.series[n, k, i, j]
                 secant[i, j] = secant[i, j] * square[j] + term
-                tangent[i, j] = tangent[i, j] * square[j] + (1.0 + k) * term
+                tangent[i, j] = tangent[i, j] * square[j] + (1.0 + k * grows[j]) * term
         if number[i] < 0.0:
             continue
         for j in range(count):
@@ -101,7 +101,7 @@ def surface(strips, n, force, least, secant, tangent):  # type: ignore[no-untype
                 near = shape((away - half[j]) / width[j], strips.table)
                 secant[i, j] = scale[j] * (far[0] - near[0])
                 # b grows as √p, so p ∂S/∂p = −½ Σ ± τ g'(τ).
-                tangent[i, j] = secant[i, j] - 0.5 * scale[j] * (far[1] - near[1])
+                tangent[i, j] = secant[i, j] - 0.5 * grows[j] * scale[j] * (far[1] - near[1])
         if strips.alone[n, i] > 0.0:
             depth = strips.level[n, i] - 0.5 * np.log(max(force[i], least))
             secant[i, i] += strips.alone[n, i] * depth

@@ -96,6 +96,7 @@ class Strips(NamedTuple):
     half: Array  # (M, N): half of the length [m]
     scale: Array  # (M, N): displacement per force and unit of g [m/N]
     square: Array  # (M, N): b² per force [m²/N]
+    widest: Array  # (M, N): the largest b² [m²]
     alone: Array  # (M, N): A of slices of narrow faces [m/N]; 0 of others
     level: Array  # (M, N): their B
     series: Array  # (M, TEETH.terms + 1, N, N): coefficients of b²ᵏ [m/N]
@@ -137,7 +138,7 @@ class ContactBatch:
         positions, points = len(problems), int(self.count.max())
         self.gap = np.full((positions, points), TEETH.far_off)
         self.fixed = np.zeros((positions, points, points))
-        strips = np.zeros((7, positions, points))
+        strips = np.zeros((8, positions, points))
         strips[0] = -1.0
         for k, (problem, count) in enumerate(zip(problems, self.count, strict=True)):
             self.gap[k, :count] = problem.gap
@@ -182,11 +183,10 @@ COEFFICIENTS = np.array(
 
 
 def _strips(number: int, line: StripLine) -> Array:
-    """What `Strips` holds of the strips of a line, from its number to `level` (7, n)."""
-    # b² per force: half-width of line contact at the strip's load per length.
-    square = line.widths(np.ones_like(line.length)) ** 2
+    """What `Strips` holds of the strips of a line, from its number to `level` (8, n)."""
     scale = 1.0 / (pi * line.effective * line.length)
     if line.narrow:
         scale = (1.0 - line.narrow) * scale
-    numbers = np.full_like(line.length, number)
-    return np.stack([numbers, line.place, 0.5 * line.length, scale, square, *line.slices])
+    numbers, widest = (np.full_like(scale, value) for value in (number, line.widest**2))
+    half = 0.5 * line.length
+    return np.stack([numbers, line.place, half, scale, line.square, widest, *line.slices])

@@ -220,8 +220,8 @@ class StripLine:
         if self.depth is None or self.narrow == 0.0:
             return none, none
         soft = [1.0 / e for e in self.modulus]
-        # b² per force of line contact in plane stress, as `widths` has it in plane strain.
-        square = self.widths(np.ones_like(self.length)) ** 2 * self.effective * sum(soft)
+        # b² per force of line contact in plane stress, as `square` is in plane strain.
+        square = self.square * self.effective * sum(soft)
         ends = (
             part * (0.5 * np.log(4.0 * depth**2 / square) - 0.5 * nu)
             for part, depth, nu in zip(soft, self.depth, self.poisson, strict=True)
@@ -247,9 +247,21 @@ class StripLine:
             factor = width_factor(self.curvature_along, self.curvature)
         return self.curvature / factor
 
+    @cached_property
+    def square(self) -> Array:
+        """b² per force (n,) [m²/N]: of line contact at the strip's load per length."""
+        return half_width(1.0 / self.length, self._bend, self.effective) ** 2
+
+    @property
+    def widest(self) -> float:
+        """Largest half-width b [m] in what yields: with a wider contact, a shorter line would bear
+        more, and one about to leave the flanks most.
+        """
+        return float(np.sum(self.length))
+
     def widths(self, force: Array) -> Array:
         """Half-widths b (n,) [m] under the points' forces (n,) [N]."""
-        return half_width(force / self.length, self._bend, self.effective)
+        return np.sqrt(force * self.square)
 
     def pressure(self, force: Array) -> Array:
         """Largest pressure (n,) [Pa] across each strip under `force` (n,) [N]."""
