@@ -222,6 +222,13 @@ def test_a_default_that_does_not_fit_is_reported_with_its_value(tmp_path):
     assert problem["driver.tip_radius"].given == "0.38"
 
 
+def test_what_is_missing_is_told_with_what_else_is_wrong(tmp_path):
+    text = SPUR.replace('module = "3 mm"\n', "").replace("teeth = 50", "").replace("= 8", "= 5000")
+    found = problems_in(written(tmp_path, text))
+    assert found.keys() == {"driver.module", "driven.teeth", "analysis.points"}
+    assert found["analysis.points"].allowed == "a number of at most 500"
+
+
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(CaseError, match="no such file"):
         load_pair(tmp_path / "none.toml")

@@ -254,8 +254,9 @@ class StripLine:
 
     @property
     def widest(self) -> float:
-        """Largest half-width b [m] in what yields: with a wider contact, a shorter line would bear
-        more, and one about to leave the flanks most.
+        """Largest half-width b [m] in what yields.
+
+        With wider contacts a line would bear more the shorter it is.
         """
         return float(np.sum(self.length))
 

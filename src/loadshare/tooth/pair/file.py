@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 
 from loadshare.case.keys import parse, unmatched, walk
 from loadshare.case.origin import Origin
+from loadshare.case.quantity import ANGLE, LENGTH
 from loadshare.case.reader import read_toml
 from loadshare.case.recognise import TAKEN_BY, is_case
 from loadshare.case.translate import validated
@@ -209,7 +210,7 @@ def load_pair(path: str | Path) -> PairFile:
     path = Path(path)
     data = read_toml(path)
     origin = Origin(str(path))
-    problems = _unmatched(data, origin)
+    problems = [*_unmatched(data, origin), *_missing(data, origin)]
     try:
         content = _content(data, origin)
     except CaseError as error:
@@ -235,6 +236,14 @@ def _content(data: dict[str, Any], origin: Origin) -> HelicoidContent | FaceGear
         hint = did_you_mean(kind, CONTENTS)
         raise CaseError([origin.problem(data, ("kind",), what, choices(CONTENTS), hint)])
     return validated(model, data, origin)
+
+
+def _missing(data: Mapping[str, Any], origin: Origin) -> Iterator[Problem]:
+    """Yield what the driver must say for both gears."""
+    driver = data.get("driver")
+    for key, allowed in (("module", LENGTH.allowed), ("pressure_angle", ANGLE.allowed)):
+        if isinstance(driver, dict) and key not in driver:
+            yield origin.problem(data, ("driver", key), "is missing", allowed, "")
 
 
 def _unmatched(data: Mapping[str, Any], origin: Origin) -> list[Problem]:

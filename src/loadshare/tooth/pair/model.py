@@ -231,7 +231,7 @@ class Analysis(Element):
     """points: the law of a position is that of its point of the cycle; means: the mean over its
     part of the cycle, so that the mean over the cycle does not depend on how many there are."""
 
-    points: Annotated[int, Strict(), Field(ge=3)] = Field(
+    points: Annotated[int, Strict(), Field(ge=3, le=ALLOWED.on_line)] = Field(
         default_factory=lambda values: POINTS[values.get("compliance", "finite elements")]
     )
     """Points on a contact line [-]; 32 with finite elements, 16 with slices when left out."""
@@ -279,10 +279,7 @@ class PairContent(Element):
     """How the pair is analysed."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what the driver must say for both gears, and a model with too many teeth."""
-        for key, allowed in (("module", LENGTH.allowed), ("pressure_angle", ANGLE.allowed)):
-            if getattr(self.driver, key) is None:
-                yield Rule("is missing", ("driver", key), allowed)
+        """Yield a model with too many teeth."""
         few, asked = min(self.driver.teeth, self.driven.teeth), self.analysis.teeth
         if asked is not None and asked >= few:
             message = f"is too many for a gear of {few} teeth"
