@@ -15,18 +15,13 @@ from loadshare.certify.bound import Bounds
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
 from loadshare.job.many import solve_blocks
-from loadshare.scene.loading import Loading
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import contact_states as at
-from loadshare.solver.hot.exchange import Found, exchange
-from loadshare.solver.hot.iterate import Iterate
 from loadshare.study.follow.line import Line
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import samples_of
-from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 StatesByName = dict[str, NDArray[np.str_]]
 """States of elements at the values of a scan, by name."""
 BAND = 1e-8
@@ -35,8 +30,6 @@ BLOCK = 8192
 """Samples solved together."""
 CLIMBING = 20
 """Samples of a block at most that climb the ladder where the hot path has no answer."""
-FEW, ROUNDS = 8, 6
-"""Samples searched at a time for others to begin at, and how many times."""
 
 
 def states_by_name(
@@ -105,39 +98,12 @@ class Balance(Judge):
 
 
 class Scan(Machine):
-    """A machine that asks for balance alone, and takes samples for neighbours of one another."""
-
-    def __init__(self, train: Train, engine: str) -> None:
-        super().__init__(train)
-        self.engine = engine
+    """A machine that asks for balance alone."""
 
     @cached_property
     def judge(self) -> Judge:
         """Its certificate."""
         return Balance(self.train)
-
-    def _search(
-        self, loading: Loading, iterate: Iterate, found: Found, rows: Flags, tolerance: float
-    ) -> None:
-        """Search a few at a time, and begin with the others where their neighbours stand."""
-        left = np.flatnonzero(rows)
-        for _ in range(ROUNDS):
-            super()._search(loading, iterate, found, _only(_thinned(left, FEW), rows), tolerance)
-            known, left = np.flatnonzero(found.solved), left[~found.solved[left]]
-            if not (len(left) and len(known)):
-                break
-            near = known[np.clip(np.searchsorted(known, left), 0, len(known) - 1)]
-            there, engine = iterate.take(near), engine_named(self.engine, loading.count)
-            more = exchange(self.structure, loading.take(left), there, engine, found.states[near])
-            iterate.put(left[more.solved], there.take(np.flatnonzero(more.solved)))
-            found.put(left, more)
-            left = left[~found.solved[left]]
-
-
-def _only(rows: NDArray[np.intp], of: Flags) -> Flags:
-    some = np.zeros_like(of)
-    some[rows] = True
-    return some
 
 
 def _thinned(rows: NDArray[np.intp], most: int) -> NDArray[np.intp]:
@@ -151,7 +117,7 @@ def scanned(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
     if len(groups) > 1:
         return _climbed(path, line, values, engine)
     samples = groups[0][1]
-    machine = Scan(samples.train, engine)
+    machine = Scan(samples.train)
     parts: list[StatesByName] = []
     for at_ in range(0, len(values), BLOCK):
         block = slice(at_, at_ + BLOCK)

@@ -91,6 +91,33 @@ def test_what_exchange_leaves_is_searched_for(monkeypatch):
     assert found.rung == HOT
 
 
+@pytest.mark.parametrize("lies", [False, True])
+def test_samples_begin_where_the_search_for_another_ended(lies, monkeypatch):
+    """One of five is searched for, unless what the others then find is none: all of them then."""
+    own = Machine(build_train(shipped("fgfbstts/limit_ring")))
+    indices = range(1, 6)
+    expected = own.answer(own.situations(indices), CERTIFY.tolerance, vectorised.settle)
+    settle, searches = vectorised.settle, [0]
+
+    def late(structure, loading, sets, parts, state, one_only):
+        searching = bool(state.stays.any())
+        searches[0] += searching
+        if not searches[0]:
+            return failing(structure, loading, sets, parts, state, one_only)
+        verdicts, proposals = settle(structure, loading, sets, parts, state, one_only)
+        if lies and not searching:
+            state.force[np.concatenate(parts)] *= 2.0
+        return verdicts, proposals
+
+    monkeypatch.setattr(vectorised, "settle", late)
+    found = own.answer(own.situations(indices), CERTIFY.tolerance, late)
+    assert found.passed.all()
+    assert found.searched.tolist() == [True] + [lies] * 4
+    scale = expected.equilibria.flank_force.max()
+    off = np.abs(found.equilibria.flank_force - expected.equilibria.flank_force)
+    assert off.max() < 1e-9 * scale
+
+
 def test_an_answer_that_was_searched_for_says_so(monkeypatch):
     """And is of least norm, like any other."""
     settle, visits = vectorised.settle, []

@@ -224,7 +224,7 @@ class Machine:
         iterate, found = ways[0](loading, np.arange(loading.count))
         left = ~found.solved
         tries = np.ones(loading.count, dtype=np.intp)
-        searched = np.zeros(loading.count, dtype=bool)
+        searched, led = np.zeros((2, loading.count), dtype=bool)
         judging = Judging(self.structure, self.judge, situations, iterate, tolerance, quick)
         # What a rule has end on the verge takes long to bound; another way may end clear of it.
         at_once = by_rule and quick and self.judge.compiles(situations)
@@ -241,9 +241,8 @@ class Machine:
                     tries[fresh] += 1
             if not (starts or searched.any()) and found.solved.all():
                 self._last = self._as_start(loading, iterate, found)
-            left = ~found.solved & ~searched
-            self._search(loading, iterate, found, left, tolerance)
-            searched |= left
+            rows = np.flatnonzero(~found.solved & ~searched)
+            searched[self._search(loading, iterate, found, rows, led, tolerance, engine)] = True
             pin(self.structure, loading, iterate, found.states)
             verdicts = judging.renewed(renewed, bounded=not at_once)
             unproved = found.solved & ~verdicts.passed & (verdicts.worst <= tolerance)
@@ -329,18 +328,41 @@ class Machine:
         loading: Loading,
         iterate: Iterate,
         found: Found,
-        rows: Flags,
+        rows: Numbers,
+        led: Flags,
         tolerance: float,
-    ) -> None:
-        """Search an equilibrium of single samples by the proximal method."""
-        for row in np.flatnonzero(rows).tolist():
-            alone = loading.one(row)
+        engine: Engine,
+    ) -> Numbers:
+        """Search equilibria of single samples by the proximal method; return which were searched.
+
+        Others mostly end on the same set, and begin there, as long as that leads some of them on.
+        Those that have been led (S,) are searched.
+        """
+        searched: list[int] = []
+        left, leads = rows, True
+        while len(left):
+            row, left = left[:1], left[1:]
+            searched += row.tolist()
+            alone = loading.take(row)
             if is_unbalanced(self.structure, alone.load[0], tolerance):
                 continue
             one, more = search(self.structure, alone)
-            if more.solved[0]:
-                iterate.put(np.array([row]), one)
-                found.put(np.array([row]), more)
+            if not more.solved[0]:
+                continue
+            iterate.put(row, one)
+            found.put(row, more)
+            some = left[~led[left]]
+            if leads and len(some):
+                start = self._as_start(alone, one, more)
+                every = np.arange(len(some))
+                one, more = self._from_near(loading.take(some), engine, [(every, start)])
+                better = np.flatnonzero(more.solved)
+                iterate.put(some[better], one.take(better))
+                found.put(some[better], more.take(better))
+                leads = len(better) * JOB.led >= len(some)
+                led[some[better]] = True
+                left = np.setdiff1d(left, some[better], assume_unique=True)
+        return np.array(searched, dtype=np.intp)
 
     def _at_starts(self, indices: Sequence[int], engine: Engine) -> list[_Start | None]:
         """What the train itself does at some positions; None if the hot path does not know."""

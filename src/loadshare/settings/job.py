@@ -40,6 +40,9 @@ class Job(NamedTuple):
     which are mostly asked for next."""
     recent: int = 16
     """Machines that are kept, for those who solve samples of one case again and again."""
+    led: int = 16
+    """Samples, for each that begins where another one's search ended and is solved, up to which
+    others begin there too: a search takes as long as visits of some hundred samples."""
     starts: int = 64
     """Starts: sets of contacts and places drawn at random."""
     path: int = 12

@@ -50,6 +50,10 @@ class Found:
     turns: Numbers
     held: Flags
 
+    def take(self, rows: Numbers) -> Found:
+        """Return what was found of some samples."""
+        return Found(self.solved[rows], self.states[rows], self.turns[rows], self.held[rows])
+
     def put(self, rows: Numbers, other: Found) -> None:
         """Let some samples be as those of another finding, in its order; turns add up."""
         self.solved[rows] = other.solved
