@@ -29,7 +29,8 @@ class Found(NamedTuple):
     residual: Array  # largest one of balance [N]
     rounding: Array  # of that [N]
     width: Array  # rounding of lengths [m]
-    reach: Array  # error of a force up to which laws of contacts hold as assumed [N]
+    reach: Array  # error of a force up to which laws hold as assumed [N]
+    faint: Array  # the same of what is light
     room: Array  # smallest gap of what does not act [m]
     aside: Array  # largest torque of what is put aside [N·m]
     turned: Array  # largest turn of an arc's line
@@ -103,6 +104,7 @@ class Workspace(NamedTuple):
     rounding: Array
     width: Array
     reach: Array
+    faint: Array
     room: Array
     aside: Array
     turned_lines: Array

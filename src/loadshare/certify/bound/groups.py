@@ -44,7 +44,7 @@ class Groups(NamedTuple):
     into_by_push: Array
     bows: Array  # (G,): one over the shortest distance of arcs that act [1/m]
     widest: Array  # (G,): largest way per coordinate
-    by: Array  # (G, 5, 4): largest figures by load, push, energy and gap
+    by: Array  # (G, 6, 4): largest figures by load, push, energy and gap
     pull_by: Array  # (G, q, 4): their forces by load, push and energy, and ways per length
     part: Array  # (G, q, 2, n): P of the radial elements
     moment_by: Array  # (G, k, 3): torque over splines by load, push and energy
@@ -126,7 +126,7 @@ class Plan:
             *((count, k) for k in rows),
             (count, pulls, 2),
             *[(count, pulls)] * 2,
-            *[(count,)] * 14,
+            *[(count,)] * 15,
         ]
         return Found._make([number, acts, *map(np.empty, sizes)])
 
@@ -209,7 +209,7 @@ class Plan:
             (moves, n),
             (held, n),
             *[()] * 6,
-            (5, 4),
+            (6, 4),
             (pulls, 4),
             (pulls, 2, n),
             (splines, 3),
@@ -305,6 +305,8 @@ class Plan:
             self.over_meshes(figures[:, :, :flanks] * arms).max(axis=2, initial=0.0),
         )
         by[:, 3, :3] = pushing.max(axis=2, initial=0.0)
+        light = np.insert(1.0 * (acts > CLOSED), [contacts] * len(self.springs), 0.0, axis=1)
+        by[:, 5, :3] = (self._both(light)[:, None] * figures).max(axis=2, initial=0.0)
         by[:, 1] = by_way.max(axis=1, initial=0.0)
         by[:, 4] = by_way[:, by_way.shape[1] - arcs :].max(axis=1, initial=0.0)
         found.spread[:], found.spread_of_arcs[:] = sizes.sum(axis=1), pushing[:, 2].sum(axis=1)

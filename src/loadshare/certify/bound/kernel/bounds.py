@@ -11,8 +11,9 @@ from loadshare.certify.bound.kernel.laws import flank_law
 from loadshare.certify.bound.kernel.options import compiled, within
 from loadshare.settings import BOUND
 
-FORCE, WAY, TORQUE, ARC, ARC_WAY = range(5)
-"""Largest error of a force, way of an element, error of a torque; force and way of arcs."""
+FORCE, WAY, TORQUE, ARC, ARC_WAY, FAINT = range(6)
+"""Largest error of a force, way of an element, error of a torque; force and way of arcs; error of a
+force that is light."""
 
 
 @compiled
@@ -63,8 +64,10 @@ def _bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untype
                     arm = max(arm, of.arm[c])
             # A mesh has two flanks.
             found.aside[s] += 2.0 * taken * arm
-        if not balanced or not found.aside[s] < np.inf or not taken <= found.reach[s]:
+        reach = min(found.reach[s], found.faint[s])
+        if not balanced or not found.aside[s] < np.inf or not taken <= reach:
             continue
+        found.faint[s] -= taken
         by_norm = group.by[g, TORQUE, 0] * residual, group.into[g] * residual
         errors[s] = _proved(of, found, group, g, s, residual, by_norm)
         if not errors[s] <= BOUND.enough * found.largest[s]:
@@ -75,9 +78,10 @@ def _bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untype
 @within
 def _proved(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
     """Error of a torque [N·m] if all holds that was assumed; else infinite."""
-    largest, moved, torque = _answered(of, found, group, g, s, residual, carried)
+    largest, faint, moved, torque = _answered(of, found, group, g, s, residual, carried)
     # Beyond their reach laws, above all of light Hertz contacts, no longer hold as assumed.
-    if found.room[s] > moved + found.width[s] and largest <= found.reach[s] and torque < np.inf:
+    holds = largest <= found.reach[s] and faint <= found.faint[s]
+    if holds and found.room[s] > moved + found.width[s] and torque < np.inf:
         return torque + found.aside[s]
     return np.inf
 
@@ -113,7 +117,7 @@ def _passed(of, here, claim, found, group, g, s, rest):  # type: ignore[no-untyp
 
 @within
 def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
-    """Largest error of a force [N], way of an element [m] and error of a torque [N·m].
+    """Largest error of a force and of a light one [N], way of an element [m], error of a torque.
 
     Parameters
     ----------
@@ -148,6 +152,7 @@ def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-unt
         proved = False
         pushed = _by(group, g, ARC, load, push, energy, gap)
         moved = _by(group, g, ARC_WAY, load, push, energy, gap) + blind
+        moved += _pulled_way(found, group, g, s, load, push, energy)
         for wide in BOUND.wider_lines:
             if not proved:
                 box, room = wide * pushed, wide * moved
@@ -166,10 +171,11 @@ def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-unt
         off = by[0] * load + by[1] * push + by[2] * energy
         proved &= off <= found.held[s, of.rounds + k]
     largest = _by(group, g, FORCE, load, push, energy, gap)
+    faint = _by(group, g, FAINT, load, push, energy, gap)
     moved = _by(group, g, WAY, load, push, energy, gap + tilt) + blind
     moved += _pulled_way(found, group, g, s, load, push, energy)
     torque = own + _by(group, g, TORQUE, load - residual, push, energy, gap)
-    return largest, moved, torque if proved else np.inf
+    return largest, faint, moved, torque if proved else np.inf
 
 
 @within

@@ -98,6 +98,7 @@ def _take(first, width, work, found):  # type: ignore[no-untyped-def]
     take_row(found.rounding, first, width, work.rounding)
     take_row(found.width, first, width, work.width)
     take_row(found.reach, first, width, work.reach)
+    take_row(found.faint, first, width, work.faint)
     take_row(found.room, first, width, work.room)
     take_row(found.aside, first, width, work.aside)
     take_row(found.turned, first, width, work.turned_lines)
@@ -162,6 +163,7 @@ def _put_acts(of, work):  # type: ignore[no-untyped-def]
             _put_opposed(work, c, of.twin[c])
     fill(room, np.inf)
     fill(work.reach, np.inf)
+    fill(work.faint, np.inf)
     fill(aside, 0.0)
     for c in range(contacts):
         acts, claimed, gap = work.acts[c], work.claimed[c], work.gap[c]

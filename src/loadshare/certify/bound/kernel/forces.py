@@ -61,7 +61,7 @@ def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignor
             _put_bent(work, c)
         else:
             alike = _put_wall(of, here, c, first, width, work)
-        _put_reach(of, work, c, work.reach)
+        _put_reach(of, work, c, work.reach, work.faint)
         _put_seen(work, c)
         _spread_contact(work, c, first, width, found, sets, new, alike)
     for v in range(BOUND.abreast):
@@ -114,12 +114,14 @@ def _put_wall(of, here, c, first, width, work):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _put_reach(of, work, c, reach):  # type: ignore[no-untyped-def]
+def _put_reach(of, work, c, reach, faint):  # type: ignore[no-untyped-def]
     """Error of a force up to which a contact stays what it is; its compression, and any pull."""
     acts, push, compression, holds = work.acts[c], work.push, work.law[0], work.law[3]
     yielded, weakest = work.yielded, work.weakest
     for v in range(BOUND.abreast):
-        reach[v] = smaller(reach[v], holds[v] if acts[v] != OPEN else np.inf)
+        reach[v] = smaller(reach[v], holds[v] if acts[v] == CLOSED else np.inf)
+    for v in range(BOUND.abreast):
+        faint[v] = smaller(faint[v], holds[v] if acts[v] > CLOSED else np.inf)
     # What opens may move by any length; of two that touch, one takes what the other cannot.
     if of.twin[c] < 0:
         for v in range(BOUND.abreast):
@@ -247,10 +249,12 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
             if q < of.rounds and here.round_power[0, q] != 1.0:
                 near, soft, least = rolling_at(here, s, q, force, work.light[v])
                 near = near if force > 0.0 else min(near, distance)
-                spare = 0.0 if endless else spare
                 # Of either component of the force.
                 holds = np.sqrt(0.5) * BOUND.bent * max(force, work.light[v])
-                work.reach[v] = min(work.reach[v], holds)
+                if endless:
+                    work.faint[v], spare = min(work.faint[v], holds), 0.0
+                else:
+                    work.reach[v] = min(work.reach[v], holds)
                 covered &= distance > 0.0 or force == 0.0
             if near <= 0.0 or distance == 0.0:
                 # On the first piece, or pinned: a spring about the centre.
