@@ -321,7 +321,7 @@ def test_a_case_that_is_written_elsewhere_does_without_the_files_of_its_laws(
 ):
     """Beside them, a case names them as before, so that its laws follow their next change."""
     made = tmp_path / folder / "made.toml"
-    known = known_law(load_pair(spur))
+    known = computed_law(load_pair(spur))
     words = [how, tmp_path / "case.toml", "-o", made]
     if how == "fit":
         measured = 'measured.m={position=1, torque={a-b="95 N*m"}, torque_uncertainty="1 N*m"}'
