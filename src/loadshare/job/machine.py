@@ -333,10 +333,22 @@ class Machine:
         tolerance: float,
         engine: Engine,
     ) -> Numbers:
-        """Search equilibria of single samples by the proximal method; return which were searched.
+        """Search equilibria of some samples by the proximal method, one by one.
 
-        Others mostly end on the same set, and begin there, as long as that leads some of them on.
-        Those that have been led (S,) are searched.
+        Others mostly end on the same set: they begin there, as long as that leads some of them to
+        an answer. What was led and comes back was no equilibrium, and is searched for.
+
+        Parameters
+        ----------
+        rows : ndarray of int
+            Numbers of the samples.
+        led : ndarray of bool, shape (S,)
+            Which samples were led; renewed in place.
+
+        Returns
+        -------
+        ndarray of int
+            Which samples were searched for.
         """
         searched: list[int] = []
         left, leads = rows, True

@@ -48,7 +48,7 @@ class Allowed(NamedTuple):
     """Size of a number without a unit that shapes teeth, such as a shift in modules."""
     positions: int = 100_000
     """Positions of a mesh cycle."""
-    on_line: int = 500
+    line_points: int = 500
     """Points on a contact line: its matrices grow with their square, to a gigabyte here."""
     common: int = 20_000
     """Positions over the common period of all meshes, each of which keeps its answer."""

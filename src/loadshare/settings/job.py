@@ -41,8 +41,8 @@ class Job(NamedTuple):
     recent: int = 16
     """Machines that are kept, for those who solve samples of one case again and again."""
     led: int = 16
-    """Samples, for each that begins where another one's search ended and is solved, up to which
-    others begin there too: a search takes as long as visits of some hundred samples."""
+    """Samples that begin where the search for another one ended, of which at least one must be
+    solved for it to be tried again: a search takes some ten times as long as such a sample."""
     starts: int = 64
     """Starts: sets of contacts and places drawn at random."""
     path: int = 12

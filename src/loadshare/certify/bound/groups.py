@@ -157,6 +157,7 @@ class Plan:
         return found
 
     def _operators(self, contacts: Acts, radials: Acts) -> Operators:
+        """Statics of contacts and radial elements, not yet known."""
         pulls = self.pulls[radials != OPEN].reshape(-1, self.springs.shape[1])
         closed = self.contacts[contacts != OPEN]
         whole = Statics.of(np.concatenate([closed, self.springs, pulls]))

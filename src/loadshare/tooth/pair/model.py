@@ -231,7 +231,7 @@ class Analysis(Element):
     """points: the law of a position is that of its point of the cycle; means: the mean over its
     part of the cycle, so that the mean over the cycle does not depend on how many there are."""
 
-    points: Annotated[int, Strict(), Field(ge=3, le=ALLOWED.on_line)] = Field(
+    points: Annotated[int, Strict(), Field(ge=3, le=ALLOWED.line_points)] = Field(
         default_factory=lambda values: POINTS[values.get("compliance", "finite elements")]
     )
     """Points on a contact line [-]; 32 with finite elements, 16 with slices when left out."""

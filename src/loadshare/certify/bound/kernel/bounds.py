@@ -67,6 +67,7 @@ def _bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untype
         reach = min(found.reach[s], found.faint[s])
         if not balanced or not found.aside[s] < np.inf or not taken <= reach:
             continue
+        # What is light is off by what it holds as well.
         found.faint[s] -= taken
         by_norm = group.by[g, TORQUE, 0] * residual, group.into[g] * residual
         errors[s] = _proved(of, found, group, g, s, residual, by_norm)
