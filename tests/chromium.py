@@ -188,6 +188,13 @@ def as_new(browser: Any, offline: bool = True) -> Any:
     return browser
 
 
+def visit(browser: Any, page: Path) -> None:
+    """Open a file, whole: the driver may return from a large one while it is still read."""
+    browser.get(page.as_uri())
+    complete = "return document.readyState === 'complete'"
+    waiting(browser, 60).until(lambda b: b.execute_script(complete))
+
+
 def waiting(browser: Any, seconds: float) -> Any:
     """What waits for a page so long at most, and looks often enough to lose no time itself."""
     from selenium.webdriver.support.ui import WebDriverWait
@@ -230,5 +237,5 @@ def badly_set_file(browser: Any, svg: str, folder: Path) -> list[str]:
     """The same of an SVG file's text."""
     page = folder / "picture.html"
     page.write_text(f'<!doctype html><meta charset="utf-8"><body>{svg}', encoding="utf-8")
-    browser.get(page.as_uri())
+    visit(browser, page)
     return badly_set(browser, browser.find_element("css selector", "svg"))

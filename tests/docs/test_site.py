@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from selenium.webdriver.common.by import By
-from tests.chromium import CONTRAST, NAMES, as_new, on_screen, too_wide, waiting
+from tests.chromium import CONTRAST, NAMES, as_new, on_screen, too_wide, visit, waiting
 from tests.support import mostly_slow
 
 ROOT = Path(__file__).parents[2]
@@ -49,7 +49,7 @@ def test_the_search_works_from_a_folder(browser, site, page):
     on_screen(browser, 1280)
     browser.get("about:blank")
     browser.get_log("browser")  # what pages opened before have left there
-    browser.get((site / page).as_uri())
+    visit(browser, site / page)
     field = browser.find_element(By.CSS_SELECTOR, "input.md-search__input")
     field.click()
     field.send_keys("backlash")
@@ -69,7 +69,7 @@ FEW = ("index.html", "case-reference.html", "evidence/speed.html", "gallery/floa
 def test_pages_can_be_read(browser, site, every):
     """Nothing is wider than the screen, words stand out, controls and pictures have names."""
     # What was chosen before goes before what the system wants.
-    browser.get((site / "index.html").as_uri())
+    visit(browser, site / "index.html")
     browser.execute_script("localStorage.clear()")
     bad = []
     for page in sorted(site.rglob("*.html")):
@@ -80,7 +80,7 @@ def test_pages_can_be_read(browser, site, every):
             on_screen(browser, width, dark=dark)
             if number == 0:
                 # The page follows the screen from then on.
-                browser.get(page.as_uri())
+                visit(browser, page)
             found = [*browser.execute_script(CONTRAST), *browser.execute_script(NAMES)]
             over = too_wide(browser, width)
             if over > 0:
@@ -105,7 +105,7 @@ def test_the_keyboard_reaches_every_control(browser, site, page):
     from selenium.webdriver.common.keys import Keys
 
     on_screen(browser, 1280)
-    browser.get((site / page).as_uri())
+    visit(browser, site / page)
     shown = len(browser.execute_script(MISSED))
     assert shown > 20
     for _ in range(shown + 10):

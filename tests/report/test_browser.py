@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from tests.chromium import waiting
+from tests.chromium import visit, waiting
 from tests.report.pages import EVIL_CASE
 
 from loadshare.report.page import chapter_of_file, save_report
@@ -37,7 +37,7 @@ def page(tmp_path_factory, ring_chapter):
 @pytest.fixture
 def opened(browser, page):
     """The page as it opens, with all figures drawn."""
-    browser.get(page.as_uri())
+    visit(browser, page)
     figures = browser.execute_script(PLACES)
     assert figures >= 8
     waiting(browser, 60).until(lambda b: b.execute_script(DRAWN) == figures)
@@ -117,7 +117,7 @@ def test_the_page_prints(opened):
 
 def test_a_single_figure_opens_as_well(browser, picture, tmp_path):
     file = picture("all_elements", "share").save(tmp_path / "share.html")
-    browser.get(file.as_uri())
+    visit(browser, file)
     waiting(browser, 60).until(lambda b: b.execute_script(DRAWN) == 1)
     assert browser.get_log("browser") == []
 
@@ -136,7 +136,7 @@ setTimeout(() => {
 
 def test_no_script_runs_but_those_of_the_page(browser, page):
     """Its policy names them by their hashes, and lets nothing be compiled. Leaves complaints."""
-    browser.get(page.as_uri())
+    visit(browser, page)
     browser.execute_script(INTRUDER)
     compiling = waiting(browser, 60).until(lambda b: b.execute_script("return window.compiling"))
     assert compiling == "refused"

@@ -14,6 +14,7 @@ from tests.chromium import (
     badly_set_file,
     on_screen,
     too_wide,
+    visit,
     waiting,
 )
 from tests.support import CASES, mostly_slow
@@ -44,7 +45,7 @@ def page(tmp_path_factory, ring_chapter):
 
 def opened(browser, file, width, dark=False):
     on_screen(browser, width, dark=dark)
-    browser.get(file.as_uri())
+    visit(browser, file)
     waiting(browser, 60).until(lambda b: b.execute_script(DRAWN))
 
 
@@ -65,7 +66,7 @@ def test_a_report_fits_every_screen(browser, page, name, width):
 
 def test_the_verdict_is_on_the_first_screen(browser, page):
     on_screen(browser, 1280, 800)
-    browser.get(page("one.html").as_uri())
+    visit(browser, page("one.html"))
     cards = browser.find_elements(By.CSS_SELECTOR, ".cards")
     assert all(c.rect["y"] + c.rect["height"] <= 800 for c in cards)
     verdict = cards[0].text

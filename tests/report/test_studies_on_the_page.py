@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 from selenium.webdriver.common.by import By
-from tests.chromium import CONTRAST, NAMES, badly_set, on_screen, too_wide, waiting
+from tests.chromium import CONTRAST, NAMES, badly_set, on_screen, too_wide, visit, waiting
 from tests.report.pages import Reader
 from tests.report.test_looks import DRAWN
 from tests.support import mostly_slow, shipped
@@ -137,7 +137,7 @@ def test_from_python(case, scatter, tmp_path):
 )
 def test_their_pictures_fit_every_screen(browser, page, width, dark):
     on_screen(browser, width, dark=dark)
-    browser.get(page.as_uri())
+    visit(browser, page)
     waiting(browser, 60).until(lambda b: b.execute_script(DRAWN))
     assert too_wide(browser, width) <= 0
     pictures = browser.find_elements(By.CSS_SELECTOR, ".study .figure svg.marks")
