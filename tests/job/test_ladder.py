@@ -74,7 +74,7 @@ def test_what_exchange_leaves_is_searched_for(monkeypatch):
     assert not exchanged.searched.any()
     with monkeypatch.context() as without:
         without.setattr(
-            "loadshare.job.machine.exchange",
+            "loadshare.job.ways.exchange",
             lambda structure, loading, state, _, states=None, **how: exchange(
                 structure, loading, state, failing, states, **how
             ),
@@ -161,7 +161,7 @@ def test_a_wrong_set_is_not_handed_out(monkeypatch):
         return np.full(len(each), contact_states.DONE, np.int8), each
 
     monkeypatch.setattr(vectorised, "settle", content)
-    monkeypatch.setattr("loadshare.job.machine.search", lost)
+    monkeypatch.setattr("loadshare.job.ways.search", lost)
     own = Machine(build_train(shipped("fgfbstts/limit_ring")))
     answers = own.answer(own.situations([1]), CERTIFY.tolerance, content)
     assert not answers.passed.any(), "open stops are penetrated"

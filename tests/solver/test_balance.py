@@ -14,7 +14,7 @@ from benchmarks.random_trains.draw import draw
 from loadshare.contact import ContactProblem
 from loadshare.contact.runaway import runaway
 from loadshare.errors import Refused
-from loadshare.job import machine
+from loadshare.job import ways
 from loadshare.scene import assemble
 from loadshare.scene.structure import structure_of
 from loadshare.solver.balance import is_unbalanced
@@ -50,7 +50,7 @@ def test_nothing_is_searched_for_without_balance(monkeypatch):
     case = draw(11, 1)
     scene = assemble(build_train(case), 1)
     assert is_unbalanced(structure_of(scene.train), scene.load)
-    monkeypatch.setattr(machine, "search", lambda *_: pytest.fail("a search was made"))
+    monkeypatch.setattr(ways, "search", lambda *_: pytest.fail("a search was made"))
     with pytest.raises(Refused, match="nothing balances the load on gear sun rotation"):
         ls.solve(case)
 

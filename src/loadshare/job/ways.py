@@ -1,0 +1,136 @@
+"""Ways to solve samples of one structure: from rest, from what is near, by a rule, by a search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.array_types import Array, Flags, Numbers, States
+from loadshare.scene.loading import Loading
+from loadshare.scene.structure import Structure
+from loadshare.settings import JOB
+from loadshare.solver.balance import is_unbalanced
+from loadshare.solver.hot import vectorised
+from loadshare.solver.hot.exchange import Engine, Found, exchange, first_sets
+from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
+from loadshare.solver.hot.proximal import search
+from loadshare.solver.hot.rule import Rule, rule_of
+
+Way = Callable[[Loading, Numbers], tuple[Iterate, Found]]
+"""How some samples are solved, given with their numbers."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Start:
+    """Where samples begin: contacts and forces as in an equilibrium that is near.
+
+    One row for all samples, or one for each. Radial elements begin on their first piece all the
+    same: a slip is found from stick more surely than from another sample's slip.
+    """
+
+    states: States
+    share: Array
+
+    def of(self, rows: Numbers | int) -> Start:
+        """Return the start of some of the samples, or of one."""
+        return Start(self.states[rows], self.share[rows])
+
+
+def start_of(structure: Structure, loading: Loading, iterate: Iterate, found: Found) -> Start:
+    """Return what others can begin at: where samples have arrived."""
+    share = np.abs(iterate.force) / pushes(loading)[:, None]
+    return Start(found.states[:, : structure.rows], share)
+
+
+def from_rest(
+    structure: Structure, loading: Loading, engine: Engine, singly: bool = False
+) -> tuple[Iterate, Found]:
+    """Let samples begin where nothing is displaced."""
+    iterate = at_rest(structure, loading)
+    return iterate, exchange(structure, loading, iterate, engine, singly=singly)
+
+
+def from_near(
+    structure: Structure, loading: Loading, engine: Engine, near: Sequence[tuple[Numbers, Start]]
+) -> tuple[Iterate, Found]:
+    """Let samples begin at a start, which is given with the numbers of those that it is for."""
+    iterate, states = at_rest(structure, loading), first_sets(structure, loading)
+    for rows, start in near:
+        states[rows, : structure.rows] = start.states
+        iterate.begin(rows, start.share, loading)
+    return iterate, exchange(structure, loading, iterate, engine, states)
+
+
+def by_rule(
+    structure: Structure, loading: Loading, engine: Engine, rule: Rule
+) -> tuple[Iterate, Found]:
+    """Let samples begin where a rule says."""
+    states, iterate = rule.start(structure, loading)
+    return iterate, exchange(structure, loading, iterate, engine, states)
+
+
+def taught(structure: Structure, loading: Loading, engine: Engine) -> Rule | None:
+    """Return the rule that samples teach; None if none of them is solved."""
+    iterate, found = from_rest(structure, loading, engine)
+    if 2 * np.count_nonzero(found.solved) < loading.count:
+        iterate, found = from_rest(structure, loading, vectorised.settle, singly=True)
+    known = np.flatnonzero(found.solved)
+    if not len(known):
+        return None
+    return rule_of(structure, loading.take(known), found.states[known], iterate.take(known))
+
+
+def search_all(
+    structure: Structure,
+    loading: Loading,
+    iterate: Iterate,
+    found: Found,
+    rows: Numbers,
+    led: Flags,
+    tolerance: float,
+    engine: Engine,
+) -> Numbers:
+    """Search equilibria of some samples by the proximal method, one by one.
+
+    Others mostly end on the same set: they begin there, as long as that leads some of them to
+    an answer. What was led and comes back was no equilibrium, and is searched for.
+
+    Parameters
+    ----------
+    rows : ndarray of int
+        Numbers of the samples.
+    led : ndarray of bool, shape (S,)
+        Which samples were led; renewed in place.
+
+    Returns
+    -------
+    ndarray of int
+        Which samples were searched for.
+    """
+    done: list[int] = []
+    left, leads = rows, True
+    while len(left):
+        row, left = left[:1], left[1:]
+        done += row.tolist()
+        alone = loading.take(row)
+        if is_unbalanced(structure, alone.load[0], tolerance):
+            continue
+        one, more = search(structure, alone)
+        if not more.solved[0]:
+            continue
+        iterate.put(row, one)
+        found.put(row, more)
+        some = left[~led[left]]
+        if leads and len(some):
+            start = start_of(structure, alone, one, more)
+            every = np.arange(len(some))
+            one, more = from_near(structure, loading.take(some), engine, [(every, start)])
+            better = np.flatnonzero(more.solved)
+            iterate.put(some[better], one.take(better))
+            found.put(some[better], more.take(better))
+            leads = len(better) * JOB.led >= len(some)
+            led[some[better]] = True
+            left = np.setdiff1d(left, some[better], assume_unique=True)
+    return np.array(done, dtype=np.intp)
