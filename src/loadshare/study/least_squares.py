@@ -1,0 +1,174 @@
+"""The least-squares problem of a fit, with exact sensitivities."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from loadshare.array_types import Array
+from loadshare.case import Case
+from loadshare.case.keys import look_up, parse
+from loadshare.errors import CaseError, Problem
+from loadshare.job import solve
+from loadshare.libraries import optimize, qmc
+from loadshare.results import Result
+from loadshare.settings import FIT
+from loadshare.study.compare import Target, computed, needed, slope, targets
+from loadshare.study.parameter import (
+    RANGE,
+    STUDY,
+    Parameter,
+    applied,
+    check_apart,
+    check_smooth,
+    grid,
+    named,
+    read_parameter,
+    read_value,
+)
+from loadshare.study.positions import loaded, paths_of
+from loadshare.study.sensitivity import Sensitivity, sensitivity
+from loadshare.study.sensitivity.inputs import twin_of
+from loadshare.tooth import with_own_laws
+
+
+class LeastSquares:
+    """The least-squares problem, its unknowns scaled to [0, 1] between their bounds."""
+
+    def __init__(self, case: Case, unknowns: Mapping[Any, Sequence[object] | str]) -> None:
+        names = list(map(named, unknowns))
+        # Laws that no unknown touches are computed once, but stay the teeth's in what is found.
+        self.written, self.case = with_own_laws(case, paths_of(names)), loaded(case, names)
+        self.targets: list[Target] = targets(case)
+        self.positions = needed(self.targets)
+        if not unknowns:
+            raise CaseError([Problem(STUDY, "fit", "", "has no unknown")])
+        self.parameters: list[Parameter] = []
+        ranges = []
+        for key, bounds in unknowns.items():
+            ends = _ends(bounds)
+            numbers, unit = grid(ends, named(key), RANGE)
+            if len(numbers) != 2 or not numbers[0] < numbers[1]:
+                given = ", ".join(map(str, ends))
+                raise CaseError([Problem(STUDY, named(key), given, "is no range", RANGE)])
+            parameter = read_parameter(case, key, unit)
+            check_smooth(parameter)
+            self.parameters.append(parameter)
+            ranges.append(numbers)
+        check_apart(self.parameters)
+        self.low, self.high = np.array(ranges).T
+        self.spread = np.array([t.uncertainty for t in self.targets])
+        self.measured = np.array([t.value for t in self.targets])
+        self.evaluations = 0
+        self._last: tuple[bytes, Case, Result] | None = None
+
+    def of_bounds(self) -> CaseError | None:
+        """Return which bounds make no case by themselves, if any does not."""
+        problems: list[Problem] = []
+        for parameter, *ends in zip(self.parameters, self.low, self.high, strict=True):
+            for end in map(float, ends):
+                try:
+                    applied(self.case, [parameter], [end])
+                except CaseError as error:
+                    hint = f"The bound {parameter.text(end)} of the fit makes no case."
+                    problems += [replace(p, hint=p.hint or hint) for p in error.problems]
+        return CaseError(problems) if problems else None
+
+    def starting_points(self, count: int, seed: int) -> list[Array]:
+        """Return the values of `own`, then Sobol points."""
+        points = [(self.own() - self.low) / (self.high - self.low)]
+        if count > 1:
+            power = math.ceil(math.log2(count))
+            sampler = qmc.Sobol(len(self.parameters), seed=seed)
+            points += list(sampler.random_base2(power))[: count - 1]
+        return points
+
+    def own(self) -> Array:
+        """Values of the case itself; the middle of the bounds where it gives none between them."""
+        data, found = self.case.to_dict(), np.array((self.low + self.high) / 2)
+        for k, parameter in enumerate(self.parameters):
+            value = read_value(look_up(data, parse(parameter.keys[0])))
+            with suppress(ValueError):
+                number = math.nan if value is None else value.in_unit(parameter.unit).number
+                found[k] = number if self.low[k] <= number <= self.high[k] else found[k]
+        return found
+
+    def numbers(self, u: Array) -> Array:
+        """Values of the unknowns from their places between the bounds."""
+        return np.asarray(self.low + np.clip(u, 0.0, 1.0) * (self.high - self.low))
+
+    def solved(self, u: Array) -> tuple[Case, Result]:
+        """Return the case and its certified result at a point; the last one is kept."""
+        key = u.tobytes()
+        if self._last is None or self._last[0] != key:
+            case = applied(self.case, self.parameters, self.numbers(u))
+            self._last = (key, case, solve(case, positions=self.positions))
+            self.evaluations += 1
+        return self._last[1], self._last[2]
+
+    def residual(self, u: Array) -> Array:
+        """Computed less measured figures, in standard deviations."""
+        _, result = self.solved(u)
+        found = np.array(computed(self.case, self.targets, result))
+        return np.asarray((found - self.measured) / self.spread)
+
+    def jacobian(self, u: Array) -> Array:
+        """Derivative of the residual with respect to the scaled unknowns."""
+        case, result = self.solved(u)
+        # What has a twin varies with it.
+        keys = [
+            [key for n, key in enumerate(p.keys) if twin_of(key) not in p.keys[:n]]
+            for p in self.parameters
+        ]
+        rates = sensitivity(case, [k for some in keys for k in some], positions=self.positions)
+        columns = [sum(self._column(rates, result, key) for key in some) for some in keys]
+        scale = self.high - self.low
+        return np.asarray(np.array(columns).T / self.spread[:, None] * scale)
+
+    def _column(self, rates: Sensitivity, result: Result, key: str) -> Array:
+        """Derivatives of the figures with respect to one key, per unit of its value."""
+        factor = next(item.value.factor for item in rates.inputs if item.key == key)
+        rate = partial(_mean, rates, key)
+        return factor * np.array([slope(t, result, rate) for t in self.targets])
+
+    def descend(self, start: Array) -> tuple[float, Array]:
+        """Return the χ² and the point to which a start leads."""
+        # The method keeps strictly inside; a start on a bound would be moved by it anyway.
+        found = optimize.least_squares(
+            self.residual,
+            np.clip(start, FIT.inside, 1.0 - FIT.inside),
+            jac=self.jacobian,
+            bounds=(0.0, 1.0),
+            xtol=FIT.last,
+            ftol=FIT.last,
+            gtol=FIT.last,
+            max_nfev=200,
+        )
+        return 2.0 * float(found.cost), self._snapped(np.asarray(found.x))
+
+    def _snapped(self, u: Array) -> Array:
+        """Put what the method left a hair inside a bound onto it."""
+        return np.where(u < FIT.at_bound, 0.0, np.where(u > 1.0 - FIT.at_bound, 1.0, u))
+
+
+def _ends(bounds: object) -> list[object]:
+    """Ends of a range, which a text may hold as a command takes it, "0 um:100 um"."""
+    if isinstance(bounds, str):
+        return [*bounds.split(":")]
+    return list(bounds) if isinstance(bounds, Iterable) else [bounds]
+
+
+def _mean(rates: Sensitivity, key: str, position: int, kind: str) -> dict[str, float]:
+    """Derivatives by mesh; at a kink the mean of both sides, or the one that exists."""
+    sides = [getattr(rates.rates[position, key, side], kind) for side in ("falling", "rising")]
+    found = {}
+    for mesh in sides[0]:
+        known = [s[mesh] for s in sides if not math.isnan(s[mesh])]
+        found[mesh] = sum(known) / len(known) if known else 0.0
+    return found
