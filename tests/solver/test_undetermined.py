@@ -307,7 +307,7 @@ def test_the_norm_counts_every_gear_and_no_name():
     squares = sum((g.base_radius * found.rotation[n]) ** 2 for n, g in train.gears.items())
     squares += sum(float(p @ p) for p in found.displacement.values())
     fixed = sum(
-        (g.base_radius * scene.rotation[n].constant) ** 2
+        (g.base_radius * scene.turned[n]) ** 2
         for n, g in train.gears.items()
         if scene.rotation[n].index is None
     )

@@ -13,7 +13,7 @@ from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from loadshare.case.starter import starter_case
 from loadshare.cli.tables.sensitivity import good
 from loadshare.errors import CaseError
-from loadshare.job import machine
+from loadshare.job import ways
 from loadshare.study.parameter import Value
 from loadshare.study.positions import certified
 from loadshare.study.sensitivity import SIDES, Sensitivity, sensitivity
@@ -542,7 +542,7 @@ def test_friction_of_a_torque_that_is_round_off_has_no_sign():
 
 def test_a_body_that_nothing_holds_is_reported_at_once(monkeypatch):
     """Two flanks hold pinion 1; it drifts as soon as only one of them pushes another way."""
-    monkeypatch.setattr(machine, "search", lambda *_: pytest.fail("a search was made"))
+    monkeypatch.setattr(ways, "search", lambda *_: pytest.fail("a search was made"))
     key = 'meshes."1-2".pressure_angle'
     found = sensitivity(shipped("fgfbstts/limit_ring"), key, positions=[1])
     messages = {remark.side: remark.message for remark in found.remarks}

@@ -60,6 +60,11 @@ def splined() -> ls.Case:
     )
 
 
+def rigid() -> ls.Case:
+    """A rigid shaft, whose clocking shifts the flanks of the gears on it."""
+    return everything().replace({'shafts."2-4".stiffness': "rigid"})
+
+
 FAST: dict[str, tuple] = {
     "operating.power [kW]": (everything, 300.0, 900.0),
     "operating.torque [N*m]": (plain, 100.0, 1500.0),
@@ -77,7 +82,9 @@ FAST: dict[str, tuple] = {
     "rings.4.float [um]": (everything, 0.0, 9.0),
     "rings.4.clearance [um]": (everything, 0.0, 90.0),
     "rings.4.clearance[1] [um]": (everything, 0.0, 90.0),
+    "rings.4.stiffness [N/um]": (everything, 100.0, 900.0),
     "rings.sun.radius [um]": (round_ring, 0.0, 9.0),
+    "rings.sun.stiffness [N/um]": (round_ring, 100.0, 900.0),
     "splines.4.bending_stiffness [N/um]": (splined, 5.0, 50.0),
     "splines.4.stick_limit [um]": (splined, 0.0, 2.0),
     "splines.4.clearance [um]": (splined, 5.0, 90.0),
@@ -94,9 +101,14 @@ FAST: dict[str, tuple] = {
     'meshes."4-7".normal_backlash [um]': (plain, 5.0, 90.0),
     'shafts."2-4".stiffness [N*m/rad]': (everything, 1e5, 9e5),
     'shafts."3-5".clocking [mrad]': (everything, -1.0, 1.0),
+    'shafts."2-4".clocking [mrad]': (rigid, -1.0, 1.0),
     "gears.6.support [N/m]": (everything, 1e8, 9e8),
 }
-PREPARED = {'meshes."4-7".normal_backlash [um]': {'meshes."4-7".normal_backlash': "1 um"}}
+PREPARED = {
+    'meshes."4-7".normal_backlash [um]': {'meshes."4-7".normal_backlash': "1 um"},
+    "rings.4.stiffness [N/um]": {"rings.4.stiffness": "500 N/um"},
+    "rings.sun.stiffness [N/um]": {"rings.sun.stiffness": "500 N/um"},
+}
 """What a key needs to be in the case before it can be an array."""
 
 

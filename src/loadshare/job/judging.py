@@ -52,15 +52,19 @@ class Judging:
         Errors are bounded with every effort, or only where that takes no time (see `Judge.judge`).
         """
         if self._verdicts is None:
-            self.answers = equilibria(self.structure, self.iterate, self.compiled)
+            self.answers = self._answers(self.situations, self.iterate)
             self._verdicts = self._judged(self.situations, self.answers, bounded)
         elif rows.any():
             some = np.flatnonzero(rows)
-            answers = equilibria(self.structure, self.iterate.take(some), self.compiled)
+            situations = self.situations.take(some)
+            answers = self._answers(situations, self.iterate.take(some))
             self.answers.put_all(some, answers)
-            verdicts = self._judged(self.situations.take(some), answers, bounded)
+            verdicts = self._judged(situations, answers, bounded)
             self._verdicts = self._verdicts.replaced(some, verdicts)
         return self._verdicts
+
+    def _answers(self, situations: Situations, iterate: Iterate) -> Equilibria:
+        return equilibria(self.structure, situations, iterate, self.compiled)
 
     def _judged(self, situations: Situations, answers: Equilibria, bounded: bool) -> Verdicts:
         return self.judge.judge(

@@ -137,7 +137,7 @@ def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[E
         rng.normal(size=iterate.x.shape) * scale * 10.0 ** -rng.uniform(1, 9, (JOB.starts, 1))
     )
     found = exchange(structure, loading, iterate, vectorised.settle, states)
-    answers = equilibria(structure, iterate, False)
+    answers = equilibria(structure, situations, iterate)
     verdicts = machine.judge.judge(situations, answers, CERTIFY.tolerance)
     good = np.flatnonzero(found.solved & verdicts.passed).tolist()
     return [answers.one(row, position) for row in good]

@@ -45,7 +45,7 @@ def scene_of(structure: Structure, situation: Situations, loading: Loading | Non
     stiffness = force / length / loading.bending[0, columns.springs]
     laws = [_law(structure, loading, column) for column in range(len(structure.names))]
     rows = range(columns.flat.start, columns.flat.stop)
-    levers = structure.train.levers
+    levers, turned = structure.train.levers, structure.turned(situation)[0].tolist()
     return Scene(
         train=structure.train,
         situation=situation,
@@ -73,6 +73,7 @@ def scene_of(structure: Structure, situation: Situations, loading: Loading | Non
             for r in structure.radials
         ),
         rotation=structure.coordinates.rotation,
+        turned=dict(zip(structure.train.gears, turned, strict=True)),
         displacement=structure.coordinates.displacement,
         removed=structure.removed,
     )

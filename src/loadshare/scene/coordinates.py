@@ -13,7 +13,7 @@ from loadshare.train.train import Train
 
 @dataclass(frozen=True, slots=True)
 class Rotation:
-    """How the rotation of a gear follows from the coordinates: φ = rate · x[index] + constant.
+    """How a gear turns with the coordinates: φ = rate · x[index], from where it is at zero.
 
     Attributes
     ----------
@@ -21,13 +21,10 @@ class Rotation:
         Coordinate (an arc length on the base circle [m]), or None for a gear that cannot turn.
     rate : float
         [rad/m].
-    constant : float
-        [rad], from the clocking of rigid shafts.
     """
 
     index: int | None
     rate: float
-    constant: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +36,8 @@ class Coordinates:
     names : tuple of str
         Rotations, displacements, slips; every coordinate is a length [m].
     rotation : mapping of gear to Rotation
+    lag : ndarray, shape (gears, shafts)
+        Rotation of every gear at zero coordinates, per clocking of every rigid shaft.
     displacement : mapping of gear to slice
         Where the two displacement components of a moving gear are.
     slip : mapping of gear to slice
@@ -51,6 +50,7 @@ class Coordinates:
 
     names: tuple[str, ...]
     rotation: dict[str, Rotation]
+    lag: Array
     displacement: dict[str, slice]
     slip: dict[str, slice]
     frame: dict[str, Array]
@@ -91,7 +91,7 @@ def coordinates_of(train: Train) -> Coordinates:
         names.extend((f"{what} x", f"{what} y"))
         return slice(len(names) - 2, len(names))
 
-    rotation = _rotations(train, names, removed)
+    rotation, lag = _rotations(train, names, removed)
     displacement: dict[str, slice] = {}
     for name, gear in train.gears.items():
         if gear.moves:
@@ -101,31 +101,32 @@ def coordinates_of(train: Train) -> Coordinates:
     remembering = train.splines if train.slip is not None else ()
     slip = {gear: pair(f"spline {gear} slip") for gear in remembering}
     frame = {name: gear.frame for name, gear in train.gears.items()}
-    return Coordinates(tuple(names), rotation, displacement, slip, frame, tuple(removed))
+    return Coordinates(tuple(names), rotation, lag, displacement, slip, frame, tuple(removed))
 
 
 def _rotations(
     train: Train, names: list[str], removed: list[tuple[str, str]]
-) -> dict[str, Rotation]:
+) -> tuple[dict[str, Rotation], Array]:
     """One rotation coordinate per set of gears on rigid shafts; none for sets that are held."""
-    offset: dict[str, float] = {}
+    lag = np.zeros((len(train.gears), len(train.shafts)))
     sets: dict[str, str] = {}
     for seed in (*train.held, *train.gears):
         if seed in sets:
             continue
-        sets[seed], offset[seed] = seed, 0.0
+        sets[seed] = seed
         queue = [seed]
         while queue:
             here = queue.pop()
-            for shaft in train.shafts.values():
+            for s, shaft in enumerate(train.shafts.values()):
                 ends = (shaft.first, shaft.second)
                 if not math.isinf(shaft.stiffness) or here not in ends:
                     continue
                 forward = here == ends[0]
                 other = ends[1] if forward else ends[0]
-                lag = -shaft.clocking if forward else shaft.clocking
                 if other not in sets:
-                    sets[other], offset[other] = seed, offset[here] + lag
+                    sets[other] = seed
+                    lag[train.order[other]] = lag[train.order[here]]
+                    lag[train.order[other], s] = -1.0 if forward else 1.0
                     removed.append((f"gear {other} rotation", f"rigid shaft {shaft.name}"))
                     queue.append(other)
     removed.append((f"gear {train.output} rotation", "the output gear is held"))
@@ -136,7 +137,8 @@ def _rotations(
         if root not in where and root not in train.held:
             where[root] = len(names)
             names.append(f"gear {root} rotation")
-    return {
-        name: Rotation(where.get(root), 1.0 / train.gears[root].base_radius, offset[name])
+    rotation = {
+        name: Rotation(where.get(root), 1.0 / train.gears[root].base_radius)
         for name, root in sets.items()
     }
+    return rotation, lag

@@ -123,13 +123,13 @@ class Loading:
 
 def loading_of(structure: Structure, situations: Situations) -> Loading:
     """Write the numbers of many situations in the order and the units of the elements."""
-    at, columns, train = structure.coordinates, structure.columns, structure.train
+    columns, train = structure.columns, structure.train
     force, length = structure.force, structure.length
     gaps: list[Block] = [(columns.flanks, structure.gaps_of_flanks(situations))]
     bends: list[Block] = []
-    shafts = list(train.shafts.values())
+    shafts, turned = list(train.shafts.values()), structure.turned(situations)
     for column, (s, rate) in enumerate(structure.shafts, columns.shafts.start):
-        a, b = (at.rotation[gear].constant for gear in (shafts[s].first, shafts[s].second))
+        a, b = (turned[:, train.order[gear]] for gear in (shafts[s].first, shafts[s].second))
         gaps.append((column, (situations.clocking[:, s] - a + b) / rate))
         bends.append((column, 1.0 / (situations.torsion[:, s] * rate**2)))
     for column, (g, k) in enumerate(structure.supports, columns.supports.start):

@@ -49,6 +49,8 @@ class Scene(ContactProblem):
     springs : ndarray, shape (k, n)
         Directions of shafts and supports.
     rotation : mapping of gear to Rotation
+    turned : mapping of gear to float
+        Rotation at zero coordinates [rad], from clockings of rigid shafts.
     displacement : mapping of gear to slice
         Where the two displacement components of a moving gear are.
     removed : tuple of (str, str)
@@ -60,6 +62,7 @@ class Scene(ContactProblem):
     situation: Situations
     springs: Array
     rotation: dict[str, Rotation]
+    turned: dict[str, float]
     displacement: dict[str, slice]
     removed: tuple[tuple[str, str], ...]
 
@@ -100,7 +103,7 @@ class Scene(ContactProblem):
     def angle(self, gear: str, x: Array) -> float:
         """Rotation φ [rad] of a gear at the coordinates x."""
         r = self.rotation[gear]
-        return r.constant + (r.rate * float(x[r.index]) if r.index is not None else 0.0)
+        return self.turned[gear] + (r.rate * float(x[r.index]) if r.index is not None else 0.0)
 
     def moved(self, gear: str, x: Array) -> Array:
         """Displacement p (3,) [m] of a gear at the coordinates x."""

@@ -233,16 +233,25 @@ class Structure:
             found[j, self.columns.flanks] = [levers.get(name, 0.0) for name in names]
         return found
 
+    def turned(self, situations: Situations) -> Array:
+        """Rotation of every gear at zero coordinates [rad], shape (S or 1, gears)."""
+        if not self._lags:
+            return np.zeros((1, len(self.train.gears)))
+        return np.asarray(situations.clocking @ self.coordinates.lag.T)
+
     @cached_property
-    def at_rest(self) -> Array:
-        """Approach of every flank from clockings of rigid shafts [m]."""
-        turned = self.coordinates.rotation
-        return np.array(
-            [
-                math.fsum(arm * turned[gear].constant for gear, arm in to.turning.items())
-                for to in self.train.approaches.values()
-            ]
-        )
+    def _lags(self) -> bool:
+        return bool(self.coordinates.lag.any())
+
+    @cached_property
+    def turning(self) -> Array:
+        """Approach of every flank per rotation of every gear [m], shape (flanks, gears)."""
+        order = self.train.order
+        found = np.zeros((len(self.flanks), len(order)))
+        for e, to in enumerate(self.train.approaches.values()):
+            for gear, arm in to.turning.items():
+                found[e, order[gear]] = arm
+        return found
 
     @cached_property
     def nearer(self) -> Array:
@@ -299,7 +308,8 @@ class Structure:
         is_small = len(flat) < STATICS.samples or self.nearer.size <= STATICS.dense
         nearer = self.nearer if is_small else self._nearer_sparse
         near = np.asarray(flat @ nearer.T)
-        near += self.at_rest
+        if self._lags:
+            near = near + self.turned(situations) @ self.turning.T
         return np.asarray(situations.gap - near)
 
     @cached_property

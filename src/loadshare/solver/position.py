@@ -201,7 +201,7 @@ def coordinates_of(scene: Scene, found: Equilibrium) -> Array:
     x = np.zeros(scene.size)
     for name, r in scene.rotation.items():
         if r.index is not None:
-            x[r.index] = (found.rotation[name] - r.constant) / r.rate
+            x[r.index] = (found.rotation[name] - scene.turned[name]) / r.rate
     for name, where in scene.displacement.items():
         x[where] = scene.train.gears[name].frame @ found.displacement[name]
     for radial in scene.radials:

@@ -52,6 +52,8 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
             return True
         case ("bearings", _, "clearance"):
             return True
+        case ("rings", ring, "stiffness"):
+            return column.is_positive and not isinstance(case.rings[str(ring)].stiffness, str)
         case ("bearings", bearing, "stiffness" | "ball_stiffness" | "roller_stiffness"):
             words = isinstance(case.bearings[str(bearing)].stiffness, str)
             return column.is_positive and not words
@@ -72,8 +74,8 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
         case ("shafts", shaft, "stiffness"):
             words = isinstance(case.shafts[str(shaft)].stiffness, str)
             return column.has_numbers and not words
-        case ("shafts", shaft, "clocking"):
-            return not isinstance(case.shafts[str(shaft)].stiffness, str)
+        case ("shafts", _, "clocking"):
+            return True
         case ("gears", gear, "support"):
             return column.is_positive and not isinstance(case.gears[str(gear)].support, str)
         case ("gears", _, "support", "radial" | "tangential"):

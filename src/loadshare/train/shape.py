@@ -70,9 +70,7 @@ def _mesh(mesh: Mesh) -> tuple[Any, ...]:
 
 
 def _shaft(shaft: Shaft) -> tuple[Any, ...]:
-    rigid = math.isinf(shaft.stiffness)
-    # Of a rigid shaft the clocking is a constant of the coordinates.
-    return shaft.name, shaft.first, shaft.second, shaft.clocking if rigid else None
+    return shaft.name, shaft.first, shaft.second, math.isinf(shaft.stiffness)
 
 
 def _spline(spline: Spline) -> tuple[Any, ...]:
@@ -82,12 +80,12 @@ def _spline(spline: Spline) -> tuple[Any, ...]:
 
 
 def _ring(ring: Ring) -> tuple[Any, ...]:
+    rigid = math.isinf(ring.stiffness)
     if isinstance(ring, DrumRing):
         play = tuple(p > 0.0 for p in (*ring.clearances, ring.up, ring.down))
-        drum = (ring.neighbours, _bytes(ring.across), ring.stiffness, ring.with_errors)
+        drum = (ring.neighbours, _bytes(ring.across), rigid, ring.with_errors)
         return (ring.gear, *drum, *play)
-    stiff = math.isinf(ring.stiffness) if isinstance(ring, Bearing) else ring.stiffness
-    round_ = (_bytes(ring.offset), stiff, ring.power, ring.radius > 0.0)
+    round_ = (_bytes(ring.offset), rigid, ring.power, ring.radius > 0.0)
     return (ring.gear, isinstance(ring, Bearing), *round_)
 
 

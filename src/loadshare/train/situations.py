@@ -212,7 +212,7 @@ def _lasting(train: Train) -> dict[str, Array]:
         "support": _table([_support(g.support) for g in train.gears.values()], 2),
         "arc_clearance": _rows([r.clearances for r in drums], 2),
         "stop": _rows([(r.up, r.down) for r in drums], 2),
-        "wall": _table([0.0 if math.isinf(r.stiffness) else 1.0 / r.stiffness for r in drums]),
+        "wall": _table([1.0 / r.stiffness for r in drums]),
         "round_radius": _table([r.radius for r in rounds]),
         "round_stiffness": _table([r.stiffness for r in rounds]),
         "round_power": _table([r.power for r in rounds]),

@@ -15,12 +15,15 @@ from loadshare.settings import HOT
 from loadshare.solver.hot.contact_states import PINNED
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.train.equilibria import Equilibria, Names
+from loadshare.train.situations import Situations
 
 if TYPE_CHECKING:
     from loadshare.solver.hot.products import Rows
 
 
-def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -> Equilibria:
+def equilibria(
+    structure: Structure, situations: Situations, iterate: Iterate, compiled: bool = False
+) -> Equilibria:
     """Return displacements and forces of all samples in SI units.
 
     With `compiled`, for many samples, products pass over zeros: the same except for round-off.
@@ -35,7 +38,7 @@ def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -
     else:
         found = [table @ matrix for table, matrix in zip(tables, to.matrices, strict=True)]
     rotation, displacement, reaction, torque, support = found
-    rotation += to.turned
+    rotation += structure.turned(situations)
     count, gears, radials = len(force), len(names.gears), len(names.radials)
     flanks, rings = structure.columns.flanks, structure.columns.rings
     return Equilibria(
@@ -98,12 +101,9 @@ class _Map:
     matrices : tuple of ndarray
         To rotations (n, gears) and displacements (n, 3 gears); to reactions of radial elements
         (m, 3 radials), shafts' torques (m, shafts) and supports' forces (m, 2 gears).
-    turned : ndarray, shape (gears,)
-        Rotations where the coordinates are zero.
     """
 
     matrices: tuple[Array, ...]
-    turned: Array
 
     @cached_property
     def rows(self) -> list[Rows]:
@@ -117,8 +117,8 @@ def _map(structure: Structure, names: Names) -> _Map:
     """Return the matrices of a machine."""
     train, at, columns = structure.train, structure.coordinates, structure.columns
     gears, n, m = len(names.gears), structure.size, len(structure.kinds)
-    rotation, turned = np.zeros((n, gears)), np.zeros(gears)
-    displacement, support = np.zeros((n, gears, 3)), np.zeros((m, gears, 2))
+    rotation, displacement = np.zeros((n, gears)), np.zeros((n, gears, 3))
+    support = np.zeros((m, gears, 2))
     reaction, torque = np.zeros((m, len(names.radials), 3)), np.zeros((m, len(train.shafts)))
     for column, (s, rate) in enumerate(structure.shafts, columns.shafts.start):
         torque[column, s] = 1.0 / rate
@@ -126,7 +126,6 @@ def _map(structure: Structure, names: Names) -> _Map:
         support[column, g, k] = 1.0
     for g, name in enumerate(names.gears):
         gear, r, where = train.gears[name], at.rotation[name], at.displacement.get(name)
-        turned[g] = r.constant
         if r.index is not None:
             rotation[r.index, g] = r.rate
         if where is not None:
@@ -141,6 +140,5 @@ def _map(structure: Structure, names: Names) -> _Map:
             reaction.reshape(m, -1) * structure.force,
             torque * structure.force,
             support.reshape(m, -1) * structure.force,
-        ),
-        turned,
+        )
     )

@@ -45,5 +45,5 @@ def norm_of(scene: Scene) -> Norm:
         if r.index is not None:
             radius = scene.train.gears[gear].base_radius
             weight[r.index] += (radius * r.rate) ** 2
-            moment[r.index] += radius**2 * r.rate * r.constant
+            moment[r.index] += radius**2 * r.rate * scene.turned[gear]
     return Norm(np.sqrt(weight), -moment / weight)

@@ -92,7 +92,7 @@ def _reported(scene: Scene) -> Iterator[tuple[list[tuple[str, float, float]], li
     across = {k for where in turned.values() for k in range(where.start, where.stop)}
     for k, coordinate in enumerate(scene.coordinates):
         turning = [
-            (f"gear {gear} rotation", r.constant, r.rate)
+            (f"gear {gear} rotation", scene.turned[gear], r.rate)
             for gear, r in scene.rotation.items()
             if r.index == k
         ]

@@ -14,6 +14,7 @@ from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.numbers import Numbers
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import Situations
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,15 +48,15 @@ def switch_names(structure: Structure) -> tuple[str, ...]:
     return (*structure.row_names, *(radial.name for radial in structure.radials))
 
 
-def coordinates(structure: Structure, found: Equilibrium) -> Array:
+def coordinates(structure: Structure, situation: Situations, found: Equilibrium) -> Array:
     """Coordinates x of an equilibrium, in the units of the elements."""
-    at = structure.coordinates
-    x = np.zeros(at.size)
+    at, order = structure.coordinates, structure.train.order
+    x, turned = np.zeros(at.size), structure.turned(situation)[0]
     for gear, where in at.displacement.items():
         x[where] = at.frame[gear] @ found.displacement[gear]
     for gear, rotation in at.rotation.items():
         if rotation.index is not None:
-            x[rotation.index] = (found.rotation[gear] - rotation.constant) / rotation.rate
+            x[rotation.index] = (found.rotation[gear] - turned[order[gear]]) / rotation.rate
     return x / structure.length
 
 

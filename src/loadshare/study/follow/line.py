@@ -148,7 +148,7 @@ class Line:
             situations = self._at(values).situations(position)
             found = self.machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
             return [
-                self._from_batch(self.structure, found, k, value)
+                self._from_batch(self.structure, situations, found, k, value)
                 if found.passed[k]
                 else self._from_ladder(position, value)
                 for k, value in enumerate(values.tolist())
@@ -166,10 +166,12 @@ class Line:
         found = machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
         if not found.passed[0]:
             return self._from_ladder(position, value)
-        return self._from_batch(structure, found, 0, value)
+        return self._from_batch(structure, situations, found, 0, value)
 
-    def _from_batch(self, structure: Structure, found: Answers, k: int, value: float) -> Solved:
-        x = coordinates(structure, found.equilibria.one(k, 1))
+    def _from_batch(
+        self, structure: Structure, situations: Situations, found: Answers, k: int, value: float
+    ) -> Solved:
+        x = coordinates(structure, situations.take(slice(k, k + 1)), found.equilibria.one(k, 1))
         return Solved(value, found.states[k].copy(), x, float(found.verdicts.worst[k]))
 
     def _from_ladder(self, position: int, value: float) -> Solved | Missing:
@@ -180,7 +182,7 @@ class Line:
         except (CaseError, Refused) as refusal:
             return Missing(value, str(refusal))
         structure, found = structure_like(self.structure, train), answer.equilibrium
-        x = coordinates(structure, found)
-        numbers = Numbers.of(structure, situation_of(train, position))
+        situation = situation_of(train, position)
+        x, numbers = coordinates(structure, situation, found), Numbers.of(structure, situation)
         states = read_states(structure, numbers, found, x)
         return Solved(value, states, x, answer.certificate.worst)

@@ -20,7 +20,7 @@ from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.follow.stretches import Stretches
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.situations import situation_of
+from loadshare.train.situations import Situations, situation_of
 
 
 class BranchLost(RuntimeError):  # noqa: N818 -- a finding, not a fault
@@ -36,11 +36,13 @@ class Setting:
     train : Train
     structure : Structure
         Of the train at the input's own value: coordinates and units are the same at all values.
+    situation : Situations
     numbers : Numbers
     """
 
     train: Train
     structure: Structure
+    situation: Situations
     numbers: Numbers
 
     @classmethod
@@ -60,7 +62,8 @@ class Setting:
             If it has other elements than these.
         """
         own = structure_of(train) if base is None else structure_like(base, train)
-        return cls(train, base or own, Numbers.of(own, situation_of(train, position)))
+        situation = situation_of(train, position)
+        return cls(train, base or own, situation, Numbers.of(own, situation))
 
     @cached_property
     def levers(self) -> Array:
@@ -81,12 +84,12 @@ class Setting:
             If the equations of the active set do not reproduce the equilibrium.
         """
         branch = Branch(self, self.active_set(found))
-        return branch, branch.solve(coordinates(self.structure, found))
+        return branch, branch.solve(coordinates(self.structure, self.situation, found))
 
     def active_set(self, found: Equilibrium) -> WorkingSet:
         """Read the active set of a certified equilibrium."""
         structure, numbers = self.structure, self.numbers
-        x = coordinates(structure, found)
+        x = coordinates(structure, self.situation, found)
         states = tuple(read_states(structure, numbers, found, x).tolist())
         return set_of(structure, numbers, states, x)
 

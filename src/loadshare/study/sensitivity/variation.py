@@ -115,7 +115,8 @@ class Variation:
     def _at(self, number: float) -> Setting:
         train, structure = train_at(self._trains.at(number), self.position), self._structure
         if train.flank_positions(self.position) == self.cycle:
-            return Setting(train, structure, self._trains.numbers(train, self.position, structure))
+            numbers = self._trains.numbers(train, self.position, structure)
+            return Setting(train, structure, situation_of(train, self.position), numbers)
         return Setting.at(replace(train, held_at=self.cycle), self.position, structure)
 
     def setting(self, amount: float) -> Setting:
