@@ -137,13 +137,15 @@ def test_what_couplings_do_that_a_case_does_not_have_is_listed(written) -> None:
         (70, "coupling", "", {"rotational_stiffness": (1e6, "N mm / rad")}),
         (71, "coupling", "", {}),
         (72, "involute_spline_connection", "", {"maximum_normal_backlash": (0.1, MM)}),
+        (73, "coupling", "", {"radial_backlash": (40.0, "mum")}),
     ]
-    relations += [joint(70, 10, 98), joint(72, 12, 2)]
+    relations += [joint(70, 10, 98), joint(72, 12, 2), joint(73, 12, 2)]
     left = import_rexs(written(xml(components, relations))).left_out
     for id_, why in (
         ("70", "neither holds nor joins"),
         ("71", "joins nothing"),
-        ("72", "backlash"),
+        ("72", "its backlash"),
+        ("73", "its backlash"),
     ):
         assert any(f" {id_}: " in line and why in line for line in left)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from loadshare.errors import Problem
 from loadshare.exchange.rexs.gearing import Gearing
-from loadshare.exchange.rexs.holding import STIFF, radial
+from loadshare.exchange.rexs.holding import CLEARANCES, STIFF, radial
 from loadshare.exchange.rexs.model import (
     BEARINGS,
     COUPLINGS,
@@ -125,7 +125,9 @@ def unused(of: Gearing, used: set[str]) -> list[str]:
     for part in of.model.of_type(*BEARINGS, *COUPLINGS):
         if part.id not in used:
             found.append(f"{part.title()}: {_why_unused(of, part, sides.get(part.id, []))}")
-        elif part.number("maximum_normal_backlash"):
+        elif part.number("maximum_normal_backlash") or (
+            part.type in COUPLINGS and part.number(*CLEARANCES)
+        ):
             found.append(f"{part.title()}: its backlash")
     for coupling, *both in of.coupled:
         if coupling.id in used and _ties_across(of, coupling, both):
