@@ -268,6 +268,22 @@ def test_a_gear_off_the_axis_of_its_shaft_is_reported(written, aside, reported) 
     assert any("gear_22" in line and "1 mm off the axis" in line for line in lines) is reported
 
 
+@pytest.mark.parametrize(("aside", "reported"), [(0.0, False), (0.03, True)])
+@pytest.mark.parametrize("part", [236, 301])
+def test_a_pin_or_bearing_beside_the_axis_of_its_planet_is_reported(
+    written, part, aside, reported
+) -> None:
+    """Files give errors of pins as places, which move no planet that has a place of its own."""
+    components, relations = planetary()
+    x, y, z = next(a for id_, _, _, a in components if id_ == 230)["support_vector"][0]
+    unit = changed(
+        (components, relations), **{f"_{part}": {"support_vector": ([x, y, z + aside], MM)}}
+    )
+    lines = import_rexs(written(xml(*unit))).assumed
+    said = "concept_bearing 301 (planet bearing 1): it and its shafts count as on one axis, though"
+    assert any(line.startswith(said) and "0.03 mm" in line for line in lines) is reported
+
+
 @pytest.mark.parametrize(("speed", "reported"), [(-1000.0 / 6.0, False), (-1000.0 / 5.0, True)])
 def test_another_speed_than_the_teeth_make_is_reported(written, speed, reported) -> None:
     """20 to 40 teeth and 20 to 60: the output turns as the input does, at a sixth."""

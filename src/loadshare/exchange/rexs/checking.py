@@ -19,6 +19,8 @@ from loadshare.exchange.rexs.model import (
 )
 from loadshare.exchange.rexs.routes import applied_loads
 
+ON_AXIS = 1e-6
+"""How far from an axis what sits on it may be unreported [m]."""
 OVERLOOKED = ("normal_backlash", "runout", "angular_misalignment")
 """Words in the names of attributes that would matter to load sharing."""
 
@@ -56,6 +58,20 @@ def unplaced(of: Gearing) -> list[str]:
         and (bodies := len(of.on_shaft(shaft)))
         and (bodies > 1 or (twists and of.sections(shaft)))
     ]
+
+
+def beside_axes(of: Gearing) -> list[str]:
+    """Return the bearings that are, or join shafts that are, beside the axis of one of these."""
+    found = []
+    for part, *both in of.joined(*BEARINGS):
+        shafts = [side for side in both if side.type == "shaft"]
+        off = max((of.places.off_axis(e, s) for s in shafts for e in (part, *shafts)), default=0.0)
+        if off > ON_AXIS:
+            found.append(
+                f"{part.title()}: it and its shafts count as on one axis, though they are "
+                f"{1e3 * off:.6g} mm apart"
+            )
+    return found
 
 
 def contradictions(path: Path, of: Gearing) -> list[Problem]:

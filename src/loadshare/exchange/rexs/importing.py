@@ -14,6 +14,8 @@ from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import Data, Imported, commented
 from loadshare.exchange.rexs.balance import balanced
 from loadshare.exchange.rexs.checking import (
+    ON_AXIS,
+    beside_axes,
     contradictions,
     unknown_gears,
     unplaced,
@@ -31,8 +33,6 @@ from loadshare.exchange.rexs.reading import read_model
 from loadshare.input import stem
 from loadshare.readable import readable
 
-ON_AXIS = 1e-6
-"""How far from the axis of its shaft a gear may be unreported [m]."""
 SHIFTS = ("profile_shift_coefficient", "addendum_modification_coefficient")
 
 
@@ -73,7 +73,7 @@ class _Importer:
         checks = (unread_values, unknown_gears, contradictions)
         if problems := [each for check in checks for each in check(self.path, self.of)]:
             raise CaseError(problems)
-        self.assumed += unplaced(self.of)
+        self.assumed += [*unplaced(self.of), *beside_axes(self.of)]
         if self.of.shifts > 1:
             self.assumed.append(f"couplings are engaged as in gear {self.of.shift}")
         placed = self.of.model.of_type(*GEARS, *BEARINGS, *COUPLINGS, "planet_carrier", "shaft")
