@@ -72,6 +72,13 @@ def test_a_few_lines_make_a_case(box) -> None:
     assert ls.solve(case).positions[0].torque == pytest.approx({"a-b": 100.0})
 
 
+def test_a_head_may_say_that_its_numbers_have_no_unit(box) -> None:
+    given = import_tables(box(gears=GEARS.replace("teeth", "teeth [-]")))
+    assert given.data == import_tables(box()).data
+    (_, table), *_ = case_frames({"stages": {"I": {"meshes": ["5 -"]}}})
+    assert list(table.columns) == ["name", "meshes"]
+
+
 def test_whole_numbers_may_have_decimals(box) -> None:
     """Some programs write all numbers so; what counts teeth stays a whole number."""
     case = import_tables(box(gears=GEARS.replace("a,20,2", "a,20.0,2.0"))).case()

@@ -23,6 +23,8 @@ WHOLE = re.compile(r"([+-]?\d+)(\.0*)?")
 """Some programs write every number with decimals."""
 QUANTITY = re.compile(rf"({NUMBER.pattern}) (\S.*)")
 HEAD = re.compile(r"(.*?)\s*\[((?:1\s*/|[^\d\[\]])[^\[\]]*)\]\s*", re.DOTALL)
+NO_UNIT = "-"
+"""How heads say that the numbers below have no unit."""
 LONG = 40
 """Letters of a number."""
 
@@ -69,6 +71,7 @@ def head_of(text: str, above: Path) -> tuple[Path, str]:
     """
     found = HEAD.fullmatch(text)
     name, unit = (found[1], found[2].strip()) if found else (text, "")
+    unit = "" if unit == NO_UNIT else unit
     path = parse(name.strip())
     if len(path) > ALLOWED.depth or not all(isinstance(step, str) for step in path):
         raise ValueError(text)
@@ -124,7 +127,7 @@ def text_of(value: Any) -> str:
 def with_common_unit(values: Sequence[Any]) -> tuple[str, list[Any]]:
     """Return the one unit of all quantities among some values, and the values without it."""
     units = {unit for value in values for unit in _units(value)}
-    if len(units) != 1 or "" in units:
+    if len(units) != 1 or units & {"", NO_UNIT}:
         return "", list(values)
     (unit,) = units
     if HEAD.fullmatch(f"x [{unit}]") is None:
