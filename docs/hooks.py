@@ -65,6 +65,7 @@ ALLOWED = (
     ("tables and lists within one another", "{depth}"),
     ("elements of a section", "{elements}"),
     ("entries of a table, and of a list of keys", "{entries}"),
+    ("cells of a sheet of a workbook", "{cells}"),
     ("problems that are reported", "{problems}"),
     ("a name", "1 to {name} printable characters, no blank at either end"),
     ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),

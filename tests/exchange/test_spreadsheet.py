@@ -26,6 +26,7 @@ from loadshare.exchange.spreadsheet import (
 )
 from loadshare.exchange.spreadsheet.exporting import case_frames
 from loadshare.output import csv_of
+from loadshare.settings import ALLOWED
 
 OPERATING = "key,value\ninput,a\noutput,b\ntorque [N*m],100\n"
 GEARS = "name,teeth,module [mm],centre [mm],Face width [mm]\na,20,2,0; 0,10\nb,40,2,60; 0,10\n"
@@ -509,6 +510,18 @@ def test_rows_of_a_sheet_are_counted_and_those_of_a_result_are_not(book) -> None
     assert read() == whole
     sheets["gears"]["A20000"] = "c"
     with pytest.raises(CaseError, match="has more than 10000 rows in sheet gears"):
+        read()
+
+
+def test_cells_of_a_sheet_are_counted_with_the_empty_ones(book, monkeypatch) -> None:
+    """One in the last column of ten thousand rows took half a minute and a gigabyte."""
+    sheets, read = book
+    sheets["gears"]["XFD3"] = "x"
+    with pytest.raises(CaseError, match='column XFD: "x" has no head'):
+        read()
+    where = "loadshare.exchange.spreadsheet.workbook.ALLOWED"
+    monkeypatch.setattr(where, ALLOWED._replace(cells=2**14))
+    with pytest.raises(CaseError, match="has more than 16384 cells in sheet gears"):
         read()
 
 

@@ -22,6 +22,8 @@ class Allowed(NamedTuple):
     """Elements of a section. Checks look at pairs of them, and a train of 64 branches has 200."""
     entries: int = 10_000
     """Entries of a table, and of a list that names keys."""
+    cells: int = 20_000_000
+    """Cells of a sheet, empty ones included: programs fill columns down to row 1,048,576."""
     problems: int = 1000
     """Problems of a case that are reported."""
     options: int = 200

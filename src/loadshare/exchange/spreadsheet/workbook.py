@@ -90,7 +90,11 @@ def _sheet(path: Path, sheet: Any, calculated: bool) -> Sheet:
     sheet.reset_dimensions()
     rows: list[list[str]] = []
     dates: list[tuple[int, int]] = []
+    cells = 0
     for number, row in enumerate(sheet.iter_rows(values_only=True)):
+        cells += len(row)
+        if cells > ALLOWED.cells:
+            raise Unreadable(f"has more than {ALLOWED.cells} cells in sheet {sheet.title}")
         dates += [(number + 1, column) for column, c in enumerate(row, 1) if isinstance(c, DATES)]
         texts = [_text(cell) for cell in row]
         if any(texts):
