@@ -90,6 +90,16 @@ def test_pins_without_seats_are_rigid_and_that_is_reported(written) -> None:
     assert any("pins" in line for line in found.assumed)
 
 
+@pytest.mark.parametrize("bearer", [2, 236])
+def test_a_planet_that_is_held_in_the_casing_is_reported(written, bearer) -> None:
+    components, relations = planetary()
+    relations = [joint(301, bearer, 230) if r[1].get("assembly") == 301 else r for r in relations]
+    found = import_rexs(written(xml(components, relations)))
+    assert found.case().gears["gear_248"].support.si == pytest.approx(1e9)
+    said = "gear_248: what holds it in the casing counts as on its carrier"
+    assert (said in found.assumed) is (bearer == 2)
+
+
 @pytest.mark.parametrize(
     ("attributes", "why"),
     [

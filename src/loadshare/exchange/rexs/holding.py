@@ -218,6 +218,9 @@ def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link]
             assumed.append(
                 f"{name}: it rides on {bearer.title()}, whose other gears do not move it"
             )
+    ends = [*firm, *(seat for _, seats in pinned for seat in seats)]
+    if body.id in of.carrier_of and any(joint.other.id in of.casing for joint in ends):
+        assumed.append(f"{name}: what holds it in the casing counts as on its carrier")
     # One pin yields in series; beside other supports that would need the tilting of both shafts.
     seats = pinned[0][1] if pinned else []
     if firm or len({joint.other.id for joint, _ in pinned}) > 1:
