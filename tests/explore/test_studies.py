@@ -57,13 +57,15 @@ def test_critical_values_are_those_of_the_study(seed):
     assert gaps == pytest.approx([e for u in wanted.unproved for e in (u.start, u.stop)], rel=1e-8)
 
 
-def test_stretches_make_the_whole_slider():
-    whole = Along(shipped("fgfbstts/limit_ring"), ("rings.4.float",), 0.0, 7.0, "um", 2, 1)
-    parts = whole.stretches(5.0)
-    assert parts[0].low <= 5.0 <= parts[0].high
+@pytest.mark.parametrize(("low", "high"), [(0.0, 7.0), (-1e308, -1.0)])
+def test_stretches_make_the_whole_slider(low, high):
+    whole = Along(shipped("fgfbstts/limit_ring"), ("rings.4.float",), low, high, "um", 2, 1)
+    at = low + 0.7 * (high - low)
+    parts = whole.stretches(at)
+    assert parts[0].low <= at <= parts[0].high
     ends = sorted((part.low, part.high) for part in parts)
-    assert ends[0][0] == 0.0
-    assert ends[-1][1] == 7.0
+    assert ends[0][0] == low
+    assert ends[-1][1] == high
     assert all(one[1] == other[0] for one, other in pairwise(ends))
 
 

@@ -46,7 +46,7 @@ class Along(NamedTuple):
     def stretches(self, at: float) -> list[Along]:
         """Return its parts, those about a value first: what happens there is of most interest."""
         count = EXPLORE.stretches
-        ends = [self.low + (self.high - self.low) * k / count for k in range(count)] + [self.high]
+        ends = [self.low + (self.high - self.low) * (k / count) for k in range(count)] + [self.high]
         parts = [self._replace(low=a, high=b) for a, b in pairwise(ends)]
         return sorted(parts, key=lambda part: abs(0.5 * (part.low + part.high) - at))
 
