@@ -90,6 +90,14 @@ def test_pins_without_seats_are_rigid_and_that_is_reported(written) -> None:
     assert any("pins" in line for line in found.assumed)
 
 
+@pytest.mark.parametrize("held", [3, 53, 58])
+def test_a_bearing_on_no_shaft_is_told_so(written, held) -> None:
+    """On a carrier or a gear itself; that it holds neither would be false."""
+    parts = with_joints(planetary(), ("concept_bearing", bearing(1e8), held, 2))
+    left = import_rexs(written(xml(*parts))).left_out
+    assert "concept_bearing 500: none of its sides is a shaft" in left
+
+
 @pytest.mark.parametrize("bearer", [2, 236])
 def test_a_planet_that_is_held_in_the_casing_is_reported(written, bearer) -> None:
     components, relations = planetary()

@@ -182,6 +182,8 @@ def _why_unused(of: Gearing, part: Component, sides: list[Component]) -> str:
     """Why a bearing or coupling is in no case."""
     if not sides:
         return "it joins nothing"
+    if not any(side.type == "shaft" for side in sides):
+        return "none of its sides is a shaft"
     if part.type in COUPLINGS and not of.is_engaged(part):
         return "it is open"
     if part.type in COUPLINGS and not transmits(part):
