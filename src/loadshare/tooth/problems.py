@@ -20,42 +20,42 @@ ANGLES = {"pressure_angle", "helix_angle", "shaft_angle"}
 """Dimensions that are written in degrees."""
 
 Check: TypeAlias = tuple[str, float | str, bool, str]
-"""Name of a dimension, its value, whether that will do, and what would."""
+"""Name of a dimension, its value, whether that is allowed, and what would be."""
 
 
 def up(number: float) -> float:
-    """Return the least number of six figures that is not below one: what "at least" allows."""
+    """Round up to six figures, as a limit of "at least" requires."""
     return _with_six_figures(number, ROUND_CEILING)
 
 
 def down(number: float) -> float:
-    """Return the greatest number of six figures that is not above one: what "at most" allows."""
+    """Round down to six figures, as a limit of "at most" requires."""
     return _with_six_figures(number, ROUND_FLOOR)
 
 
 def _with_six_figures(number: float, rounding: str) -> float:
-    # What is beyond fifteen figures is round-off, of which a limit of 0.3 mm is not to be 0.300001.
+    # Figures beyond the fifteenth are round-off, which would turn a limit of 0.3 mm into 0.300001.
     exact = Decimal(f"{number:.15g}")
     return float(exact.quantize(Decimal(1).scaleb(exact.adjusted() - 5), rounding))
 
 
 def millimetres(length: float, to: Callable[[float], float] = float) -> str:
-    """A length [m] as text in mm; a limit is rounded `up` or `down`."""
+    """Return a length [m] as text in mm; a limit is rounded `up` or `down`."""
     return f"{digits(to(length * 1e3))} mm"
 
 
 def degrees(angle: float, to: Callable[[float], float] = float) -> str:
-    """An angle [rad] as text in degrees; a limit is rounded `up` or `down`."""
+    """Return an angle [rad] as text in degrees; a limit is rounded `up` or `down`."""
     return f"{digits(to(math.degrees(angle)))} deg"
 
 
 def digits(number: float) -> str:
-    """A number with six figures."""
+    """Return a number as text with six figures."""
     return f"{number:.6g}"
 
 
 def written(key: str, value: float) -> str:
-    """The value of a dimension [m, rad or 1], in the unit that its name asks for."""
+    """Return the value of a dimension [m, rad or 1] as text, in the unit that its name implies."""
     name = key.rpartition(".")[2]
     if name in LENGTHS:
         return millimetres(value)
@@ -63,19 +63,19 @@ def written(key: str, value: float) -> str:
 
 
 def problem(key: str, given: float | str, message: str, allowed: str, hint: str = "") -> Problem:
-    """A problem with one dimension; geometry does not know the file it came from."""
+    """Return a problem with one dimension, without its file, which geometry does not know."""
     text = given if isinstance(given, str) else written(key, given)
     return Problem("", key, text, message, allowed, hint)
 
 
 def same(name: str, own: float, other: float, whose: str) -> Check:
-    """That a dimension is its partner's."""
+    """Check that a dimension equals that of its partner."""
     fits = math.isclose(own, other, rel_tol=TEETH.fits)
     return name, own, fits, f"that of the {whose}, {written(name, other)}"
 
 
 def failed(key: str, message: str, checks: Iterable[Check]) -> list[Problem]:
-    """Problems with the dimensions of a gear, "driver" or "driven", that will not do."""
+    """Return a problem for each failed check of a gear, "driver" or "driven"."""
     return [
         problem(f"{key}.{name}", value, message, allowed)
         for name, value, fits, allowed in checks
@@ -84,7 +84,7 @@ def failed(key: str, message: str, checks: Iterable[Check]) -> list[Problem]:
 
 
 def refuse(problems: Iterable[Problem]) -> None:
-    """Raise problems where there are any."""
+    """Raise an error if there are any problems."""
     found = list(problems)
     if found:
         raise CaseError(found)

@@ -28,8 +28,8 @@ class LawFit:
     c : array (K,)
         [rad/(N·m)^(2/3)], ≥ 0.
     bounded : array (K,) of bool
-        Where the three angles ask for a negative b or c, which is no law: the coefficient is 0
-        there, and the other two are the best in the least-squares sense.
+        Where the three angles call for a negative b or c, which would not be a valid law: the
+        coefficient is 0 there, and the other two are the best in the least-squares sense.
     """
 
     a: Array
@@ -38,15 +38,15 @@ class LawFit:
     bounded: np.ndarray
 
     def angle(self, torque: float) -> Array:
-        """Δφ (K,) [rad] under `torque` [N·m]."""
+        """Return Δφ (K,) [rad] under `torque` [N·m]."""
         return np.asarray(self.a + self.b * torque + self.c * np.cbrt(torque) ** 2)
 
     def secant(self, torque: float) -> Array:
-        """K = T/(Δφ − a) (K,) [N·m/rad at the driver]."""
+        """Return K = T/(Δφ − a) (K,) [N·m/rad at the driver]."""
         return np.asarray(torque / (self.angle(torque) - self.a))
 
     def tangent(self, torque: float) -> Array:
-        """dT/dΔφ (K,) [N·m/rad at the driver]; 0 without load where c > 0."""
+        """Return dT/dΔφ (K,) [N·m/rad at the driver]; 0 without load where c > 0."""
         with np.errstate(divide="ignore", invalid="ignore"):
             hertz = np.where(self.c > 0.0, 2.0 / 3.0 * self.c / np.cbrt(torque), 0.0)
         return np.asarray(1.0 / (self.b + hertz))
@@ -85,7 +85,7 @@ def fit_law(torque: Array, angle: Array) -> LawFit:
 
 
 def _bounded(terms: Array, angle: Array) -> Array:
-    """Least squares with the last two coefficients not below zero."""
+    """Solve for least squares with the last two coefficients not below zero."""
     from scipy.optimize import lsq_linear
 
     scale = float(np.abs(angle).max()) or 1.0

@@ -26,14 +26,14 @@ from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.unloaded.positions import ContactLine, GearPair, MeshPosition
 
 LOADS = (0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 1.0)
-"""Parts of the rated torque: those of the fit, others to see its misfit, and the seed's three."""
+"""Parts of the rated torque: those of the fit, others to show its misfit, and the seed's three."""
 POINTS: dict[str, int] = {"finite elements": 32, "slices": 16}
-"""Points on a contact line by model: more would refine what the slices do not show."""
+"""Points on a contact line by model; slices do not resolve what more points would show."""
 BATCH = 2**16
-"""Entries of the compliance matrices of positions that are solved at once: a few megabytes."""
+"""Entries of the compliance matrices that are solved at once: a few megabytes."""
 Model = Literal["finite elements", "slices"]
 DRIVER, DRIVEN = attrgetter("driver_uw"), attrgetter("driven_uw")
-"""Points of a contact line on either flank."""
+"""Getters of the flank coordinates of a contact line's points, on either flank."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,17 +58,17 @@ def pair_compliance(
     teeth: int | None = None,
     layers: int | None = None,
 ) -> PairCompliance:
-    """Compliances of a pair from finite elements or, hundreds of times faster, from slices.
+    """Compute a pair's compliances from finite elements or, hundreds of times faster, from slices.
 
     Parameters
     ----------
     pair : GearPair
     model : {"finite elements", "slices"}
     teeth : int, optional
-        Teeth in the finite-element model, odd; by default as many as feel one another, or as the
-        gear has.
+        Teeth in the finite-element model, odd; by default as many as interact, or as the gear
+        allows.
     layers : int, optional
-        Finite elements over the face width; by default the shape of the tooth decides.
+        Finite elements over the face width; by default this follows from the shape of the tooth.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def pair_compliance(
             FiniteElements(
                 body,
                 side,
-                # On a pinion of few teeth they may be more than there are.
+                # A pinion of few teeth may have less than that.
                 teeth=teeth or min(count, most_teeth(body.teeth)),
                 divisions=replace(default_divisions(body), width=layers) if layers else None,
             )
@@ -126,21 +126,21 @@ def ltca(
     loads : sequence of float
         Parts of T; 0.1, 0.5 and 0.9 are added where they are missing.
     compliance : PairCompliance or {"finite elements", "slices"}
-        Compliances that are already there, or the model to make them with.
+        Compliances that exist already, or the model to compute them with.
     points : int, optional
         Points on each contact line; by default 32 with finite elements, 16 with slices.
     progress : callable, optional
-        Called after each position with how many are done, and how many there are.
+        Called after each position with the number done and the total.
     means : bool
-        Whether the law of a position is the mean over its part of the cycle, from equal parts.
+        Whether the law of a position is the mean over its part of the cycle; needs equal parts.
 
     Raises
     ------
     ValueError
         If torque, loads or the number of points are out of range.
     Refused
-        If a position has no contact, one that its certificate does not pass, or one wider than its
-        teeth are thick.
+        If a position has no contact, or one that fails its certificate or is wider than its teeth
+        are thick.
     """
     parts = sorted({float(p) for p in (*loads, *FIT_LOADS)})
     if not (torque > 0.0 and parts[0] > 0.0):
@@ -187,7 +187,7 @@ def ltca(
 def contact_problems(
     pair: GearPair, positions: Sequence[MeshPosition], compliance: PairCompliance
 ) -> tuple[ContactProblem, ...]:
-    """Contact problems of positions: every point of every line that may close.
+    """Return the contact problems of positions, with every point of every line that may close.
 
     Raises
     ------
@@ -221,7 +221,7 @@ def contact_problems(
 def _strips(
     pair: GearPair, lines: Sequence[ContactLine], compliance: PairCompliance
 ) -> Iterator[StripLine]:
-    """Local contact of lines, what can be computed for all of them at once done so."""
+    """Yield the local contact of lines, computed for all of them at once as far as possible."""
     ends = np.cumsum([len(line.length) for line in lines])[:-1]
     along, across = (
         np.concatenate([getattr(line, name) for line in lines])
@@ -246,7 +246,7 @@ def _strips(
 
 
 def _groups(problems: Sequence[ContactProblem], loads: int) -> Iterator[list[int]]:
-    """Numbers of the problems that are solved at once: equally many points, and not too many."""
+    """Yield the numbers of problems solved at once: of equally many points, and not too many."""
     sizes = [len(problem.gap) for problem in problems]
     for size in sorted(set(sizes)):
         alike = [k for k, own in enumerate(sizes) if own == size]
@@ -256,9 +256,9 @@ def _groups(problems: Sequence[ContactProblem], loads: int) -> Iterator[list[int
 
 
 def _under_all(problems: Sequence[ContactProblem], loads: Array) -> Iterator[tuple[Contact, ...]]:
-    """Contacts of every problem under every load, solved together.
+    """Yield the contacts of every problem under all loads, solved together.
 
-    From even forces a contact settles in no more passes than from those under another load.
+    Starting from uniform forces takes no more passes than starting from those under another load.
     """
     every = np.repeat(np.arange(len(problems)), len(loads))
     batch = ContactBatch(problems).rows(every)
@@ -272,8 +272,8 @@ def _refuse_falling(
 ) -> None:
     """Refuse teeth that would yield less under more load.
 
-    Where a contact is much wider than the depth to the middle surface, as at a thin tip, more is
-    taken off for the half-space below that depth than the surface yields.
+    Where a contact is much wider than the depth to the middle surface, as at a thin tip, the
+    displacement subtracted for the half-space below that depth exceeds that of the surface.
     """
     for problem, row in zip(problems, contacts, strict=True):
         steps = np.diff([contact.approach for contact in row])
@@ -287,7 +287,7 @@ def _refuse_falling(
 def _line_loads(
     position: MeshPosition, problem: ContactProblem, contacts: Sequence[Contact]
 ) -> tuple[tuple[LineLoad, ...], ...]:
-    """The contacts under every load, line by line."""
+    """Return the contacts under every load, line by line."""
     force = np.stack([contact.force for contact in contacts])
     distance = np.stack([contact.distance for contact in contacts])
     by_line = []

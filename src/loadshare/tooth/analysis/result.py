@@ -1,4 +1,4 @@
-"""What loaded tooth contact analysis finds."""
+"""Results of loaded tooth contact analysis."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.unloaded.positions import ContactLine, MeshPosition
 
 LEAST_LOAD = 1e-9
-"""How far below the least load of the fit a load may lie by rounding, as a part of it."""
+"""How far below the least load of the fit a load may be by rounding, relative to it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,7 +24,7 @@ class LineLoad:
     Attributes
     ----------
     line : ContactLine
-        Where it is.
+        The line.
     force : array (n,)
         Force on each point [N]; of one half for a herringbone pair.
     half_width : array (n,)
@@ -87,7 +87,7 @@ class Beside:
     positions : tuple of MeshPosition
         At the phases of the cells.
     contacts : tuple of tuple of Contact
-        Of each, under every load.
+        Contact at each position under every load.
     """
 
     cells: Cells
@@ -99,8 +99,8 @@ class Beside:
 class Ltca:
     """Loaded tooth contact at K positions of the mesh cycle and under L torques.
 
-    Law, secant, tangent and increment are those of the positions, or of the means over the parts
-    of the cycle that they represent where contact between them was solved as well.
+    Law, secant, tangent and increment are those of the positions or, if contact between them was
+    solved as well, of the means over the parts of the cycle that they represent.
 
     Attributes
     ----------
@@ -113,13 +113,13 @@ class Ltca:
     arm : float
         Approach along the normal per radian of the driver [m].
     helices : int
-        2 where forces and lines are those of one half.
+        2 if forces and lines are those of one half.
     contacts : tuple of tuple of Contact
         Certified contact of each position and load.
     lines : tuple of tuple of tuple of LineLoad
         Load on each line of each position and load.
     compliance : str
-        Model that the compliances came from.
+        Model of the compliances.
     beside : Beside, optional
         Contact between the positions.
     """
@@ -156,7 +156,7 @@ class Ltca:
 
     @cached_property
     def elastic(self) -> Array:
-        """Approach (K, L) [m] that the law gives: at the positions, or their means."""
+        """Approach (K, L) [m] to which the law is fitted: at the positions, or their means."""
         if self.beside is None:
             return self.approach
         every = np.array([[c.approach for c in row] for row in self.beside.contacts])
@@ -184,13 +184,13 @@ class Ltca:
         return np.asarray((fitted - self.law_angle) / (self.law_angle - self.law.a[:, None]))
 
     def secant(self, part: float = 1.0) -> Array:
-        """K = T/(Δφ − a) (K,) [N·m/rad at the driver] under a computed part of the rated torque.
+        """Return K = T/(Δφ − a) (K,) [N·m/rad at the driver] under a computed part of rated torque.
 
         Raises
         ------
         ValueError
-            If that part was not computed, or lies below the loads that a follows from: a is not
-            the unloaded error, but what the law has there, so that Δφ − a means nothing.
+            If that part was not computed, or lies below the loads of the fit: a is not the unloaded
+            error but a coefficient of the fit, so that Δφ − a has no meaning there.
         """
         k = self._load(part)
         if self.torque[k] < min(FIT_LOADS) * self.rated * (1.0 - LEAST_LOAD):
@@ -202,9 +202,9 @@ class Ltca:
         return np.asarray(self.torque[k] / (self.law_angle[:, k] - self.law.a))
 
     def tangent(self, part: float = 1.0) -> Array:
-        """dT/dΔφ (K,) [N·m/rad at the driver] under a computed part of the rated torque.
+        """Return dT/dΔφ (K,) [N·m/rad at the driver] under a computed part of the rated torque.
 
-        From the derivative of the contact itself, not from the fitted law.
+        It follows from the derivative of the contact itself, not from the fitted law.
         """
         k = self._load(part)
         slope = np.array([row[k].tangent for row in self.contacts])
@@ -214,7 +214,7 @@ class Ltca:
         return np.asarray(self.helices * self.arm**2 / slope)
 
     def increment(self, low: float, high: float) -> Array:
-        """ΔT/ΔΔφ (K,) [N·m/rad at the driver] between two computed parts of the rated torque."""
+        """Return ΔT/ΔΔφ (K,) [N·m/rad at the driver] between two computed parts of rated torque."""
         i, j = self._load(low), self._load(high)
         return np.asarray(
             (self.torque[j] - self.torque[i]) / (self.law_angle[:, j] - self.law_angle[:, i])
@@ -230,7 +230,7 @@ class Ltca:
         return np.asarray(np.mean(np.array(loaded, dtype=float), axis=0))
 
     def shares(self, part: float = 1.0) -> list[dict[int, float]]:
-        """Part of the load on each pair of teeth in contact, by position, under part of T."""
+        """Return, by position, the share of load on each pair of teeth in contact under a load."""
         k = self._load(part)
         forces = [{one.line.pair: float(one.force.sum()) for one in row[k]} for row in self.lines]
         return [
@@ -240,7 +240,7 @@ class Ltca:
 
     @cached_property
     def edges(self) -> tuple[EdgeContact, ...]:
-        """Every load on an edge of the flanks."""
+        """All loads on edges of the flanks."""
         return tuple(
             edge
             for k, row in enumerate(self.lines)
@@ -260,10 +260,10 @@ class Ltca:
 
 
 def _edges(position: int, load: int, one: LineLoad) -> list[EdgeContact]:
-    """Loaded ends of a line; a line's ends are on edges of the flanks.
+    """Return the loaded ends of a line; a line's ends are on edges of the flanks.
 
-    The tip is named where the end's flank coordinate lies nearer to the tip than one spacing of
-    the points, or than a thousandth of the flank.
+    The edge is the tip if the end's flank coordinate is nearer to it than one spacing of the
+    points, or than a thousandth of the flank.
     """
     found = []
     density = one.per_length

@@ -1,10 +1,10 @@
 """Means over the part of the mesh cycle that a position represents.
 
-Where a pair of teeth comes into contact or leaves it, a spur mesh jumps, and positions a part of
-the cycle apart see that part of it only which they happen to hit. The mean over a position's part
-is integrated between these changes, by Gauss's rule: the mean over the cycle is then the same
-whatever the number of positions. The changes are those without load; under load a relieved tip
-comes into contact earlier and gently, which the rule sees as a kink.
+Where a pair of teeth enters or leaves contact, the law of a spur mesh jumps, and a few positions
+catch this only by chance. The mean over a position's part of the cycle is integrated between these
+changes by Gauss's rule, so that the mean over the cycle is the same whatever the number of
+positions. The changes are those without load; under load a relieved tip comes into contact earlier
+and gradually, which is a kink to the rule.
 """
 
 from __future__ import annotations
@@ -18,40 +18,40 @@ from numpy.typing import ArrayLike
 from loadshare.tooth.geometry.body import Array
 
 LONGEST = 0.1
-"""Longest stretch of the cycle between neighbouring ends of Gauss's rule."""
+"""Longest stretch of the cycle over which Gauss's rule is applied."""
 NODES = 2
 """Nodes on a stretch: exact for a cubic."""
 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Where means over the parts of the mesh cycle are sampled.
+    """Phases and weights of means over the parts of the mesh cycle.
 
     Attributes
     ----------
     phase : array (m,)
         0 ≤ phase < 1.
     weight : array (K, m)
-        Of the phases in the mean of each position; rows sum to 1.
+        Weights of the phases in the mean of each position; rows sum to 1.
     """
 
     phase: Array
     weight: Array
 
     def mean(self, values: ArrayLike) -> Array:
-        """Means (K, …) of values (m, …) at the phases."""
+        """Return means (K, …) of values (m, …) at the phases."""
         return np.asarray(np.tensordot(self.weight, np.asarray(values, float), axes=1))
 
 
 def cells(count: int, changes: Sequence[float]) -> Cells:
-    """Divide the mesh cycle into parts about `count` positions, and these at changes of contact.
+    """Divide the mesh cycle into parts around `count` positions, and these at changes of contact.
 
     Parameters
     ----------
     count : int
-        Positions; position k represents the phases from (k − ½)/count to (k + ½)/count.
+        Number of positions; position k represents the phases (k − ½)/count to (k + ½)/count.
     changes : sequence of float
-        Phases at which the number of pairs in contact changes, or the course of their lines.
+        Phases at which pairs enter or leave contact, or their lines reach an end of the face.
     """
     from scipy.linalg import block_diag
 

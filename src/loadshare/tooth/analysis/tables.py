@@ -1,4 +1,4 @@
-"""What loaded tooth contact analysis finds, as rows of tables in SI units."""
+"""Results of loaded tooth contact analysis as rows of tables in SI units."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STIFFNESS_LOADS = (1.0, 0.95, 0.9)
 
 
 def position_rows(found: Ltca, law: MeshLaw) -> Iterator[Row]:
-    """Rows of positions: law, stiffness and lead of the driver.
+    """Yield a row for each position: law, stiffness and lead of the driver.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def position_rows(found: Ltca, law: MeshLaw) -> Iterator[Row]:
 
 
 def line_rows(found: Ltca) -> Iterator[Row]:
-    """Rows of points on the contact lines of all positions, under every load."""
+    """Yield a row for each point on the contact lines of all positions, under every load."""
     for k, row in enumerate(found.lines):
         for torque, lines in zip(found.torque, row, strict=True):
             for load in lines:

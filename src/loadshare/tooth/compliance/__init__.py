@@ -1,1 +1,1 @@
-"""How one gear's teeth yield: from finite elements, or fast from coupled slices."""
+"""Compliance of one gear's teeth: from finite elements, or faster from coupled slices."""

@@ -11,10 +11,10 @@ fillets), the core under it, and the rim under the two halves of the root spaces
      C− │core │ C+
      ───┴─────┴───        free side of the rim, clamped
 
-Farther away the rim goes on without teeth, in elements that grow longer, so that the cut sides
-are where the load is no longer felt. The section is swept over the face width. Every second node
-of the grids is a vertex; the nodes between make the hexahedra curved (27 nodes), so a coarse mesh
-follows involute and fillet closely.
+Farther away the rim continues without teeth, in ever longer elements, so that it is cut where the
+load no longer has an effect. The section is swept over the face width. Every second node of the
+grids is a vertex; the nodes between make the hexahedra curved (27 nodes), so a coarse mesh follows
+involute and fillet closely.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ Index = NDArray[np.int64]
 GROWTH = 2.0
 """Ratio of the depths of neighbouring elements, from the root into the rim."""
 ONE_PLACE = 1e-7
-"""Distance, over the size of a section, of nodes of neighbouring blocks that are one node."""
+"""Distance, over the size of a section, within which nodes of neighbouring blocks are merged."""
 
 
 @dataclass(frozen=True, slots=True)
 class Divisions:
-    """Elements of the mesh.
+    """Numbers of elements in the mesh.
 
     Attributes
     ----------
@@ -69,31 +69,31 @@ class Divisions:
         return Divisions(2, max(2, self.flank // 2), 1, 1, self.rim, self.width)
 
     def heights(self, middle: MiddleSurface) -> Array:
-        """The z of the nodes of a tooth, from the rim's free side to the tip."""
+        """Return the z of a tooth's nodes, from the rim's free side to the tip."""
         below = middle.waist - self.depths()[:0:-1] * (1.0 + middle.waist)
         return np.concatenate([below, self.levels(middle)])
 
     def levels(self, middle: MiddleSurface) -> Array:
-        """The u of the nodes of the tooth, from the waist to the tip."""
+        """Return the u of the tooth's nodes, from the waist to the tip."""
         foot = middle.body.foot
         low = np.linspace(middle.waist, foot, 2 * self.fillet + 1)
         return np.concatenate([low, np.linspace(foot, 1.0, 2 * self.flank + 1)[1:]])
 
     def depths(self) -> Array:
-        """Place of the nodes between root (0) and free side of the rim (1)."""
+        """Return the places of the nodes between root (0) and free side of the rim (1)."""
         ends = np.concatenate([[0.0], np.cumsum(GROWTH ** np.arange(self.rim))])
         ends /= ends[-1]
         nodes = np.arange(2 * self.rim + 1)
         return np.asarray(np.interp(nodes, nodes[::2], ends))
 
     def stations(self) -> Array:
-        """The w of the nodes."""
+        """Return the w of the nodes."""
         return np.linspace(0.0, 1.0, 2 * self.width + 1)
 
 
 @dataclass(frozen=True, eq=False)
 class BlockMesh:
-    """Teeth in hexahedra.
+    """Hexahedral mesh of the teeth.
 
     Attributes
     ----------
@@ -119,11 +119,11 @@ class BlockMesh:
         return int(self.points.shape[1])
 
     def over_width(self, nodes: Index) -> Index:
-        """Nodes (..., layers) of section nodes on every layer."""
+        """Return the nodes (..., layers) of section nodes on every layer."""
         return nodes[..., None] * self.layers + np.arange(self.layers)
 
     def hexahedra(self) -> Index:
-        """Nodes (element, 3, 3, 3) as section node · layers + layer."""
+        """Return the nodes (element, 3, 3, 3) as section node · layers + layer."""
         nodes = self.over_width(self.quads)
         first = range(0, self.layers - 2, 2)
         return np.concatenate([nodes[..., k : k + 3] for k in first])
@@ -179,10 +179,10 @@ def block_mesh(
 
 
 def _merged(blocks: Sequence[Array]) -> tuple[Array, list[Index]]:
-    """Section nodes (m, layers, 3) of blocks (a, b, layers, 3), and their numbers (a, b) in each.
+    """Merge blocks (a, b, layers, 3): section nodes (m, layers, 3), numbers (a, b) in each block.
 
-    Nodes of different blocks at one place are one node; those of one block are never, however
-    thin a tip is.
+    Nodes of different blocks at the same place become one node; those of one block never do,
+    however thin a tip is.
     """
     points = np.concatenate([block.reshape(-1, *block.shape[2:]) for block in blocks])
     section = points[:, points.shape[1] // 2]
@@ -197,7 +197,7 @@ def _merged(blocks: Sequence[Array]) -> tuple[Array, list[Index]]:
 
 
 def _tooth(middle: MiddleSurface, k: int, n: Divisions) -> Array:
-    """Tooth k with the core under it: from side −1 to side +1, from the free side to the tip."""
+    """Return tooth k with its core, from side −1 to side +1 and from the free side to the tip."""
     body, levels, w = middle.body, n.levels(middle), n.stations()
     low, high = (body.outline(levels[:, None], w[None, :], s) for s in (-1, 1))
     t = np.linspace(0.0, 1.0, 2 * n.across + 1)[:, None, None, None]
@@ -207,26 +207,26 @@ def _tooth(middle: MiddleSurface, k: int, n: Divisions) -> Array:
 
 
 def _root(middle: MiddleSurface, k: int, side: int, n: Divisions) -> Array:
-    """The rim under half of a root space, on a side of tooth k."""
+    """Return the rim under half of a root space, on a side of tooth k."""
     u = np.linspace(0.0, middle.waist, 2 * n.root + 1)
     root = middle.body.outline(u[:, None], n.stations()[None, :], side)
     return turned(_to_free_side(middle, root, n), _pitches(middle, k))
 
 
 def _bare_rim(middle: MiddleSurface, spaces: Sequence[float], n: Divisions) -> Array:
-    """The rim from one root space to another, without its teeth."""
+    """Return the rim from one root space to another, without its teeth."""
     root = middle.body.outline(0.0, n.stations(), -1)
     at = [turned(root, _pitches(middle, place)) for place in spaces]
     return _to_free_side(middle, np.array(at), n)
 
 
 def _to_free_side(middle: MiddleSurface, root: Array, n: Divisions) -> Array:
-    """Points (a, depths, w, 3) of the rim under root points (a, w, 3), from the free side up."""
+    """Return rim points (a, depths, w, 3) under root points (a, w, 3), from the free side up."""
     depth = n.depths()[::-1, None, None]
     free = under(middle.body, root)
     return np.asarray((1.0 - depth) * root[:, None] + depth * free[:, None])
 
 
 def _pitches(middle: MiddleSurface, number: float) -> float:
-    """Angle of a number of pitches [rad]."""
+    """Return the angle of a number of pitches [rad]."""
     return 2.0 * np.pi * number / middle.body.teeth

@@ -11,7 +11,7 @@ compiled = jit(nogil=True, error_model="numpy")
 
 @compiled
 def read(polynomials, foot, u, w, found):  # type: ignore[no-untyped-def]
-    """Numbers (n, m) of the tooth at places u and w (n,)."""
+    """Evaluate the numbers (n, m) of the tooth at places u and w (n,)."""
     coefficients, count = polynomials.coefficients, polynomials.coefficients.shape[1]
     numbers = found.shape[1]
     line, over_u, over_w = np.empty(coefficients.shape[2]), np.empty(count), np.empty(count)
@@ -32,7 +32,7 @@ def read(polynomials, foot, u, w, found):  # type: ignore[no-untyped-def]
 
 @compiled
 def _basis(x, values):  # type: ignore[no-untyped-def]
-    """Chebyshev polynomials at a place −1 to 1."""
+    """Evaluate the Chebyshev polynomials at a place from −1 to 1."""
     values[0], values[1] = 1.0, x
     for k in range(2, len(values)):
         values[k] = 2.0 * x * values[k - 1] - values[k - 2]

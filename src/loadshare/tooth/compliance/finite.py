@@ -21,11 +21,11 @@ REACH = 4.0
 class FiniteElements(Compliance):
     """Bending, shear, root and rim of one gear from quadratic hexahedra.
 
-    Tooth 0 is in the middle of `teeth` teeth, whose rim goes on without teeth on either side;
-    it is clamped on its free side and where it is cut from the gear. Every flank node is loaded in
-    turn along its normal and the middle surfaces of all the teeth are read, so the influence of a
-    loaded tooth on its neighbours is included; all teeth are alike, so one set of loads serves
-    every tooth.
+    Tooth 0 is in the middle of `teeth` teeth, whose rim continues without teeth on either side;
+    the rim is clamped on its free side and where it is cut from the gear. Every flank node is
+    loaded in turn along its normal, and the displacements of all teeth's middle surfaces are read,
+    so the influence of a loaded tooth on its neighbours is included. As all teeth are alike, one
+    set of loads serves every tooth.
 
     Parameters
     ----------
@@ -33,12 +33,12 @@ class FiniteElements(Compliance):
     side : {+1, −1}
         The flank that carries load.
     teeth : int
-        Teeth in the model, odd; teeth farther apart than half of them do not feel one another.
+        Number of teeth in the model, odd; teeth farther apart than half of it do not interact.
     bare : sequence of int, optional
-        Lengths in pitches of the elements of bare rim on either side; by default so many that the
-        cut is four rim depths away from the loaded tooth.
+        Lengths in pitches of the elements of bare rim on either side; by default enough for the
+        cut to be four rim depths away from the loaded tooth.
     divisions : Divisions, optional
-        Of the loaded tooth; by default the face width decides how many layers there are.
+        Of the loaded tooth; by default the number of layers follows from the face width.
 
     Raises
     ------
@@ -80,7 +80,7 @@ class FiniteElements(Compliance):
         return [self._between(flanks) for flanks in positions]
 
     def _between(self, flanks: tuple[Flank, ...]) -> Array:
-        """Compliance between all points of flanks."""
+        """Return the compliance between all points of flanks."""
         weights = [self._flank.weights(f.uw) for f in flanks]
         ends = np.cumsum([0] + [w.shape[0] for w in weights])
         total = np.zeros((ends[-1], ends[-1]))
@@ -90,11 +90,11 @@ class FiniteElements(Compliance):
                 if influence is not None:
                     part = weights[i] @ (weights[j] @ influence.T).T
                     total[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = part
-        # Reading at a depth leaves a small skew part, which Betti's theorem says is not real.
+        # Reading at a depth leaves a small skew part, which contradicts Betti's theorem.
         return 0.5 * (total + total.T)
 
     def _solve(self, mesh: BlockMesh, solid: Solid) -> dict[int, Array]:
-        """Displacement of every foot on tooth k, along its normal, for loads on tooth 0."""
+        """Return, by tooth, displacements of all feet along their normals for loads on tooth 0."""
         n, body = self.divisions, self.body
         on_flank = mesh.teeth[0][0 if self.side < 0 else -1, -(2 * n.flank + 1) :]
         loaded = mesh.over_width(on_flank)[self._flank.present]
@@ -119,12 +119,12 @@ class FiniteElements(Compliance):
 
 
 def most_teeth(teeth: int) -> int:
-    """Most teeth in the model of a gear: an odd number, with a space left where the rim is cut."""
+    """Return the most teeth that a model can have: odd, with a space left where the rim is cut."""
     return teeth - 1 - teeth % 2
 
 
 def _bare_rim(body: ToothBody, teeth: int) -> list[int]:
-    """Lengths of the rim's elements, each a pitch longer, up to the cut four rim depths away."""
+    """Return lengths of the rim's elements, growing by a pitch, to the cut four rim depths away."""
     space = np.stack([body.outline(0.0, 0.5, side) for side in (-1, 1)])
     pitch = float(np.linalg.norm(space[1] - space[0]))
     depth = float(np.linalg.norm(under(body, space)[0] - space[0]))
@@ -140,7 +140,7 @@ def _bare_rim(body: ToothBody, teeth: int) -> list[int]:
 
 
 def default_divisions(body: ToothBody) -> Divisions:
-    """Divisions with layers about as deep as a flank is high, between 5 and 12."""
+    """Return divisions with 5 to 12 layers, each about as deep as a flank is high."""
     w = np.array([0.0, 1.0])
     ends = body.outline(np.full(2, body.foot), w, 1)
     height = np.linalg.norm(body.outline(1.0, 0.5, 1) - body.outline(body.foot, 0.5, 1))

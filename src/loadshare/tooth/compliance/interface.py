@@ -1,4 +1,4 @@
-"""What every model of a gear's compliance answers."""
+"""Interface of all models of a gear's compliance."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ class Flank:
 class Compliance(ABC):
     """Compliance of one gear without the neighbourhood of its contacts.
 
-    A force on a flank point acts along the flank's normal, into the tooth. What it moves is read
-    where that normal meets the middle surface of the tooth, at the depth h: there a concentrated
-    force is felt as a smooth field, so the figure does not depend on how finely the flank is
-    divided. What the tooth yields between flank and middle surface belongs to the contact law
+    A force on a flank point acts along the flank's normal, into the tooth. Its displacement is read
+    where that normal meets the middle surface of the tooth, at the depth h: there the field of a
+    concentrated force is smooth, so the result does not depend on how finely the flank is divided.
+    The compression between flank and middle surface belongs to the contact law
     (:mod:`loadshare.tooth.contact.strips`). This is Weber and Banaschek's division.
     """
 
     _flank: Sheet
-    """Points of the flank that were loaded, and what lies between them."""
+    """Points of the flank that were loaded, with the interpolation between them."""
     _feet: Foot
     """Where their normals meet the middle surface."""
 
     def bulk(self, flanks: tuple[Flank, ...]) -> Array:
-        """Compliance (N, N) [m/N] between all points of all flanks, in their order; symmetric.
+        """Return the compliance (N, N) [m/N] between all points of all flanks, in order; symmetric.
 
         Entry (i, j) is the displacement of the middle surface under point i, along the inward
         normal there, for a unit force on point j.
@@ -54,8 +54,8 @@ class Compliance(ABC):
 
     @abstractmethod
     def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> list[Array]:
-        """`bulk` of the flanks of every position."""
+        """Return `bulk` for the flanks of every position."""
 
     def depth(self, uw: Array) -> Array:
-        """Distance (n,) [m] from flank points (n, 2) to the middle surface, along the normal."""
+        """Return depths (n,) [m] of the middle surface along the normals of flank points (n, 2)."""
         return np.asarray(self._flank.weights(uw) @ self._feet.depth)

@@ -14,7 +14,7 @@ from loadshare.tooth.geometry.flank import dot, solve_2
 STEP = 1e-5
 """Step in u and w of the differences that give normals and slopes."""
 LAST_MOVE = 1e-7
-"""Step in u and w that is the last of Newton's method: about its square is left."""
+"""Step in u and w at which Newton's method ends: the error left is about its square."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,7 +47,7 @@ class MiddleSurface:
     ----------
     body : ToothBody
     waist : float
-        The u on the fillet from which the straight lines between the two sides make up the tooth.
+        The u on the fillet above which straight lines between the two sides make up the tooth.
     """
 
     def __init__(self, body: ToothBody, waist: float | None = None) -> None:
@@ -55,18 +55,18 @@ class MiddleSurface:
         self.waist = waist_of(body) if waist is None else waist
 
     def between(self, u: Array, w: Array) -> Array:
-        """Points (n, 3) half-way between the two sides [m]."""
+        """Return points (n, 3) half-way between the two sides [m]."""
         return 0.5 * np.add(*both_sides(self.body, u, w))
 
     def points(self, zw: Array) -> Array:
-        """Points (n, 3) [m] of the middle surface at places (n, 2)."""
+        """Return points (n, 3) [m] of the middle surface at places (n, 2)."""
         z, w = zw[:, 0], zw[:, 1]
         top = self.between(np.maximum(z, self.waist), w)
         below = np.clip((self.waist - z) / (1.0 + self.waist), 0.0, None)
         return top + below[:, None] * (under(self.body, top) - top)
 
     def surface(self, zw: Array) -> tuple[Array, Array, Array]:
-        """Points (n, 3) [m] of the middle surface, and their derivatives over z and w."""
+        """Return points (n, 3) [m] of the middle surface, and their derivatives over z and w."""
         over_z, over_w = (
             (self.points(zw + shift) - self.points(zw - shift)) / (2.0 * STEP)
             for shift in STEP * np.eye(2)
@@ -74,7 +74,7 @@ class MiddleSurface:
         return self.points(zw), over_z, over_w
 
     def facing(self, uw: Array, side: int) -> tuple[Array, Array]:
-        """Points (n, 3) of the flank `side` [m], and unit normals there into the tooth."""
+        """Return points (n, 3) of the flank `side` [m], and unit normals there into the tooth."""
         u, w = uw[:, 0], uw[:, 1]
         # One-sided at foot and tip, where the outline may have a kink.
         low, high = np.maximum(u - STEP, self.body.foot), np.minimum(u + STEP, 1.0)
@@ -89,7 +89,7 @@ class MiddleSurface:
         return flank, np.asarray(inside[:, None] * normal)
 
     def feet(self, uw: Array, side: int) -> Foot:
-        """Where the normals of flank points (n, 2) meet the middle surface.
+        """Find where the normals of flank points (n, 2) meet the middle surface.
 
         A normal that leaves the tooth through its face end before it meets the middle surface has
         its foot on the end.
@@ -99,7 +99,7 @@ class MiddleSurface:
         for _ in range(TEETH.meets):
             here, *slopes = self.surface(zw)
             miss = flank - here
-            # The foot moves in the surface until what is left lies along the normal.
+            # The foot moves in the surface until the remaining distance lies along the normal.
             a, b = (s - dot(s, inward)[:, None] * inward for s in slopes)
             ab = dot(a, b)
             move = solve_2((dot(a, a), ab), (ab, dot(b, b)), dot(a, miss), dot(b, miss))
@@ -113,7 +113,7 @@ class MiddleSurface:
 
 
 def both_sides(body: ToothBody, u: Array, w: Array) -> tuple[Array, Array]:
-    """Points (..., 3) of the outline on side +1 and on side −1 [m]."""
+    """Return points (..., 3) of the outline on side +1 and on side −1 [m]."""
     first = body.outline(u, w, 1)
     if body.shape == "face":  # its tooth is its own mirror image
         return first, first * np.array([1.0, -1.0, 1.0])
@@ -121,7 +121,7 @@ def both_sides(body: ToothBody, u: Array, w: Array) -> tuple[Array, Array]:
 
 
 def under(body: ToothBody, points: Array) -> Array:
-    """Points (..., 3) of the rim's free side that lie under `points` [m]."""
+    """Return the points (..., 3) of the rim's free side that lie under `points` [m]."""
     if body.shape == "face":
         moved = points.copy()
         moved[..., 2] = _floor_of(body) - body.rim
@@ -134,12 +134,12 @@ def under(body: ToothBody, points: Array) -> Array:
 
 @lru_cache(maxsize=64)
 def _floor_of(body: ToothBody) -> float:
-    """The z of the deepest root of a face gear [m]."""
+    """Return the z of the deepest root of a face gear [m]."""
     return float(np.min(body.outline(np.zeros(3), np.array([0.0, 0.5, 1.0]), 1)[..., 2]))
 
 
 def waist_of(body: ToothBody, angle: float = 50.0) -> float:
-    """The u on the fillet where the outline makes `angle` [degrees] with the chord of the tooth."""
+    """Return the u on the fillet where the outline is at `angle` [degrees] to the tooth's chord."""
     u = np.linspace(0.0, body.foot, 61)
     sides = both_sides(body, u, np.array(0.5))
     chord = sides[0] - sides[1]

@@ -18,16 +18,16 @@ HEIGHT_DEGREE = 6
 """Degree of the polynomials along the tooth's height."""
 FEWEST, STRAIGHT, MOST = 6, 18, 128
 """Degrees of the polynomials over the width: the least, the largest for straight teeth, whose load
-is even, and the largest of all."""
+is uniform, and the largest of all."""
 PER_PITCH = 6
-"""Degrees for each axial pitch of the face width: the load of a helical face varies as often."""
+"""Degrees per axial pitch of the face width: the load on a helical face varies once per pitch."""
 ROOT_TANGENT = 60.0
 """Angle [degrees] between fillet and chord at the root section: the standard's 30° tangent."""
 OVER = 2
-"""Gauss points over the width, more than the degree of the polynomials."""
+"""Number of Gauss points over the width beyond the degree of the polynomials."""
 SHEAR_FACTOR = 5.0 / 6.0
 FLAT = 0.01
-"""Least rise of the middle surface per unit of u, over the tooth's height."""
+"""Least rise of the middle surface per unit of u, relative to the tooth's height."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,12 +45,12 @@ class Station:
     thickness: Array
 
     def rows(self, part: slice) -> Station:
-        """Some of the places."""
+        """Return some of the places."""
         return Station(*(getattr(self, name)[part] for name in self.__slots__))
 
 
 def root_compliance(poisson: float) -> Array:
-    """Weber and Banaschek's half-plane under the root of a slice, in Cornell's form.
+    """Return the compliance of Weber and Banaschek's half-plane under a slice, in Cornell's form.
 
     Returns
     -------
@@ -69,10 +69,10 @@ class Plate:
     Parameters
     ----------
     middle : SmoothMiddle
-        From the root section up.
+        The tooth from the root section up.
     width_degree : int, optional
-        Degree of the polynomials over the width; by default the width over the height and the
-        number of axial pitches decide.
+        Degree of the polynomials over the width; by default it follows from the width over the
+        height and the number of axial pitches.
 
     Raises
     ------
@@ -89,13 +89,13 @@ class Plate:
         self.bending, self.compression = self._yielding()
 
     def station(self, zw: Array) -> Station:
-        """The middle surface and the thickness across it at places (n, 2)."""
+        """Return the middle surface and the thickness across it at places (n, 2)."""
         at = self.middle.sample(zw)
         up, rise = at.middle_u, np.linalg.norm(at.middle_u, axis=1)
         flat = rise < FLAT * self.middle.whole_height
         if flat.any():
-            # Where the outline still runs along a flat root the tooth has no height, which a very
-            # stiff slice stands for; it points to where the flank begins and ends.
+            # Where the outline still runs along a flat root the tooth has no height; it is modelled
+            # as a very stiff slice that points from the beginning of the flank to its end.
             w, foot = zw[flat, 1], self.middle.body.foot
             ends = (
                 self.middle.points(np.column_stack([np.full_like(w, u), w])) for u in (1.0, foot)
@@ -116,9 +116,9 @@ class Plate:
         )
 
     def fields(self, height: Array, w: Array, across: Array, along: Array) -> Array:
-        """Rows X (n, m) of the compliance X Xᵀ [m/N] between places at parts of the height and w.
+        """Return X (n, m) of the compliance X Xᵀ [m/N] between places, given by height share and w.
 
-        `across` and `along` (n,) are the parts of unit forces across and along the tooth.
+        `across` and `along` (n,) are the components of unit forces across and along the tooth.
         """
         over_height, over_width = (
             legvander(2.0 * place - 1.0, degree)
@@ -142,7 +142,7 @@ class Plate:
 
     @cached_property
     def _sections(self) -> tuple[Station, Station]:
-        """The root section, and those at Gauss points over the height, over the width each."""
+        """The root section, and those at Gauss points over the height, each over the width."""
         (z, _), (w, _) = self._over_height, self._over_width
         z = np.concatenate([[self.middle.waist], z])
         at = self.station(np.stack(np.meshgrid(z, w, indexing="ij"), axis=-1).reshape(-1, 2))
@@ -159,7 +159,7 @@ class Plate:
         return _gauss(0.0, 1.0, self._degrees[1] + OVER)
 
     def _yielding(self) -> tuple[Array, Array]:
-        """Factors X of the compliances X Xᵀ of deflection and of compression."""
+        """Return the factors X of the compliances X Xᵀ of deflection and of compression."""
         from scipy.linalg import cholesky, solve_triangular
 
         e, nu = self.middle.body.youngs_modulus, self.middle.body.poisson
@@ -199,7 +199,7 @@ class Plate:
 
         count = len(vv)
         plate = np.block([[qq, pq.T, qv], [pq, pp, pv], [qv.T, pv.T, vv]])
-        # Forces act on the deflection alone: elimination of the rotations leaves its block.
+        # Forces act on the deflection alone, so eliminating the rotations leaves its block.
         lower = (
             cholesky(matrix.T, lower=True, overwrite_a=True, check_finite=False)[-count:, -count:]
             for matrix in (plate, axial)
@@ -212,7 +212,7 @@ class Plate:
 
 
 def _width_degree(slenderness: float, axial_pitches: float) -> int:
-    """Degree over a face of some heights of the tooth and some axial pitches."""
+    """Return the degree for a face of given tooth heights (slenderness) and axial pitches."""
     follows = max(STRAIGHT, ceil(PER_PITCH * axial_pitches))
     degree = int(np.clip(ceil(3.0 + 2.0 * slenderness), FEWEST, follows))
     if degree > MOST:
@@ -225,7 +225,7 @@ def _width_degree(slenderness: float, axial_pitches: float) -> int:
 
 
 def _gauss(low: float, high: float, count: int) -> tuple[Array, Array]:
-    """Gauss points and weights on an interval."""
+    """Return Gauss points and weights on an interval."""
     nodes, weights = _leggauss(count)
     half = 0.5 * (high - low)
     return np.asarray(low + half * (nodes + 1.0)), np.asarray(half * weights)
@@ -238,19 +238,19 @@ def _leggauss(count: int) -> tuple[Array, Array]:
 
 
 def _legendre(place: Array, degree: int) -> tuple[Array, Array]:
-    """Legendre polynomials (n, degree + 1) at places 0 to 1, and their slopes."""
+    """Return Legendre polynomials (n, degree + 1) at places from 0 to 1, and their slopes."""
     values = np.asarray(legvander(2.0 * place - 1.0, degree), np.float64)
     return values, 2.0 * values[:, :degree] @ _legder(degree)
 
 
 @cache
 def _legder(degree: int) -> Array:
-    """Coefficients (degree, degree + 1) of the slopes of Legendre polynomials."""
+    """Return coefficients (degree, degree + 1) of the slopes of Legendre polynomials."""
     return np.asarray(legder(np.eye(degree + 1)))
 
 
 def _product(weight: Array, a: Array, b: Array, c: Array, d: Array) -> Array:
-    """Sum over points of weight times products of functions over the height and over the width.
+    """Sum weights times products of functions of the height and of the width over all points.
 
     Entry (ij, kl) is Σ weight(z, w) a_i(z) c_j(w) b_k(z) d_l(w), summed over w first.
     """

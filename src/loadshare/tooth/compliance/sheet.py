@@ -37,11 +37,11 @@ class Sheet:
         return np.column_stack([self.levels[i], self.stations[j]])
 
     def weights(self, points: Array) -> Array:
-        """Weights (n, nodes) that interpolate values of the nodes present to points (n, 2).
+        """Return weights (n, nodes) that interpolate values of the nodes present to points (n, 2).
 
         Points beyond the sheet take the value of its edge.
         """
-        # Of the grid nodes, meaningful for those present.
+        # Numbers of the grid nodes, meaningful only for those present.
         number = np.cumsum(self.present).reshape(self.present.shape) - 1
         a, x = _cell(self.levels, points[:, 0])
         b, y = _cell(self.stations, points[:, 1])
@@ -53,7 +53,7 @@ class Sheet:
 
 
 def _cell(grid: Array, at: Array) -> tuple[NDArray[np.int64], Array]:
-    """First node of the cell that holds each coordinate, and the place in it, −1 to 1."""
+    """Return the first node of each coordinate's cell, and the place in the cell, −1 to 1."""
     ends = grid[::2]
     at = np.clip(at, ends[0], ends[-1])
     cell = np.clip(np.searchsorted(ends, at, side="right") - 1, 0, len(ends) - 2)
@@ -62,7 +62,7 @@ def _cell(grid: Array, at: Array) -> tuple[NDArray[np.int64], Array]:
 
 
 def _serendipity(x: Array, y: Array) -> list[tuple[int, int, Array]]:
-    """Shape functions of the 8-node quadrilateral: node (i, j) of its 3 × 3 grid, and value."""
+    """Return the 8-node quadrilateral's shape functions: node (i, j) of its 3 × 3 grid, value."""
     shapes = []
     for i, xi in ((0, -1.0), (2, 1.0)):
         for j, eta in ((0, -1.0), (2, 1.0)):

@@ -2,16 +2,16 @@
 
 A slice of the tooth across its face width is Weber and Banaschek's cantilever: bending, shear and
 axial compression along its middle line from the potential energy of the true thickness, on a root
-that yields by the half-plane formulas. Neighbouring slices pull on one another by bending across,
-by twist and by shear, which makes the tooth a Mindlin plate of variable thickness on an elastic
-root. Its deflections are polynomials along the tooth's height and over its width (Ritz), so under
-a load that is even over the width each slice is exactly the cantilever.
+that yields by the half-plane formulas. Transverse bending, twist and shear couple neighbouring
+slices, which makes the tooth a Mindlin plate of variable thickness on an elastic root. Its
+deflections are polynomials along the tooth's height and over its width (Ritz), so under a load
+that is uniform over the width each slice is exactly the cantilever.
 
-The gear's body is a ring under the mean over the width of what the root carries, which statics
-alone gives. For that mean the ring's answer takes the half-plane's place, so nothing counts twice;
-it is added for the neighbours of the loaded tooth, which the half-plane does not move.
+The gear's body is a ring that carries the root's load averaged over the width, which follows from
+statics alone. For that mean the ring's compliance replaces the half-plane's, so nothing counts
+twice; for the neighbours of the loaded tooth, which the half-plane does not move, it is added.
 
-Left out: what a load that is uneven over the width does to the body. Sources: C. Weber and
+Left out: the effect on the body of a load that varies over the width. Sources: C. Weber and
 K. Banaschek (1953); R. W. Cornell, Compliance and stress sensitivity of spur gear teeth, J. Mech.
 Des. 103 (1981), for the root; P. Gagnon, C. Gosselin and L. Cloutier, J. Mech. Des. 119 (1997), for
 gear teeth as Mindlin plates; for the ring see :mod:`loadshare.tooth.compliance.ring`.
@@ -33,9 +33,9 @@ from loadshare.tooth.compliance.smooth import SmoothMiddle
 from loadshare.tooth.geometry.body import Array, ToothBody
 
 LEAN = 18.0 / np.pi
-"""Lean of a half-plane's edge under a linear traction, by the work it does; as for `Ring`."""
+"""Lean of a half-plane's edge under a linear traction, from its work as in `Ring`."""
 ROUND = 40.0
-"""Radius, in depths, of the ring that replaces the flat body of a face gear."""
+"""Radius, in rim depths, of the ring that replaces the flat body of a face gear."""
 
 
 class Slices(Compliance):
@@ -47,8 +47,8 @@ class Slices(Compliance):
     side : {+1, −1}
         The flank that carries load.
     width_degree : int, optional
-        Degree of the polynomials over the width; by default the width over the height and the
-        number of axial pitches decide.
+        Degree of the polynomials over the width; by default it follows from the width over the
+        height and the number of axial pitches.
     rigid_body : bool
         Whether the teeth are on half-planes instead of the gear's body: Weber and Banaschek's
         plane theory.
@@ -92,9 +92,9 @@ class Slices(Compliance):
         return found
 
     def _on_plate(self) -> Array:
-        """Height, w, and parts across and along the tooth (nodes, 4) of unit forces on the flank.
+        """Return height, w, and components across and along the tooth (nodes, 4) of unit forces.
 
-        A force whose line meets the middle surface below the root section acts on that.
+        A force whose line meets the middle surface below the root section acts at the root section.
         """
         zw = self._feet.zw.copy()
         zw[:, 0] = np.maximum(zw[:, 0], self.middle.waist)
@@ -103,7 +103,7 @@ class Slices(Compliance):
         return np.column_stack([self.middle.height(zw[:, 0])[0], zw[:, 1], *parts])
 
     def _at_root(self) -> Array:
-        """Shear force, moment over thickness and pull (nodes, 3) at the root from unit forces."""
+        """Return shear, moment over thickness and pull (nodes, 3) at the root from unit forces."""
         zw = self._flank.places.copy()
         zw[:, 0] = self.middle.waist
         at = self._plate.station(zw)
@@ -114,7 +114,7 @@ class Slices(Compliance):
 
     @cached_property
     def _ring(self) -> Ring:
-        """The gear's body, with the root of mid-width."""
+        """The gear's body, with the root section at mid-width."""
         middle = np.array([[self.middle.waist, 0.5]])
         root = self.middle.points(middle)
         radius = float(np.hypot(root[0, 0], root[0, 1]))
@@ -130,7 +130,7 @@ class Slices(Compliance):
         )
 
     def _through_body(self, k: int) -> Array:
-        """Compliance (3, 3) [m/N, …] that the body adds between teeth `k` apart."""
+        """Return the compliance (3, 3) [m/N, …] that the body adds between teeth `k` apart."""
         found, nu = self._ring.root(k), self.body.poisson
         if k == 0:
             local = root_compliance(nu)

@@ -1,4 +1,4 @@
-"""A tooth between root section and tip as polynomials: quick to read, with exact slopes."""
+"""A tooth between root section and tip as polynomials: fast to evaluate, with exact slopes."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Sample:
     Attributes
     ----------
     middle, half : array (n, 3)
-        Point half-way between the two sides, and what leads from it to side +1 [m].
+        Point half-way between the two sides, and vector from it to side +1 [m].
     middle_u, half_u, middle_w, half_w : array (n, 3)
-        Their derivatives over u and w.
+        Their derivatives with respect to u and w.
     """
 
     middle: Array
@@ -38,17 +38,17 @@ class Sample:
 
 
 class Polynomials(NamedTuple):
-    """Chebyshev series in u, in pieces, and in w, as compiled code reads them."""
+    """Chebyshev series, piecewise in u, and in w, in the form that compiled code reads."""
 
     pieces: Array  # (2, 2): first and last u
     coefficients: Array  # (2, DEGREE + 1, (DEGREE + 1)·18): of u, then of w and of each number
 
 
 class SmoothMiddle(MiddleSurface):
-    """Middle surface from one sampling of the outline at Chebyshev points.
+    """Middle surface fitted to the outline at Chebyshev points.
 
-    Of the shipped pairs the polynomials miss the outline by 3 µm at most (next to the end of the
-    fillet, where involute or envelope begin with a square root), a thousandth of the thickness.
+    For the shipped pairs the polynomials miss the outline by 3 µm at most (next to the end of the
+    fillet, where involute or envelope begins with a square root), a thousandth of the thickness.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class SmoothMiddle(MiddleSurface):
             coefficients=np.ascontiguousarray(coefficients).reshape(2, count, -1),
         )
 
-        # Length of the middle line half-way over the width, integrated from its exact slope.
+        # Length of the middle line at mid-width, integrated from its exact slope.
         rise = self._read(u[:, 0], np.full(2 * count, 0.5)).middle_u
         speed = np.linalg.norm(rise, axis=1).reshape(2, count)
         self._height, start = [], 0.0
@@ -91,11 +91,11 @@ class SmoothMiddle(MiddleSurface):
         self.whole_height = start
 
     def sample(self, zw: Array) -> Sample:
-        """Read the tooth at places (n, 2), none of them below the waist."""
+        """Evaluate the tooth at places (n, 2), none of them below the waist."""
         return self._read(zw[:, 0], zw[:, 1])
 
     def height(self, z: Array) -> tuple[Array, Array]:
-        """Height above the root section half-way over the width, over the whole; its slope."""
+        """Return the height above the root section at mid-width, over the whole, and its slope."""
         upper = z > self.body.foot
         (low, low_slope), (high, high_slope) = self._height
         value, slope = (
@@ -137,19 +137,19 @@ class SmoothMiddle(MiddleSurface):
 
 
 def _spread(unit: Array, low: float, high: float) -> Array:
-    """Places −1 to 1 carried to an interval."""
+    """Map places from −1 to 1 to an interval."""
     return low + (high - low) * 0.5 * (unit + 1.0)
 
 
 def _slopes(coefficients: Array, scale: float) -> Array:
-    """Coefficients of the derivative along the first axis, kept as long as the polynomial's."""
+    """Return coefficients of the derivative along axis 0, as many as the polynomial has."""
     _, _, derivative = _chebyshev()
     return np.asarray(scale * np.tensordot(derivative, coefficients, 1))
 
 
 @cache
 def _chebyshev() -> tuple[Array, Array, Array]:
-    """Points −1 to 1, and what makes coefficients of values there, and of those the slope's."""
+    """Return points −1 to 1, and matrices: values to coefficients, and these to the slope's."""
     points = np.asarray(chebyshev.chebpts1(DEGREE + 1))
     derivative = np.zeros((DEGREE + 1, DEGREE + 1))
     derivative[:-1] = chebyshev.chebder(np.eye(DEGREE + 1))

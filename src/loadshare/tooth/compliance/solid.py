@@ -76,9 +76,9 @@ class Solid:
     Attributes
     ----------
     factor : LayeredFactor
-        Of the free degrees of freedom.
+        Factors of the stiffness matrix of the free degrees of freedom.
     free : array (m·layers, 3) of int
-        Place of each node's displacements among the free ones; −1 where it is clamped or where
+        Index of each node's displacements among the free ones; −1 where it is clamped or where
         the element has no node.
     """
 
@@ -91,7 +91,7 @@ class Solid:
         return int((self.free >= 0).sum())
 
     def displacements(self, forces: Array, nodes: Index) -> Array:
-        """Displacements (len(nodes), 3, k) [m] under forces (m·layers, 3, k) [N], given sparsely.
+        """Return the displacements (..., 3, k) [m] of nodes (...) under forces (size, k) [N].
 
         Parameters
         ----------
@@ -146,15 +146,15 @@ def build_solid(mesh: BlockMesh, modulus: float, poisson: float) -> Solid:
 
 
 def _lexicographic(cells: Index, places: Array) -> Index:
-    """Nodes (p, cells) of grid cells (cells, 3, 3, 3) at reference places (p, 3)."""
+    """Return the nodes (p, cells) of grid cells (cells, 3, 3, 3) at reference places (p, 3)."""
     i, j, k = np.rint(2.0 * np.asarray(places)).astype(int).T
     return cells[:, i, j, k].T
 
 
 def _stiffness(basis: Any, modulus: float, poisson: float) -> csr_matrix:
-    """Sparse matrix of isotropic elasticity, the three directions of a node after one another.
+    """Return the sparse matrix of isotropic elasticity, the three directions of a node adjacent.
 
-    Much quicker than a form over pairs of shape functions, for they are all multiplied at once.
+    This is much faster than a form over pairs of shape functions, as it multiplies all at once.
     """
     from scipy.sparse import coo_matrix
 

@@ -19,7 +19,7 @@ class ContactCertificate:
     Attributes
     ----------
     residuals : mapping of str to float
-        Scaled by the load P and the largest yielding: "pull" (p < 0), "penetration" (d < 0),
+        Scaled by the load P and the largest deflection: "pull" (p < 0), "penetration" (d < 0),
         "complementarity" (p·d) and "balance" (Σp − P).
     tolerance : float
     """
@@ -52,7 +52,7 @@ def certify_contacts(
 ) -> tuple[ContactCertificate, ...]:
     """Judge forces (K, N) [N] and approaches (K,) [m] claimed for loads (K,) [N].
 
-    Nothing is raised for a wrong answer; figures that are not numbers fail.
+    A wrong answer raises no error; values that are not finite fail.
     """
     with np.errstate(invalid="ignore"):
         yielded = batch.yielded(force)

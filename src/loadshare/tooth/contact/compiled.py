@@ -1,9 +1,9 @@
-"""Contacts one after another, compiled with Numba: surfaces, exchange of points, Newton's method.
+"""Contacts solved one by one, compiled with Numba: surfaces, exchange of points, Newton's method.
 
 What the numbers mean is explained where the arrays are made: `problem` for the strips, `programme`
-for the programme. Limits are arguments: nothing that is compiled depends on another file.
-Arrays are copied by loops: a slice on the left would take
-seconds to compile, for what it says of wrong shapes.
+for the programme. Limits are arguments, so that nothing that is compiled depends on another file.
+Arrays are copied by loops, because assigning to a slice would take seconds to compile, for its
+message on wrong shapes.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ compiled = jit(nogil=True, error_model="numpy")
 
 @compiled
 def shape(tau, table):  # type: ignore[no-untyped-def]
-    """g(τ) and τ g'(τ) of a strip, both odd."""
+    """Return g(τ) and τ g'(τ) of a strip, both odd."""
     size = abs(tau)
     faded = np.sign(tau) * min(size / table.first, 1.0)
     step = (np.log(table.last) - np.log(table.first)) / (len(table.values) - 1)
-    # Written so that what is no number stays within the table.
+    # Written so that NaN stays within the table.
     within = size if size > table.first else table.first
     within = table.last if within > table.last else within
     x = (np.log(within) - np.log(table.first)) / step
@@ -37,7 +37,7 @@ def shape(tau, table):  # type: ignore[no-untyped-def]
 
 @compiled
 def add_below(place, length, scale, depth, poisson, total):  # type: ignore[no-untyped-def]
-    """Add what strips do to a half-space at the depths of the points (N, N)."""
+    """Add the compliance (N, N) of a half-space under strips, at the depths of the points."""
     for i in range(len(place)):
         for j in range(len(place)):
             away, half, between = place[i] - place[j], 0.5 * length[j], 0.5 * (depth[i] + depth[j])
@@ -50,13 +50,13 @@ def add_below(place, length, scale, depth, poisson, total):  # type: ignore[no-u
 
 @compiled
 def _below(tau, poisson):  # type: ignore[no-untyped-def]
-    """Integral over τ of z²/R³ + 2(1 − ν)/R, at z = 1: Boussinesq's normal displacement."""
+    """Return the integral over τ of z²/R³ + 2(1 − ν)/R, z = 1: Boussinesq's displacement."""
     return tau / np.sqrt(1.0 + tau**2) + 2.0 * (1.0 - poisson) * np.arcsinh(tau)
 
 
 @compiled
 def expand(strips, coefficients, series):  # type: ignore[no-untyped-def]
-    """Series (K, terms, N, N) in b² of what strips do to one another where they are far apart."""
+    """Fill the series (K, terms, N, N) in b² of the compliance between strips far apart."""
     for n in range(len(strips.number)):
         number, place, half = strips.number[n], strips.place[n], strips.half[n]
         for i in range(len(number)):
@@ -78,7 +78,7 @@ def expand(strips, coefficients, series):  # type: ignore[no-untyped-def]
 
 @compiled
 def surface(strips, n, force, least, secant, tangent):  # type: ignore[no-untyped-def]
-    """Compliance (N, N) of the surfaces of one position, at any forces (N,)."""
+    """Compute the compliance (N, N) of the surfaces of one position, at any forces (N,)."""
     number, place, half = strips.number[n], strips.place[n], strips.half[n]
     scale, count, terms = strips.scale[n], len(force), strips.series.shape[1]
     square = np.minimum(np.maximum(force, least) * strips.square[n], strips.widest[n])
@@ -86,7 +86,7 @@ def surface(strips, n, force, least, secant, tangent):  # type: ignore[no-untype
     for i in range(count):
         secant[i], tangent[i] = 0.0, 0.0
         for k in range(terms - 1, -1, -1):
-            # b² grows as p, so p ∂S/∂p counts every power of b² by its exponent.
+            # b² grows as p, so p ∂S/∂p multiplies every power of b² by its exponent.
             for j in range(count):
                 term = strips.series[n, k, i, j]
                 secant[i, j] = secant[i, j] * square[j] + term
@@ -110,14 +110,14 @@ def surface(strips, n, force, least, secant, tangent):  # type: ignore[no-untype
 
 @compiled
 def surfaces(strips, which, force, least, secant, tangent):  # type: ignore[no-untyped-def]
-    """`surface` of positions `which` (K,) at forces (K, N)."""
+    """Compute `surface` of positions `which` (K,) at forces (K, N)."""
     for c in range(len(which)):
         surface(strips, which[c], force[c], least[c], secant[c], tangent[c])
 
 
 @compiled
 def saddle(matrix, gap, load, closed, force):  # type: ignore[no-untyped-def]
-    """Forces with the closed points in touch, whatever the signs; returns the approach."""
+    """Find the forces that make all closed points touch, of any sign; return the approach."""
     unit = matrix.max()  # keeps the bordered matrix well scaled
     unit = unit if unit > 0.0 else 1.0
     at = np.flatnonzero(closed)
@@ -138,7 +138,7 @@ def saddle(matrix, gap, load, closed, force):  # type: ignore[no-untyped-def]
 
 @compiled
 def exchange(matrix, gap, load, closed, limits, force):  # type: ignore[no-untyped-def]
-    """Solve a linear contact from closed points (N,); returns whether it was found."""
+    """Solve a linear contact, starting from closed points (N,); return whether it succeeded."""
     seen = np.empty((limits.exchanges, len(gap)), np.bool_)
     for number in range(limits.exchanges):
         for before in range(number):
@@ -165,10 +165,10 @@ def exchange(matrix, gap, load, closed, limits, force):  # type: ignore[no-untyp
 
 @compiled
 def settle(strips, of, found, linear, limits, answered):  # type: ignore[no-untyped-def]
-    """Settle all contacts, each for itself, from `answered` on, whose programme has its answer.
+    """Settle all contacts one by one, from number `answered` on, whose programme is solved already.
 
-    Returns the number of the next contact whose exchange goes in a circle, with its programme in
-    `linear`; −1 when all is done.
+    Return the number of the next contact whose exchange goes in circles, with its programme in
+    `linear`; −1 when all are done.
     """
     for c in range(max(answered, 0), len(of.which)):
         if not _settle_one(strips, of, found, linear, limits, c, c == answered):
@@ -178,7 +178,7 @@ def settle(strips, of, found, linear, limits, answered):  # type: ignore[no-unty
 
 @compiled
 def _settle_one(strips, of, found, linear, limits, c, answered):  # type: ignore[no-untyped-def]
-    """Settle a contact or give it up; false where the exchange goes in a circle."""
+    """Settle a contact or give it up; return false if the exchange goes in circles."""
     n, load, force = of.which[c], of.load[c], found.force[c]
     gap, secant, tangent = of.gap[c], np.empty_like(linear.matrix), np.empty_like(linear.matrix)
     while found.passes[c] < limits.passes:
@@ -195,7 +195,7 @@ def _settle_one(strips, of, found, linear, limits, c, answered):  # type: ignore
                 found.settled[c] = True
                 found.slope[c] = saddle(tangent, np.zeros_like(gap), 1.0, closed, linear.force)
                 return True
-            # The law at the last forces by its tangent: a linear contact with a shifted gap.
+            # With its tangent at the last forces, the law is a linear contact with a shifted gap.
             shift = yielded - tangent @ force
             for i in range(len(gap)):
                 linear.gap[i] = gap[i] + (shift[i] if found.newton[c] else 0.0)
@@ -205,7 +205,7 @@ def _settle_one(strips, of, found, linear, limits, c, answered):  # type: ignore
                 return False
         answered = False
         step = np.abs(linear.force - force).max()
-        # Where Newton's method does not draw in, a pass at fixed widths does.
+        # Where Newton's method does not converge, a pass at fixed widths does.
         found.newton[c] = not found.newton[c] or step < found.step[c]
         found.step[c] = step
         for i in range(len(gap)):
@@ -216,11 +216,11 @@ def _settle_one(strips, of, found, linear, limits, c, answered):  # type: ignore
 
 @compiled
 def _in_touch(distance, closed, yielded, gap, limits):  # type: ignore[no-untyped-def]
-    """Whether closed points touch and open ones do not press, except for round-off."""
+    """Return whether closed points touch and open ones do not overlap, except for round-off."""
     missed, least = -np.inf, 0.0
     for i in range(len(gap)):
         missed = max(missed, abs(distance[i]) if closed[i] else -distance[i])
         if closed[i]:
-            # Light loads yield less than the gaps that they close; those have their own round-off.
+            # Light loads deflect less than the gaps they close, which have their own round-off.
             least = max(least, limits.round_off * gap[i])
     return missed < limits.settled * np.abs(yielded).max() + least

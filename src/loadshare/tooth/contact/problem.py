@@ -1,20 +1,20 @@
 r"""The contact problem of one meshing position, in SI units.
 
-Unknown are the forces p ≥ 0 [N] on the points of all lines and the approach Z [m] of the two
-gears. With u(p) the yielding of teeth and surfaces, w the unloaded gap and P the load,
+The unknowns are the forces p ≥ 0 [N] on the points of all lines and the approach Z [m] of the two
+gears. With u(p) the deflection of teeth and surfaces, w the unloaded gap and P the load,
 
     d = u(p) + w − Z ≥ 0,    p ≥ 0,    p·d = 0,    Σ p = P.
 
 Source: formulation, section 9.
 
-Far from a strip its width hardly matters. There the displacement of
+Far from a strip its width has little effect. There the displacement of
 :mod:`loadshare.tooth.contact.strips` is the series
 
 .. math:: g(\tau) = \ln\tau + \text{const} + \sum_{k\ge1} c_k\tau^{-2k},\qquad
     c_k = \frac{(-1)^{k+1}}{2k(k+1)}\left[\frac{(2k)!}{4^k (k!)^2}\right]^2
 
 (asinh expanded under its integral), so that between two points it is a polynomial in the strip's
-b² with coefficients that geometry fixes. Only next to a strip g itself is needed.
+b² with coefficients that the geometry determines. Only next to a strip is g itself needed.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from loadshare.tooth.geometry.body import Array
 
 @dataclass(frozen=True, eq=False)
 class ContactProblem:
-    """What yields between the points of one position.
+    """Compliance and gaps of the points of one position.
 
     Parameters
     ----------
@@ -46,9 +46,9 @@ class ContactProblem:
     gap : array (N,)
         Unloaded distance w [m] of the flanks.
     lines : tuple of StripLine
-        Local contact of the lines, whose points follow one another in `bulk` and `gap`.
+        Local contact of the lines, whose points come line by line in `bulk` and `gap`.
     name : str
-        What it is called where it is refused.
+        Name in the message of a refusal.
     """
 
     bulk: Array
@@ -76,7 +76,7 @@ class ContactProblem:
         return ContactBatch((self,))
 
     def compliance(self, force: Array) -> tuple[Array, Array]:
-        """Secant and tangent compliance (N, N) [m/N] at the forces (N,) [N].
+        """Return secant and tangent compliance (N, N) [m/N] at the forces (N,) [N].
 
         u = secant @ force, and the tangent is du/dp.
         """
@@ -85,10 +85,10 @@ class ContactProblem:
 
 
 class Strips(NamedTuple):
-    """Strips of M positions, N of each, as compiled code reads them.
+    """Strips of M positions, N of each, in the form that compiled code reads.
 
-    Lines are numbered within a position and do not feel one another here: that is what the bulk
-    compliance is for. What only fills a position up has the number −1.
+    Lines are numbered within a position and do not interact here, because the bulk compliance
+    includes that. Strips that only fill up a position have the number −1.
     """
 
     number: Array  # (M, N)
@@ -97,7 +97,7 @@ class Strips(NamedTuple):
     scale: Array  # (M, N): displacement per force and unit of g [m/N]
     square: Array  # (M, N): b² per force [m²/N]
     widest: Array  # (M, N): the largest b² [m²]
-    alone: Array  # (M, N): A of slices of narrow faces [m/N]; 0 of others
+    alone: Array  # (M, N): A of slices of narrow faces [m/N]; 0 for others
     level: Array  # (M, N): their B
     series: Array  # (M, TEETH.terms + 1, N, N): coefficients of b²ᵏ [m/N]
     far: float
@@ -105,10 +105,10 @@ class Strips(NamedTuple):
 
 
 class ContactBatch:
-    """Contact problems of K positions, stacked so that one pass serves all.
+    """Contact problems of K positions, stacked to be solved together.
 
-    Problems with fewer points than the largest, N, are filled up with points that yield nothing
-    and are far off.
+    Problems with fewer points than the largest, N, are filled up with rigid points whose gap is
+    too large to close.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class ContactBatch:
     Attributes
     ----------
     count : array (K,) of int
-        Points of each problem; they come first.
+        Number of points of each problem, which come before those that fill it up.
     gap : array (K, N)
         [m].
     names : tuple of str
@@ -126,7 +126,7 @@ class ContactBatch:
     fixed : array (M, N, N)
         The part of their compliance [m/N] that does not depend on the load.
     strips : Strips
-        What their surfaces yield.
+        Local compliance of their surfaces.
     """
 
     def __init__(self, problems: Sequence[ContactProblem]) -> None:
@@ -150,14 +150,14 @@ class ContactBatch:
         expand(self.strips, COEFFICIENTS, series)
 
     def rows(self, chosen: NDArray[np.int64]) -> ContactBatch:
-        """Some of the problems, or some of them several times."""
+        """Return some of the problems, or some of them several times."""
         part = copy(self)
         part.count, part.gap, part.which = self.count[chosen], self.gap[chosen], self.which[chosen]
         part.names = tuple(self.names[k] for k in chosen)
         return part
 
     def compliance(self, force: Array) -> tuple[Array, Array]:
-        """Secant and tangent compliance (K, N, N) [m/N] at the forces (K, N) [N]."""
+        """Return secant and tangent compliance (K, N, N) [m/N] at the forces (K, N) [N]."""
         from loadshare.tooth.contact.compiled import surfaces
 
         force = np.array(force, float, order="C")
@@ -168,7 +168,7 @@ class ContactBatch:
         return secant + fixed, tangent + fixed
 
     def yielded(self, force: Array) -> Array:
-        """u(p) (K, N) [m]."""
+        """Return u(p) (K, N) [m]."""
         return np.asarray((self.compliance(force)[0] @ force[..., None])[..., 0])
 
 
@@ -179,11 +179,11 @@ COEFFICIENTS = np.array(
         for k in range(1, TEETH.terms + 1)
     ]
 )
-"""Of the series above; the first is the logarithm's."""
+"""Coefficients of the series above; the first is the logarithm's."""
 
 
 def _strips(number: int, line: StripLine) -> Array:
-    """What `Strips` holds of the strips of a line, from its number to `level` (8, n)."""
+    """Return the fields of `Strips` for the strips of a line, from `number` to `level` (8, n)."""
     scale = 1.0 / (pi * line.effective * line.length)
     if line.narrow:
         scale = (1.0 - line.narrow) * scale

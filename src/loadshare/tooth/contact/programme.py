@@ -6,15 +6,15 @@ With the strips' widths held, or the law replaced by its tangent, the problem of
 .. math:: \min_{p\ge 0}\ \tfrac12 p^\mathsf{T} F p + w^\mathsf{T} p
     \quad\text{s.t.}\quad \textstyle\sum p = P \qquad : Z
 
-It is solved exactly, by exchange of closed points, and where an exchange comes back to a set by the
-package's solver interface: with :math:`F = L L^\mathsf{T}` its dual has the interface's form,
+It is solved exactly, by exchange of closed points or, if an exchange returns to an earlier set, by
+the package's solver interface: with :math:`F = L L^\mathsf{T}` its dual has the interface's form,
 
 .. math:: \min_{Z, y}\ \tfrac12\lVert y\rVert^2 - P Z
     \quad\text{s.t.}\quad Z - (L y)_i \le w_i \qquad : p_i
 
-The first programme holds the widths, the next ones are Newton's method on the law with its closed
-points (semismooth), which converges quadratically; where a step is no shorter than the last, widths
-are held once more. What leaves is in touch to round-off, and certified.
+Without forces to begin from, the first programme holds the widths; the others are semismooth Newton
+steps on the law with its closed points, which converge quadratically. After a step no shorter than
+the last, widths are held once more. The result is in contact to round-off, and certified.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def solve_contacts(
     warm: Array | None = None,
     solver: str = "clarabel",
 ) -> tuple[Contact, ...]:
-    """Solve several contacts at once, each for itself.
+    """Solve several independent contacts at once.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def solve_contacts(
     ValueError
         If the load is not positive.
     Refused
-        If one of the contacts is not found, or not passed by its certificate.
+        If one of the contacts is not found, or does not pass its certificate.
     """
     load = np.array(load, float)
     wrong = load[~((load > 0.0) & np.isfinite(load))]
@@ -128,11 +128,11 @@ def solve_contacts(
 
 
 def _settle(strips: Strips, of: _Batch, found: _Found, linear: _Linear, answered: int) -> int:
-    """Number of the next contact whose exchange goes in a circle, −1 when all is done."""
+    """Return the number of the next contact whose exchange goes in circles, −1 if there is none."""
     from loadshare.tooth.contact.compiled import settle
 
     try:
-        # Limits are handed over: compiled code would keep an old one.
+        # The limits are arguments, because compiled code would keep an old value of a global.
         return int(settle(strips, of, found, linear, TEETH, answered))
     except np.linalg.LinAlgError as error:
         raise Refused(
@@ -142,7 +142,7 @@ def _settle(strips: Strips, of: _Batch, found: _Found, linear: _Linear, answered
 
 
 class _Batch(NamedTuple):
-    """Contacts to be settled, as compiled code reads them."""
+    """Contacts to be settled, in the form that compiled code reads."""
 
     which: NDArray[np.int64]  # (K,)
     load: Array  # (K,)
@@ -151,7 +151,7 @@ class _Batch(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """How far the contacts have settled."""
+    """Iterates of the contacts, and whether they have settled."""
 
     force: Array  # (K, N)
     approach: Array  # (K,)
@@ -159,7 +159,7 @@ class _Found(NamedTuple):
     slope: Array  # (K,): dZ/dP
     step: Array  # (K,): largest change of a force in the last pass
     passes: NDArray[np.int64]  # (K,)
-    newton: Mask  # (K,): whether the next pass takes the tangent
+    newton: Mask  # (K,): whether the next pass uses the tangent
     settled: Mask  # (K,)
 
     @classmethod
@@ -172,7 +172,7 @@ class _Found(NamedTuple):
 
 
 class _Linear(NamedTuple):
-    """A contact with its law held, and its forces."""
+    """A contact with its law made linear, and its forces."""
 
     matrix: Array  # (N, N)
     gap: Array  # (N,)
@@ -221,12 +221,12 @@ def exchange(matrix: Array, gap: Array, load: float, closed: Mask) -> Array | No
     load : float
         P [N].
     closed : array (N,) of bool
-        Where to begin.
+        Points to begin with.
 
     Returns
     -------
     array (N,) or None
-        Forces [N]; None if the exchange comes back to a set.
+        Forces [N]; None if the exchange returns to an earlier set.
     """
     from loadshare.tooth.contact.compiled import exchange as exchanged
 
@@ -252,7 +252,7 @@ def contact_rows(matrix: Array, gap: Array, load: float) -> tuple[Programme, Arr
     Programme
         In units of the load and of the load times the mean of F's diagonal.
     array (N,)
-        What a row's multiplier is to be multiplied by to give the point's force [N].
+        Factors from the rows' multipliers to the points' forces [N].
     """
     count = len(gap)
     size = float(np.trace(matrix)) / count
@@ -280,8 +280,8 @@ def contact_rows(matrix: Array, gap: Array, load: float) -> tuple[Programme, Arr
 def by_interface(matrix: Array, gap: Array, load: float, force: Array, solver: Backend) -> Array:
     """Solve the linear contact by the package's solver interface.
 
-    Reading at a point what a strip of another width does leaves a small skew part in the matrix;
-    it acts on the last forces, besides the gap.
+    Because a strip's displacement is read at points of strips of other widths, the matrix has a
+    small skew part; its product with the last forces is added to the gap.
 
     Parameters
     ----------

@@ -1,28 +1,28 @@
 r"""A contact line as a row of strips on two elastic bodies.
 
 Each point of a line represents a strip of length ℓ and half-width b that carries its force as a
-half-ellipse of pressure across. On a half-space such a strip moves the middle of the line, at the
-distance x, by
+half-ellipse of pressure across. On a half-space such a strip displaces the middle of the line, at
+the distance x, by
 
 .. math:: \frac{1-\nu^2}{\pi E}\,\frac{p}{\ell}\left[g\left(\frac{x+\ell/2}{b}\right)
     - g\left(\frac{x-\ell/2}{b}\right)\right],\qquad
     g(\tau) = \frac{4}{\pi}\int_0^1 \sqrt{1-y^2}\,\operatorname{asinh}\frac{\tau}{y}\,dy
 
 (Boussinesq), with b² = κ·4q/(πE*k) of :func:`width_factor`. A long row is
-Hertz's line contact, a crowned one Hertz's ellipse, and what lies between needs no case of its own.
+Hertz's line contact, a crowned one Hertz's ellipse; contacts in between need no special treatment.
 
-The bulk compliance of a tooth is that of its middle surface, so only what lies between the flank
-and the depth h may be added here: the half-space's displacement at the depth h is taken off. For a
-long line this is Weber and Banaschek's compression to the depth h.
+The bulk compliance of a tooth is that of its middle surface, so only the compression between the
+flank and the depth h may be added here: the half-space's displacement at the depth h is subtracted.
+For a long line this is Weber and Banaschek's compression to the depth h.
 
-A half-space goes on beyond the ends of the face, and a load spreads there. A face that is narrower
-than its tooth is thick has nothing beyond: in the limit every strip is a slice in plane stress,
-alone, with Weber and Banaschek's compression for that state,
+A half-space continues beyond the ends of the face, and a load spreads there. A face that is
+narrower than its tooth is thick has no material beyond its ends: in the limit every strip is an
+independent slice in plane stress, with Weber and Banaschek's compression for that state,
 
 .. math:: \frac{2q}{\pi}\sum\frac1E\left(\ln\frac{2h}{b}-\frac\nu2\right),\qquad
     b^2 = \frac{4q}{\pi k}\sum\frac1E .
 
-In between both are mixed, in proportion to how far the face is narrower than thick; from there on
+In between, both are mixed in proportion to how much narrower than thick the face is; on wider faces
 it is the half-space alone, whose ends are a few per cent too stiff.
 
 Sources: K. L. Johnson, Contact Mechanics (1985), sections 4.2 and 5.6; C. Weber and K. Banaschek,
@@ -46,12 +46,12 @@ from loadshare.tooth.geometry.body import Array
 
 
 def contact_modulus(modulus: tuple[float, float], poisson: tuple[float, float]) -> float:
-    """E* [Pa] of two bodies, 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂."""
+    """Return E* [Pa] of two bodies, 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂."""
     return 1.0 / sum((1.0 - v**2) / e for e, v in zip(modulus, poisson, strict=True))
 
 
 def axis_ratio(curvature_ratio: ArrayLike) -> Array:
-    """Axis ratio b/a of the contact ellipse.
+    """Return the axis ratio b/a of the contact ellipse.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def axis_ratio(curvature_ratio: ArrayLike) -> Array:
 
 
 def width_factor(along: ArrayLike, across: ArrayLike) -> Array:
-    """Square of a contact's half-width over that of line contact under the same load per length.
+    """Return a contact's half-width squared over that of line contact at the same load per length.
 
     An ellipse that carries q [N/m] at a section is narrower there than a long line under q. With
     κ(b/a) the half-width of every section is b² = κ · 4q/(π E* k), k the curvature across, so a
@@ -95,8 +95,8 @@ def width_factor(along: ArrayLike, across: ArrayLike) -> Array:
     Parameters
     ----------
     along, across : array_like
-        Relative curvatures along and across the line [1/m]; a line that is straight or hollow
-        along itself (`along` ≤ 0) is a line contact.
+        Relative curvatures along and across the line [1/m]; a line that is straight or concave
+        lengthwise (`along` ≤ 0) is a line contact.
 
     Returns
     -------
@@ -124,13 +124,13 @@ def width_factor(along: ArrayLike, across: ArrayLike) -> Array:
 
 
 def half_width(load: ArrayLike, curvature: ArrayLike, modulus: float) -> Array:
-    """Half-width b [m] of line contact under `load` [N/m], relative `curvature` [1/m], E* [Pa]."""
+    """Return b [m] of line contact under `load` [N/m], relative `curvature` [1/m], E* [Pa]."""
     load, curvature = np.asarray(load, dtype=float), np.asarray(curvature, dtype=float)
     return np.asarray(np.sqrt(4.0 * load / (pi * modulus * curvature)))
 
 
 def _slope(tau: Array) -> Array:
-    """Derivative g'(τ) = (4/π) √(1 + τ²) (K − E), parameter 1/(1 + τ²), for τ > 0."""
+    """Return g'(τ) = (4/π) √(1 + τ²) (K − E), parameter 1/(1 + τ²), for τ > 0."""
     from scipy.special import ellipe, ellipkm1
 
     m = 1.0 / (1.0 + tau**2)
@@ -140,7 +140,7 @@ def _slope(tau: Array) -> Array:
 
 
 class StripTable(NamedTuple):
-    """Knots, evenly spaced in ln τ, with g and dg/d ln τ, as compiled code reads them."""
+    """Knots, evenly spaced in ln τ, with g and dg/d ln τ, in the form that compiled code reads."""
 
     first: float
     last: float
@@ -150,7 +150,7 @@ class StripTable(NamedTuple):
 
 @cache
 def strip_table() -> StripTable:
-    """The table of g."""
+    """Return the table of g."""
     knots = np.linspace(np.log(TEETH.first_knot), np.log(TEETH.last_knot), 1200)
     nodes, weights = np.polynomial.legendre.leggauss(6)
     middle, half = 0.5 * (knots[1:] + knots[:-1]), 0.5 * np.diff(knots)
@@ -178,7 +178,7 @@ class StripLine:
         Distance from flank to middle surface [m] in the driver and in the driven tooth; without
         it the bodies are half-spaces and the approach is that of distant points.
     factor : array (n,), optional
-        κ of the points, where it is known already.
+        κ of the points, if it is known already.
     face_width : float
         Of the narrower tooth [m].
 
@@ -207,7 +207,7 @@ class StripLine:
 
     @cached_property
     def narrow(self) -> float:
-        """Part of the slice in plane stress in what yields, 0 to 1; the half-space has the rest."""
+        """Share of plane-stress slices in the compression, 0 to 1; the half-space has the rest."""
         if self.depth is None:
             return 0.0
         thickness = float(np.max(self.depth[0] + self.depth[1]))
@@ -215,7 +215,7 @@ class StripLine:
 
     @cached_property
     def slices(self) -> tuple[Array, Array]:
-        """A and B (n,) of the slices' yielding A p (B − ½ ln p) [m], their part of it."""
+        """A and B (n,) of the slices' share of the compression, A p (B − ½ ln p) [m]."""
         none = np.zeros_like(self.length)
         if self.depth is None or self.narrow == 0.0:
             return none, none
@@ -254,18 +254,18 @@ class StripLine:
 
     @property
     def widest(self) -> float:
-        """Largest half-width b [m] in what yields.
+        """Largest half-width b [m] that enters the compliance.
 
-        With wider contacts a line would bear more the shorter it is.
+        With wider contacts a line would carry more load the shorter it is.
         """
         return float(np.sum(self.length))
 
     def widths(self, force: Array) -> Array:
-        """Half-widths b (n,) [m] under the points' forces (n,) [N]."""
+        """Return half-widths b (n,) [m] under the points' forces (n,) [N]."""
         return np.sqrt(force * self.square)
 
     def pressure(self, force: Array) -> Array:
-        """Largest pressure (n,) [Pa] across each strip under `force` (n,) [N]."""
+        """Return the largest pressure (n,) [Pa] across each strip under `force` (n,) [N]."""
         width = self.widths(force)
         loaded = width > 0.0
         safe = np.where(loaded, width, 1.0)
@@ -275,7 +275,7 @@ class StripLine:
     def removed(self) -> Array:
         """Compliance (n, n) [m/N] of two half-spaces at the depths of the middle surfaces.
 
-        Of a narrow face the half-spaces' part of it.
+        For a narrow face it is the half-spaces' share of that.
         """
         from loadshare.tooth.contact.compiled import add_below
 

@@ -1,4 +1,4 @@
-"""The solid tooth of a cylindrical gear, and its root between tooth space and involute."""
+"""The solid tooth of a cylindrical gear, and its root curve up to the involute."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Curve: TypeAlias = Callable[[Array], Array]
 class HelicoidBody(ToothBody):
     """`ToothBody` of a cylindrical gear, without its micrometre modifications.
 
-    Of a herringbone gear it is one half, with z = 0 in the middle of that half.
+    For a herringbone gear it is one half, with z = 0 in the middle of that half.
     """
 
     gear: HelicoidGear
@@ -44,7 +44,7 @@ class HelicoidBody(ToothBody):
 
     @property
     def axial_pitches(self) -> float:
-        """Axial pitches over the face width."""
+        """Number of axial pitches in the face width."""
         return self.face_width * abs(self.gear.twist) * self.gear.teeth / (2.0 * math.pi)
 
     @cached_property
@@ -52,9 +52,9 @@ class HelicoidBody(ToothBody):
         return root_curve(self.gear)
 
     def outline(self, u: ArrayLike, w: ArrayLike, side: int) -> Array:
-        """Boundary of half of tooth 0; see `ToothBody.outline`.
+        """Return the boundary of half of tooth 0; see `ToothBody.outline`.
 
-        The fillet goes by its length, and so does the involute.
+        `u` is linear in arc length on the fillet and on the involute.
         """
         gear = self.gear
         u, w = np.broadcast_arrays(np.asarray(u, float), np.asarray(w, float))
@@ -69,14 +69,14 @@ class HelicoidBody(ToothBody):
         return np.stack([section.real, section.imag, axial], axis=-1)
 
     def locate(self, points: Array) -> tuple[Array, Array]:
-        """Flank coordinates (u, w) of points (..., 3); see `ToothBody.locate`."""
+        """Return the flank coordinates (u, w) of points (..., 3); see `ToothBody.locate`."""
         gear = self.gear
         square = (points[..., 0] ** 2 + points[..., 1] ** 2) / gear.base_radius**2 - 1.0
         up = (square - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2)
         return self.foot + (1.0 - self.foot) * up, points[..., 2] / gear.face_width + 0.5
 
     def margins(self, a: Array, b: Array) -> dict[str, Array]:
-        """Distance to the edges of the flank, at ξ = `a` and ζ = `b`; see `ToothBody.margins`."""
+        """Return distances to the flank's edges at ξ = `a`, ζ = `b`; see `ToothBody.margins`."""
         gear, reach = self.gear, self.gear.kind * self.gear.base_radius
         return {
             "tip": reach * (gear.tip_roll - a),
@@ -86,7 +86,7 @@ class HelicoidBody(ToothBody):
 
 
 def root_curve(gear: HelicoidGear) -> Curve:
-    """Transverse root curve of tooth 0 on its side +1, at ζ = 0.
+    """Return the transverse root curve of tooth 0 on its side +1, at ζ = 0.
 
     Parameters
     ----------
@@ -96,15 +96,15 @@ def root_curve(gear: HelicoidGear) -> Curve:
     Returns
     -------
     callable
-        From v in [0, 1] to complex points x + iy [m]: 0 in the middle of the space, 1 where the
-        involute begins, by length of the curve.
+        Function that returns complex points x + iy [m] at shares v of the curve's length, from 0
+        in the middle of the space to 1 where the involute begins.
     """
     curve = _filleted(gear) if gear.internal else _generated(gear)
     return _by_length(curve)
 
 
 def rack_tip_half_width(gear: HelicoidGear) -> float:
-    """Half the width of the flat on the generating rack's tip, normal section [m].
+    """Return half the width of the flat on the generating rack's tip, in normal section [m].
 
     Negative where the tip radius is too large for the rack's tooth.
     """
@@ -115,13 +115,13 @@ def rack_tip_half_width(gear: HelicoidGear) -> float:
 
 
 def fillet_angle(gear: HelicoidGear) -> float:
-    """Polar angle of the centre of an internal gear's root fillet, from tooth 0 [rad]."""
+    """Return the polar angle [rad] of an internal gear's root fillet centre, from tooth 0."""
     beside = gear.form_roll - gear.tip_radius * gear.module / gear.base_radius
     return gear.base_half_angle + gear.form_roll - math.atan(beside)
 
 
 def _generated(gear: HelicoidGear) -> Curve:
-    """Root circle for −1 ≤ t ≤ 0, trochoid of the rack's tip radius for 0 ≤ t ≤ 1.
+    """Return the root circle for −1 ≤ t ≤ 0, trochoid of the rack's tip radius for 0 ≤ t ≤ 1.
 
     The rack rolls on the reference circle. A point of its tip, whose normal makes the angle τ with
     the direction of depth, generates when that normal passes through the pitch point; in the
@@ -148,7 +148,7 @@ def _generated(gear: HelicoidGear) -> Curve:
 
 
 def _filleted(gear: HelicoidGear) -> Curve:
-    """Root circle for −1 ≤ t ≤ 0, an arc tangent to it and to the involute for 0 ≤ t ≤ 1."""
+    """Return the root circle for −1 ≤ t ≤ 0, arc tangent to it and the involute for 0 ≤ t ≤ 1."""
     corner = gear.tip_radius * gear.module
     centre_angle = fillet_angle(gear)
     end = gear.base_half_angle + gear.form_roll - 0.5 * math.pi

@@ -1,4 +1,4 @@
-"""Putting two cylindrical gears in mesh, with every interference reported."""
+"""Construction of pairs of cylindrical gears, with every interference reported."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def helicoid_pair(
     centre_distance : float, optional
         Centre distance [m]; by default the one without backlash.
     misalignment : Misalignment, optional
-        How far the axes are off.
+        Misalignment of the axes.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def helicoid_pair(
     Raises
     ------
     CaseError
-        With everything that is wrong with the gears or with their mesh.
+        If the gears or their mesh have problems; it lists all of them.
     """
     misalignment = misalignment or Misalignment()
     refuse(value_problems(driver, "driver") + value_problems(driven, "driven"))
@@ -84,9 +84,9 @@ def helicoid_pair(
 
 
 def overlap_problems(pair: HelicoidPair) -> Iterator[Problem]:
-    """Yield the centre distance at which there is no room for the flanks that carry no load.
+    """Yield a problem if the centre distance leaves no room for the unloaded flanks.
 
-    It is a check of its own: a case has done it, with the thickness allowances of its gears.
+    The check is separate because a case has already made it, with its thickness allowances.
     """
     gears, distance = (pair.driver_gear, pair.driven_gear), pair.centre_distance
     backlash = normal_backlash(*gears, max(distance, base_distance(*gears)))
@@ -134,12 +134,12 @@ def _partner_problems(
 def _ring_first(
     driver: HelicoidGear, driven: HelicoidGear
 ) -> tuple[str, HelicoidGear, HelicoidGear]:
-    """Key of the internal gear of a pair, that gear, and its pinion."""
+    """Return the key of the internal gear of a pair, that gear, and its pinion."""
     return ("driver", driver, driven) if driver.internal else ("driven", driven, driver)
 
 
 def _no_line_of_action(pair: HelicoidPair, base: float) -> Problem:
-    """Too small a centre distance, or a misalignment that makes it so."""
+    """Return the problem of too small a centre distance, or of a misalignment that causes it."""
     key, value, rest = "centre_distance", pair.centre_distance, pair.misalignment.centre_distance
     if value > base:
         key, value, rest = f"misalignment.{key}", rest, value
@@ -186,10 +186,10 @@ def _mesh_problems(pair: HelicoidPair) -> Iterator[Problem]:
 def _tip_problems(
     pair: HelicoidPair, gear: HelicoidGear, name: str, other: HelicoidGear, other_name: str
 ) -> Iterator[Problem]:
-    """What the tip of `other` does in the spaces of `gear`."""
+    """Yield interferences of the tip of `other` in the tooth spaces of `gear`."""
     key = f"{other_name}.addendum"
-    # The partner's tip may come down to where this gear's involute ends; where that lies
-    # beyond the partner's base point of the line of action, only a lower tip helps.
+    # The partner's tip may reach down to where this gear's involute ends; if that lies beyond
+    # the partner's base point on the line of action, only a lower tip helps.
     limit = max(pair.partner_roll(gear.form_roll, of_driven=name == "driven"), 0.0)
     if other.kind * (other.tip_roll - limit) > TEETH.fits:
         largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
@@ -204,9 +204,9 @@ def _tip_problems(
 
 
 def _too_near(pair: HelicoidPair) -> str:
-    """Say which centre distance has no backlash, where teeth are nearer one another."""
+    """Return a hint with the distance without backlash if the gears are closer than that."""
     gears = pair.driver_gear, pair.driven_gear
-    with suppress(ValueError):  # no distance is without backlash
+    with suppress(ValueError):  # there may be no distance without backlash
         fits = distance_without_backlash(*gears)
         if pair.kind * (fits - pair.actual_distance) > TEETH.fits * fits:
             return f"Without backlash the centre distance would be {millimetres(fits)}."
@@ -214,7 +214,7 @@ def _too_near(pair: HelicoidPair) -> str:
 
 
 def _fouling(pair: HelicoidPair) -> Iterator[Problem]:
-    """Tips of pinion and ring that meet outside the line of action (trimming, fouling)."""
+    """Yield a problem if the tips of pinion and ring meet off the line of action (fouling)."""
     key, ring, pinion = _ring_first(pair.driver_gear, pair.driven_gear)
     if not tips_pass(pinion, ring, pair.actual_distance):
         yield problem(

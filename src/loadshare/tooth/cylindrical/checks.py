@@ -1,4 +1,4 @@
-"""What can be wrong with a cylindrical gear, each with the dimension that causes it."""
+"""Checks of a cylindrical gear; each problem names the dimension that causes it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from loadshare.tooth.problems import Check, digits, down, failed, millimetres, p
 
 
 def gear_problems(gear: HelicoidGear, key: str) -> list[Problem]:
-    """Everything that is wrong with one gear, keys below `key`."""
+    """Return all problems of one gear, with keys below `key`."""
     return value_problems(gear, key) or list(_tooth_problems(gear, key))
 
 
 def value_problems(gear: HelicoidGear, key: str) -> list[Problem]:
-    """Values that are none of a gear, each for itself."""
+    """Return the values that no gear can have, each checked alone."""
     found = failed(key, "this value makes no gear", _values(gear))
     return found + failed(key, "not an amount of material taken off", _amounts(gear))
 
@@ -50,12 +50,12 @@ def _values(gear: HelicoidGear) -> Iterator[Check]:
 
 
 def pressure_angle_check(name: str, angle: float) -> Check:
-    """That a pressure angle [rad] is one of involute teeth."""
+    """Check that a pressure angle [rad] is possible for involute teeth."""
     return name, angle, 0.0 < angle < math.radians(45.0), "between 0 and 45 deg"
 
 
 def elasticity_checks(youngs_modulus: float, poisson: float) -> Iterator[Check]:
-    """Check what any gear is made of."""
+    """Check the elastic constants of a gear of any kind."""
     yield "youngs_modulus", youngs_modulus, youngs_modulus > 0.0, "more than 0"
     yield "poisson", poisson, 0.0 <= poisson < 0.5, "from 0 to below 0.5"
 
@@ -121,7 +121,7 @@ def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
         gear.root - gear.tip_radius * gear.module > gear.base_radius
         and gear.base_radius * math.hypot(1.0, gear.form_roll) > gear.tip
     )
-    # The space is narrower the deeper it is.
+    # The space narrows with depth.
     wide = deep and fillet_angle(gear) <= math.pi / gear.teeth
     if not (deep and wide):
         what = "the tooth space has no room for this root radius"

@@ -36,7 +36,7 @@ class HelicoidFlank:
     side: int = 1
 
     def patch(self, a: Array, b: Array, turn: Array | float) -> Patch:
-        """Points of the flank at roll `a` [rad] and axial coordinate `b` [m].
+        """Return points of the flank at roll `a` [rad] and axial coordinate `b` [m].
 
         Parameters
         ----------
@@ -56,7 +56,7 @@ class HelicoidFlank:
 
     @cached_property
     def numbers(self) -> HelicoidNumbers:
-        """The flank, as compiled code reads it."""
+        """The flank in the form that compiled code reads."""
         gear, angle = self.gear, self.gear.base_helix_angle
         return HelicoidNumbers(
             side=float(self.side),
@@ -71,7 +71,7 @@ class HelicoidFlank:
 
 
 class HelicoidNumbers(NamedTuple):
-    """Numbers of a flank by the names of `HelicoidGear`; sine and cosine are those of β_b."""
+    """Numbers of a flank, named as in `HelicoidGear`; sine and cosine are those of β_b."""
 
     side: float
     kind: float

@@ -24,7 +24,7 @@ Roll = TypeVar("Roll", float, Array)
 
 @dataclass(frozen=True)
 class Misalignment:
-    """How far the axes of a cylindrical pair are off.
+    """Misalignment of the axes of a cylindrical pair.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class HelicoidPair(GearPair):
     centre_distance : float
         Centre distance before misalignment [m].
     misalignment : Misalignment
-        How far the axes are off.
+        Misalignment of the axes.
     """
 
     driver_gear: HelicoidGear
@@ -79,7 +79,7 @@ class HelicoidPair(GearPair):
 
     @property
     def actual_distance(self) -> float:
-        """Centre distance with its misalignment [m]."""
+        """Centre distance including its misalignment [m]."""
         return self.centre_distance + self.misalignment.centre_distance
 
     @cached_property
@@ -89,7 +89,7 @@ class HelicoidPair(GearPair):
 
     @cached_property
     def roll_range(self) -> tuple[float, float]:
-        """Driver's angle of roll over which both flanks are active."""
+        """Range of the driver's angle of roll in which both flanks are active."""
         own = sorted((self.driver_gear.form_roll, self.driver_gear.tip_roll))
         other = sorted(
             self.partner_roll(roll, of_driven=True)
@@ -98,14 +98,14 @@ class HelicoidPair(GearPair):
         return max(own[0], other[0]), min(own[1], other[1])
 
     def partner_roll(self, roll: Roll, *, of_driven: bool = False) -> Roll:
-        """The other gear's angle of roll at the same point of the line of action.
+        """Return the other gear's angle of roll at the same point of the line of action.
 
         Parameters
         ----------
         roll : array or float
             Angle of roll [rad] of the driver, or of the driven gear if `of_driven`.
         of_driven : bool
-            Whose angle is given.
+            Whether `roll` is that of the driven gear.
         """
         scale = self.driver_gear.base_radius / self.driven_gear.base_radius
         pitch = math.tan(self.working_angle)
@@ -120,7 +120,7 @@ class HelicoidPair(GearPair):
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Axial coordinates of the ends of the contact lines: both gears have face width [m]."""
+        """Axial coordinates of the ends of the contact lines, where both faces overlap [m]."""
         shift = self.misalignment.axial_shift
         own, other = 0.5 * self.driver_gear.face_width, 0.5 * self.driven_gear.face_width
         return max(-own, shift - other), min(own, shift + other)
@@ -146,7 +146,7 @@ class HelicoidPair(GearPair):
         return HelicoidFlank(self.driver_gear), HelicoidFlank(self.driven_gear, self.driven_side)
 
     def ideal(self, phase: Array) -> tuple[Array, Array]:
-        """Rotations at which the unmodified, parallel pair touches [rad].
+        """Return the rotations at which the unmodified, parallel pair touches [rad].
 
         At phase 0 pair 0 touches at the pitch point in the middle of the common face.
         """
@@ -162,14 +162,14 @@ class HelicoidPair(GearPair):
         return driver, at_pitch - self.kind * turn / self.ratio
 
     def extents(self, driver: Array, driven: Array) -> Extents:
-        """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
+        """Return the pairs' lines on both active flanks at positions (k,), by position and pair."""
         gear = self.driver_gear
         first, last = self.roll_range
         low, high = self.ends
         per_tooth = 2.0 * math.pi / gear.teeth
         reach = abs(gear.twist) * max(abs(low), abs(high))
         middle = self.roll(np.zeros(1), np.zeros(1), driver)
-        # The pitch at which the roll of pair k is within the range, for either kind of driver.
+        # The pair numbers between which the roll is in the range, for either kind of driver.
         bounds = [gear.kind * (roll - middle) / per_tooth for roll in (first - reach, last + reach)]
         position, pairs = between(*np.sort(bounds, axis=0))
         driver, driven = driver[position], driven[position]
@@ -193,7 +193,7 @@ class HelicoidPair(GearPair):
         )
 
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
-        """Margins along the lines of pairs near contact, on both flanks or not."""
+        """Return margins along the lines of pairs near contact, whether on both flanks or not."""
         gear, (first, last) = self.driver_gear, self.roll_range
         axial = np.linspace(*self.ends, 33)
         step = 2.0 * math.pi / gear.teeth
@@ -204,7 +204,7 @@ class HelicoidPair(GearPair):
         return self.margins((roll, axial), other)
 
     def trace(self, pairs: Array, driver: Array, driven: Array, stations: Array) -> Trace:
-        """Flanks and gap at axial stations (m, n) [m] of the lines of pairs (m,)."""
+        """Return flanks and gap at axial stations (m, n) [m] of the lines of pairs (m,)."""
         pairs, driver, driven = pairs[:, None], driver[:, None], driven[:, None]
         roll = self.roll(pairs, stations, driver)
         own = self.driver_patch(pairs, (roll, stations), driver)

@@ -48,9 +48,9 @@ class FaceBody(ToothBody):
         return FaceFlank(self.gear)
 
     def outline(self, u: ArrayLike, w: ArrayLike, side: int) -> Array:
-        """Boundary of half of tooth 0; see `ToothBody.outline`.
+        """Return the boundary of half of tooth 0; see `ToothBody.outline`.
 
-        The flank goes by depth, the fillet by the shaper's angle.
+        `u` is linear in depth on the flank and in the shaper's angle on the fillet.
         """
         length = self.gear.inner + np.asarray(w, float) * (self.gear.outer - self.gear.inner)
         u, *station = np.broadcast_arrays(np.asarray(u, float), length, *self._foot(length))
@@ -66,19 +66,19 @@ class FaceBody(ToothBody):
         return half
 
     def _root(self, share: Array, length: Array, foot_phi: Array) -> Array:
-        """Points of the root at shares of its line, from the middle of the space to the flank."""
+        """Return the root at shares of its line, from the middle of the space to the flank."""
         share = np.maximum(share, 0.0)
         land = self._land_share
         along = np.maximum((share - land) / (1.0 - land), 0.0)
         root = self._corner(length, foot_phi, along)
-        # From the end of the fillet the land runs on at the same radius to the middle of the space.
+        # From the end of the fillet the land continues at that radius to the middle of the space.
         space = -math.pi / self.gear.teeth
         polar = np.arctan2(root[..., 1], root[..., 0])
         into = np.where(share < land, 1.0 - share / (land or 1.0), 0.0)
         return turned(root, (space - polar) * into)
 
     def locate(self, points: Array) -> tuple[Array, Array]:
-        """Flank coordinates (u, w) of points (..., 3); see `ToothBody.locate`."""
+        """Return the flank coordinates (u, w) of points (..., 3); see `ToothBody.locate`."""
         gear = self.gear
         length, depth = gear.blank(points)
         _, foot_depth = self._foot(length)
@@ -86,7 +86,7 @@ class FaceBody(ToothBody):
         return self.foot + (1.0 - self.foot) * up, (length - gear.inner) / (gear.outer - gear.inner)
 
     def margins(self, a: Array, b: Array) -> dict[str, Array]:
-        """Distance to the edges of the flank, at ξ = `a` and Φ = `b`; see `ToothBody.margins`."""
+        """Return distances to the flank's edges at ξ = `a`, Φ = `b`; see `ToothBody.margins`."""
         gear, shaper = self.gear, self.gear.shaper
         length, depth = gear.blank(self.flank.point(a, b))
         return {
@@ -97,7 +97,7 @@ class FaceBody(ToothBody):
         }
 
     def _foot(self, length: Array) -> tuple[Array, Array]:
-        """Base-tangent angle and depth where the shaper's tip ends the flank."""
+        """Return the base-tangent angle and depth where the shaper's tip ends the flank."""
         tip = np.full_like(length, self.gear.shaper.tip_roll)
         phi = self.flank.at_length(length, tip)
         return phi, self.gear.blank(self.flank.point(tip, phi))[1]
@@ -111,20 +111,20 @@ class FaceBody(ToothBody):
     def _land_share(self) -> float:
         """Share of u from 0 to `foot` that is land; the rest is fillet.
 
-        The same over the whole width, so that a line of constant u keeps to the fillet: by length
-        in the middle of the width, and at most one half, for the fillet dwindles outwards.
+        It is the same over the whole width, so that a line of constant u stays on the fillet: the
+        share of the length at mid-width, but at most one half, because the fillet shrinks outwards.
         """
         gear = self.gear
         middle = np.array(0.5 * (gear.inner + gear.outer))
         corner = self._corner(middle, self._foot(middle)[0], np.linspace(0.0, 1.0, 33))
         fillet = np.linalg.norm(np.diff(corner, axis=0), axis=1).sum()
-        # The shaper's tip land rolls out its own half angle of the space.
+        # The tip land cuts the space while the shaper turns through the land's own half angle.
         radius = math.hypot(corner[0, 0], corner[0, 1])
         land = radius * gear.roll_ratio * gear.shaper.tip_half_angle
         return min(float(land / (land + fillet)), 0.5)
 
     def _corner(self, length: Array, foot_phi: Array, along: Array) -> Array:
-        """Path of the shaper's tip corner, from its deepest point (`along` 0) to the flank (1)."""
+        """Return the shaper's tip corner path, from the deepest point (`along` 0) to the flank."""
         gear, shaper = self.gear, self.gear.shaper
         phi = self._last_phi + along * (foot_phi - self._last_phi)
         polar = phi + math.atan(shaper.tip_roll)

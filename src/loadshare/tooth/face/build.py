@@ -1,4 +1,4 @@
-"""Putting a pinion and a face gear in mesh, with every limit reported."""
+"""Construction of pairs of pinion and face gear, with every violated limit reported."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def face_gear_pair(
     gear : FaceGear
         The face gear.
     misalignment : FaceMisalignment, optional
-        How far the pair is off.
+        Misalignment of the pair.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def face_gear_pair(
     Raises
     ------
     CaseError
-        With everything that is wrong with the gears or with their mesh.
+        If the gears or their mesh have problems; it lists all of them.
     """
     none = "this value makes no face gear"
     refuse(value_problems(pinion, "driver") + failed("driven", none, _values(gear)))

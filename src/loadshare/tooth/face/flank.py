@@ -1,6 +1,6 @@
 """The flank of a face gear in closed form, as the envelope of its shaper, and its limits.
 
-A face gear can reach so far in and out: to undercut and to pointed teeth.
+Undercut limits how far in a face gear can reach, and pointed teeth how far out.
 """
 
 from __future__ import annotations
@@ -47,14 +47,14 @@ class FaceFlank:
     side: int = -1
 
     def patch(self, a: Array | float, b: Array, turn: Array | float) -> Patch:
-        """Points of the flank at ξ = `a` and Φ = `b` [rad]; see `HelicoidFlank.patch`."""
+        """Return points of the flank at ξ = `a` and Φ = `b` [rad]; see `HelicoidFlank.patch`."""
         from loadshare.tooth.geometry.compiled import faces
 
         return patch(faces, self.numbers, a, b, turn)
 
     @cached_property
     def numbers(self) -> FaceNumbers:
-        """The flank, as compiled code reads it."""
+        """The flank in the form that compiled code reads."""
         gear, shaper = self.gear, self.gear.shaper
         return FaceNumbers(
             side=float(self.side),
@@ -67,13 +67,13 @@ class FaceFlank:
         )
 
     def point(self, roll: Array, phi: Array) -> Array:
-        """Points (..., 3) of the flank of tooth 0 at surface parameters ξ and Φ [m]."""
+        """Return points (..., 3) of the flank of tooth 0 at surface parameters ξ and Φ [m]."""
         return self.patch(roll, phi, 0.0).point
 
     def at_blank(self, length: Array, depth: Array) -> tuple[Array, Array]:
-        """Surface parameters of the points at given lengths and depths of the blank [m].
+        """Return the surface parameters of points at given lengths and depths of the blank [m].
 
-        Newton's method from the plane section that the flank would have at infinite radius.
+        Newton's method starts from the plane section that the flank would have at infinite radius.
 
         Returns
         -------
@@ -93,7 +93,7 @@ class FaceFlank:
         return roll, phi
 
     def at_length(self, length: Array, roll: Array | float) -> Array:
-        """Base-tangent angle Φ of the points with a given shaper roll at lengths of the blank."""
+        """Return the angle Φ of the base tangent at given lengths of the blank and shaper rolls."""
         with np.errstate(invalid="ignore"):
             phi = self.side * np.arccos(self.gear.axial_scale / length)
         for _ in range(TEETH.steps):
@@ -105,7 +105,7 @@ class FaceFlank:
         return phi
 
     def _blank(self, roll: Array | float, phi: Array) -> tuple[Place, tuple[Place, Place]]:
-        """Length and depth of the blank [m], and of either its slopes over ξ and Φ."""
+        """Return length and depth of the blank [m], and the slopes of both over ξ and Φ."""
         patch = self.patch(roll, phi, 0.0)
         point, rays = patch.point, patch.rays
         radius = np.hypot(point[..., 0], point[..., 1])
@@ -116,7 +116,7 @@ class FaceFlank:
 
 
 class FaceNumbers(NamedTuple):
-    """Numbers of a flank by the names of `FaceGear`; `base` and `half_angle` are the shaper's."""
+    """Numbers of a flank, named as in `FaceGear`; `base` and `half_angle` are the shaper's."""
 
     side: float
     teeth: int
@@ -128,7 +128,7 @@ class FaceNumbers(NamedTuple):
 
 
 def undercut_limit(gear: FaceGear) -> float:
-    """Inner limit L1 of the blank, where the shaper's tip begins to undercut the flank [m].
+    """Return the inner limit L1 of the blank, where the shaper's tip begins to undercut [m].
 
     There the line of singular points of the envelope, on which the two surface tangents are
     parallel, meets the line that the shaper's tip corner traces. For side s and u' = du/dΦ the
@@ -148,14 +148,14 @@ def undercut_limit(gear: FaceGear) -> float:
 
 
 def regularity(flank: FaceFlank, roll: Array, phi: Array) -> Array:
-    """Area of the surface tangents over r_bs², positive on the regular part of the flank."""
+    """Return the area of the surface tangents over r_bs², positive where the flank is regular."""
     patch = flank.patch(roll, phi, 0.0)
     area = dot(np.cross(*patch.rays), patch.normal)
     return flank.side * area / flank.gear.shaper.base_radius**2
 
 
 def pointing_limit(gear: FaceGear) -> float:
-    """Outer limit L2 of the blank, where the tip land vanishes [m].
+    """Return the outer limit L2 of the blank, where the tip land vanishes [m].
 
     Solved on the true surface: both flanks of a tooth meet at tip depth.
     """
@@ -166,14 +166,14 @@ def pointing_limit(gear: FaceGear) -> float:
 
 
 def tip_half_angle(flank: FaceFlank, length: float) -> float:
-    """Half the angle of the tip land at a length of the blank, seen from the gear's axis [rad]."""
+    """Return half the angle of the tip land at a length of the blank, about the gear axis [rad]."""
     roll, phi = flank.at_blank(np.array(length), np.array(flank.gear.tip_depth))
     point = flank.patch(roll, phi, 0.0).point
     return float(flank.side * np.arctan2(point[1], point[0]))
 
 
 def planar_pointing_limit(gear: FaceGear) -> float:
-    """Outer limit by Litvin's plane section, which takes the profile as a straight rack's [m].
+    """Return the outer limit by Litvin's plane section, which treats the profile as a rack's [m].
 
     α − (depth/r_bs) sin α = π/(2 N_s) − inv α_0 (for a shaper without profile shift), then
     L2 = u(α). Litvin & Fuentes, ch. 18.
@@ -191,7 +191,7 @@ def planar_pointing_limit(gear: FaceGear) -> float:
 
 
 class NoLimitError(ValueError):
-    """Teeth of such proportions have no such limit."""
+    """The limit does not exist for teeth of these proportions."""
 
 
 def root_of(function: Callable[[float], float], low: float, high: float) -> float:

@@ -58,7 +58,7 @@ class FaceGear(Gear):
     shaper : Shaper
         Its shaper.
     inner, outer : float
-        L1 and L2 [m].
+        Ends L1 and L2 of the face [m].
     addendum : float
         Height of the teeth above the shaper's pitch cylinder, in modules.
     shaft_angle : float
@@ -89,7 +89,7 @@ class FaceGear(Gear):
 
     @property
     def roll_ratio(self) -> float:
-        """Angle of the gear per angle of the shaper."""
+        """Rotation of the gear per rotation of the shaper."""
         return self.shaper.teeth / self.teeth
 
     @property
@@ -104,12 +104,12 @@ class FaceGear(Gear):
 
     @cached_property
     def axes(self) -> Array:
-        """Shaper's frame in the gear's, as columns: towards the teeth, tangential, its axis."""
+        """Shaper's frame in the gear's, as columns: towards the teeth, tangential, axial."""
         return about_y(self.shaft_angle)
 
     @cached_property
     def axial_scale(self) -> float:
-        """Axial coordinate on the shaper times cos Φ along every contact normal [m].
+        """Axial coordinate u on the shaper times cos Φ, the same for all contact normals [m].
 
         From the equation of meshing, which for an involute reads
         u cos Φ = r_bs (1/m − cos γ)/sin γ.
@@ -118,7 +118,7 @@ class FaceGear(Gear):
         return base * (1.0 / self.roll_ratio - math.cos(angle)) / math.sin(angle)
 
     def blank(self, points: Array) -> tuple[Array, Array]:
-        """Length along the shaper's axis and depth of points (..., 3), gear frame [m].
+        """Return the length along the shaper's axis and depth of points (..., 3), gear frame [m].
 
         The points are turned about the gear's axis into the plane of both axes first.
         """

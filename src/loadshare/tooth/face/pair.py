@@ -29,7 +29,7 @@ Roll = TypeVar("Roll", float, Array)
 
 @dataclass(frozen=True)
 class FaceMisalignment:
-    """How far a face-gear pair is off.
+    """Misalignment of a face-gear pair.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class FaceGearPair(GearPair):
     gear : FaceGear
         The driven face gear.
     misalignment : FaceMisalignment
-        How far the pair is off.
+        Misalignment of the pair.
     """
 
     pinion: HelicoidGear
@@ -79,8 +79,8 @@ class FaceGearPair(GearPair):
     def working_angle(self) -> float:
         """Pressure angle between pinion and shaper [rad].
 
-        The pinion fills the space of the face gear without backlash, as the shaper does, when both
-        teeth are equally thick on the pitch circles on which they would roll on each other inside.
+        The pinion fills the space of the face gear without backlash, as the shaper does, if the
+        teeth of both are equally thick on the pitch circles of the internal pair they would form.
         """
         shaper = self.gear.shaper
         teeth = shaper.teeth - self.pinion.teeth
@@ -98,33 +98,33 @@ class FaceGearPair(GearPair):
 
     @property
     def contact_length(self) -> float:
-        """Coordinate along the shaper's axis of every point of contact of the ideal pair [m]."""
+        """Coordinate along the shaper's axis of all points of contact of the ideal pair [m]."""
         return self.gear.axial_scale / math.cos(self.working_angle)
 
     @property
     def middle(self) -> float:
-        """Middle of the gear's face width (L1 + L2)/2 [m], where the pinion's middle is."""
+        """Middle of the gear's face width (L1 + L2)/2 [m], and of the pinion's."""
         return 0.5 * (self.gear.inner + self.gear.outer)
 
     def shaper_roll(self, roll: Roll) -> Roll:
-        """Shaper's angle of roll at the ideal pair's contact, from the pinion's."""
+        """Return the shaper's angle of roll at the ideal pair's contact, from the pinion's."""
         pitch = math.tan(self.working_angle)
         return pitch + self.pinion.base_radius / self.gear.shaper.base_radius * (roll - pitch)
 
     def pinion_roll(self, roll: float) -> float:
-        """Pinion's angle of roll at the ideal pair's contact, from the shaper's."""
+        """Return the pinion's angle of roll at the ideal pair's contact, from the shaper's."""
         pitch = math.tan(self.working_angle)
         return pitch + self.gear.shaper.base_radius / self.pinion.base_radius * (roll - pitch)
 
     @cached_property
     def roll_range(self) -> tuple[float, float]:
-        """Pinion's angles of roll where the gear's tip leaves the ideal pair's, and at its tip."""
+        """Pinion's angles of roll with the ideal contact at the gear's tip, and at its own tip."""
         tip, end = self.gear.shaper.tip_roll, self.gear.tip_depth
         first = root_of(lambda roll: self.depth(roll) - end, -2.0 * tip, tip)
         return self.pinion_roll(first), self.pinion.tip_roll
 
     def depth(self, roll: float) -> float:
-        """Depth in the blank of the ideal pair's contact at an angle of roll of the shaper [m]."""
+        """Return the depth in the blank of the ideal pair's contact at a roll of the shaper [m]."""
         point = FaceFlank(self.gear).point(np.array(roll), np.array(-self.working_angle))
         return float(self.gear.blank(point)[1])
 
@@ -152,7 +152,7 @@ class FaceGearPair(GearPair):
         return HelicoidFlank(self.pinion), FaceFlank(self.gear, self.driven_side)
 
     def ideal(self, phase: Array) -> tuple[Array, Array]:
-        """Rotations at which the pair without misalignment touches [rad].
+        """Return the rotations at which the pair without misalignment touches [rad].
 
         At phase 0 pair 0 touches at the pitch point of pinion and shaper.
         """
@@ -164,7 +164,7 @@ class FaceGearPair(GearPair):
         return driver, at_pitch + turn / self.ratio
 
     def valleys(self, pairs: Array, driver: Array, driven: Array) -> Valleys:
-        """Lines of pairs (m,) at rotations (m,) [rad], from the ideal pair's points of contact."""
+        """Return lines of pairs (m,) at rotations (m,) [rad] from the ideal points of contact."""
         # Below the base circle there is no involute; no pair is active near it.
         roll = np.maximum(self.roll(pairs, 0.0, driver), 0.25 * self.pinion.form_roll)
         own = roll, np.full_like(roll, self.contact_length - self.middle)
@@ -181,9 +181,9 @@ class FaceGearPair(GearPair):
         return Flanks(self.flanks[0].numbers, self.flanks[1].numbers, place.axes, place.origin)
 
     def extents(self, driver: Array, driven: Array) -> Extents:
-        """Lines of the pairs on both active flanks at positions (k,), by position and pair.
+        """Return the pairs' lines on both active flanks at positions (k,), by position and pair.
 
-        A line's part on both flanks is where its least margin is positive.
+        A line lies on both flanks where its least margin is positive.
         """
         position, pairs, valleys, reach = self._candidates(driver, driven)
 
@@ -204,7 +204,7 @@ class FaceGearPair(GearPair):
         return Extents(position, pairs, start, end, driver[position], driven[position], trace)
 
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
-        """Margins along the lines of pairs near contact, on both flanks or not."""
+        """Return margins along the lines of pairs near contact, whether on both flanks or not."""
         _, _, valleys, reach = self._candidates(driver, driven)
         a, b, c, d, _ = valleys.find(reach[:, None] * np.linspace(-1.0, 1.0, 33), TEETH.near_edge)
         return self.margins((a, b), (c, d))
@@ -212,20 +212,20 @@ class FaceGearPair(GearPair):
     def _candidates(
         self, driver: Array, driven: Array
     ) -> tuple[NDArray[np.int64], Array, Valleys, Array]:
-        """Positions, pairs, lines and farthest stations (m,) of pairs that may be in contact."""
+        """Return positions, pairs, lines and farthest stations (m,) of pairs that may touch."""
         per_tooth = 2.0 * math.pi / self.pinion.teeth
-        # Lines of neighbouring stations reach past the ideal contact's range of roll.
+        # At other stations, lines reach past the ideal contact's range of roll.
         ends = np.array(self.roll_range)[:, None] + [[-per_tooth], [per_tooth]]
         position, pairs = between(*(ends - self.roll(np.zeros(1), 0.0, driver)) / per_tooth)
         valleys = self.valleys(pairs, driver[position], driven[position])
         return position, pairs, valleys, self._reach(valleys)
 
     def _reach(self, valleys: Valleys) -> Array:
-        """How far from their anchors lines (m,) may reach on both flanks [m]."""
+        """Return how far from their anchors lines (m,) may reach on both flanks [m]."""
         pinion, gear = 0.5 * self.pinion.face_width, 0.5 * (self.gear.outer - self.gear.inner)
         point, major = valleys.start.point, np.abs(valleys.start.major)
         along = np.maximum(major[:, 2], 0.2)
-        # The ends of the gear are arcs, which bend away beside the pinion's axis.
+        # The ends of the gear are arcs, which curve away beside the pinion's axis.
         beside = np.abs(point[:, 1]) + major[:, 1] / along * min(pinion, gear)
         half = np.minimum(pinion, gear + 0.5 * beside**2 / self.gear.inner)
         return np.asarray(1.1 * (half + abs(self.contact_length - self.middle)) / along)

@@ -1,1 +1,1 @@
-"""What all teeth share: bodies, flanks as surfaces, the gap between two of them."""
+"""Geometry common to all teeth: bodies, flanks as surfaces, the gap between two flanks."""

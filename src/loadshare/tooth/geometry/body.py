@@ -1,4 +1,4 @@
-"""Solid teeth of all gears, and where a gear is in the fixed frame."""
+"""Solid teeth of gears of all kinds, and the placement of a gear in the fixed frame."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ Array: TypeAlias = NDArray[np.float64]
 
 
 HEIGHTS = 1.5
-"""Depth of the body below the teeth where nobody says, over the height of the teeth [-]."""
+"""Default depth of the body below the teeth, in tooth heights [-]."""
 RIM = f"{HEIGHTS} tooth heights"
 """The same in words."""
 HALVED = "half the root radius"
-"""The same of an external gear that 1.5 tooth heights would leave next to no bore."""
+"""The same for an external gear in which 1.5 tooth heights would leave hardly any bore."""
 
 
 @dataclass(frozen=True)
 class PitchDeviations:
-    """Where the loaded flanks of a gear's teeth are, compared with even pitches.
+    """Deviations of the loaded flanks of a gear's teeth from even pitches.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class PitchDeviations:
         By tooth, in the order in which they come into mesh: how far each is ahead in the sense
         of rotation, as an arc of the pitch circle [m]; 0 for teeth beyond the list.
     first : int
-        Tooth of pair 0, from 1.
+        Tooth of pair 0, counted from 1.
     """
 
     cumulative: tuple[float, ...]
@@ -40,7 +40,7 @@ class PitchDeviations:
 
 
 class Gear:
-    """What gears of every kind have."""
+    """Data common to gears of every kind."""
 
     teeth: int
     """Number of teeth."""
@@ -53,7 +53,7 @@ class Gear:
 
     @property
     def assumed_rim(self) -> str:
-        """How deep the body below the teeth is where nobody says, in words."""
+        """Default depth of the body below the teeth, in words."""
         return RIM
 
     @property
@@ -62,12 +62,12 @@ class Gear:
         raise NotImplementedError
 
     def tooth_of(self, pair: int) -> int:
-        """Number of the tooth of a pair, from 1: pairs that meet later have larger numbers."""
+        """Return the tooth number of a pair, from 1; teeth that meet later have larger numbers."""
         first = self.pitch.first if self.pitch else 1
         return (first - 1 - pair) % self.teeth + 1
 
     def ahead(self, pair: int) -> float:
-        """Angle by which the tooth of a pair is ahead [rad]."""
+        """Return the angle by which the tooth of a pair is ahead [rad]."""
         number = self.tooth_of(pair)
         if self.pitch is None or number > len(self.pitch.cumulative):
             return 0.0
@@ -91,7 +91,7 @@ class Placement:
 
 
 def fixed() -> Placement:
-    """The fixed frame itself, in which every driver is."""
+    """Return the fixed frame itself, where every driver is placed."""
     return Placement(np.zeros(3), np.eye(3))
 
 
@@ -109,7 +109,7 @@ class ToothBody(ABC):
     gear : Gear
         The gear.
     placement : Placement
-        Where it is.
+        Its placement in the fixed frame.
     foot : float
         The u at which the fillet ends and the flank begins.
     """
@@ -135,12 +135,12 @@ class ToothBody(ABC):
 
     @property
     def axial_pitches(self) -> float:
-        """Axial pitches over the face width, ε_β of the whole face; 0 for straight teeth."""
+        """Number of axial pitches in the whole face width (ε_β); 0 for straight teeth."""
         return 0.0
 
     @abstractmethod
     def outline(self, u: ArrayLike, w: ArrayLike, side: int) -> Array:
-        """Boundary of half of tooth 0 at a width station.
+        """Return the boundary of half of tooth 0 at a width station.
 
         Parameters
         ----------
@@ -160,12 +160,12 @@ class ToothBody(ABC):
 
     @abstractmethod
     def locate(self, points: Array) -> tuple[Array, Array]:
-        """Flank coordinates (u, w) of points on the flanks of any tooth, gear frame.
+        """Return the flank coordinates (u, w) of points on any tooth's flanks, in the gear frame.
 
         Parameters
         ----------
         points : array (..., 3)
-            Points [m]. What does not lie on a flank is projected.
+            Points [m]; those that do not lie on a flank are projected.
 
         Returns
         -------
@@ -175,7 +175,7 @@ class ToothBody(ABC):
 
     @abstractmethod
     def margins(self, a: Array, b: Array) -> Mapping[str, Array]:
-        """Distance [m] of points of the flank to its edges by name, at surface parameters."""
+        """Return the distances [m] of flank points, at surface parameters, to the named edges."""
 
     @property
     def teeth(self) -> int:
@@ -199,19 +199,19 @@ class ToothBody(ABC):
 
 
 def turned(points: Array, angle: Array | float) -> Array:
-    """Points (..., 3) turned about z by angles (...) [rad]."""
+    """Turn points (..., 3) about z by angles (...) [rad]."""
     x, y, z = np.moveaxis(points, -1, 0)
     c, s = np.cos(angle), np.sin(angle)
     return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
 
 
 def about_y(angle: float) -> Array:
-    """Rotation matrix about y."""
+    """Return the rotation matrix about y."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
 def about_x(angle: float) -> Array:
-    """Rotation matrix about x."""
+    """Return the rotation matrix about x."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])

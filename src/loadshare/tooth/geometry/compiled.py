@@ -1,8 +1,8 @@
 """Points of tooth flanks, and the valleys of the gap between them, compiled with Numba.
 
-What is computed is explained where the numbers are made: :mod:`loadshare.tooth.cylindrical.flank`,
+The equations are explained where the numbers are made: :mod:`loadshare.tooth.cylindrical.flank`,
 :mod:`loadshare.tooth.face.flank` and `valley`. A point is an array (6, 3): the position, the unit
-normal, and the derivatives of either over both surface parameters.
+normal, and the derivatives of both with respect to both surface parameters.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ compiled = jit(nogil=True, error_model="numpy")
 
 @compiled
 def profile(taken, roll):  # type: ignore[no-untyped-def]
-    """Material taken off at a length of roll [m], with first and second derivative."""
+    """Return the material taken off at a length of roll [m], and its first two derivatives."""
     half = 0.5 * (taken.tip - taken.root)
     middle = roll - 0.5 * (taken.tip + taken.root)
     bend = taken.profile_crowning / half**2
     height, slope, second = bend * middle**2, 2.0 * bend * middle, 2.0 * bend
     if taken.tip_relief != 0.0:
-        # Grows towards the tip, which an internal gear has at its shorter roll.
+        # Grows towards the tip, where the roll of an internal gear is shortest.
         length, n = np.sign(half) * taken.tip_relief_length, taken.tip_relief_exponent
         into = (roll - taken.tip) / length + 1.0
         if into > 0.0:
@@ -34,7 +34,7 @@ def profile(taken, roll):  # type: ignore[no-untyped-def]
 
 @compiled
 def lead(taken, axial):  # type: ignore[no-untyped-def]
-    """Material taken off at ζ [m], with first and second derivative."""
+    """Return the material taken off at ζ [m], and its first two derivatives."""
     bend = 4.0 * taken.lead_crowning / taken.width**2
     height, slope, second = bend * axial**2, 2.0 * bend * axial, 2.0 * bend
     if taken.end_relief != 0.0:
@@ -47,7 +47,7 @@ def lead(taken, axial):  # type: ignore[no-untyped-def]
 
 @compiled
 def helicoid(gear, roll, axial, turn, point):  # type: ignore[no-untyped-def]
-    """One point of a cylindrical gear's flank, turned about z."""
+    """Compute one point of a cylindrical gear's flank, turned about z."""
     s, radius, twist, sine, cosine = gear.side, gear.radius, gear.twist, gear.sine, gear.cosine
     per_roll = -s * gear.kind
     phi = turn + s * gear.half_angle + per_roll * roll + twist * axial
@@ -60,7 +60,7 @@ def helicoid(gear, roll, axial, turn, point):  # type: ignore[no-untyped-def]
     more, by_axial, by_axial2 = lead(gear.taken, axial)
     taken += more
     reach = radius * roll - gear.kind * cosine * taken
-    # The normal along e_r, generator and plain normal is (tilt, lean, 1), made unit.
+    # Along e_r, generator and plain normal, the normal is (tilt, lean, 1), normalised.
     tilt = by_roll / reach
     lean = cosine * (by_axial - twist * per_roll * by_roll)
     over = 1.0 / np.sqrt(1.0 + tilt**2 + lean**2)
@@ -69,7 +69,7 @@ def helicoid(gear, roll, axial, turn, point):  # type: ignore[no-untyped-def]
     _put(point, 2, reach, -across * by_roll, -up * by_roll)
     tangential = sine / cosine - across * by_axial
     _put(point, 3, twist * per_roll * reach, tangential, 1.0 - up * by_axial)
-    # It changes with tilt, lean and φ, over ξ and over ζ, and keeps its length.
+    # Its derivatives over ξ and ζ follow from those of tilt, lean and φ; its length is constant.
     tilts = (by_roll2 - tilt * (radius - gear.kind * cosine * by_roll)) * (over / reach)
     leans = -cosine * twist * per_roll * by_roll2 * over
     _bend(point, 4, tilts, sine * leans, cosine * leans, per_roll)
@@ -81,12 +81,12 @@ def helicoid(gear, roll, axial, turn, point):  # type: ignore[no-untyped-def]
 
 @compiled
 def face(gear, roll, phi, turn, point):  # type: ignore[no-untyped-def]
-    """One point of a face gear's flank, in its own frame, turned about z."""
+    """Compute one point of a face gear's flank, in its own frame, turned about z."""
     s, base = -gear.side, gear.base
     cosine, sine = np.cos(phi), np.sin(phi)
     x, y = base * (cosine - s * roll * sine), base * (sine + s * roll * cosine)
     u = gear.scale / cosine
-    # Seen from the gear, everything also turns back about z = (−sin Γ, 0, cos Γ) by m φ_s.
+    # In the gear's frame, everything also turns back about z = (−sin Γ, 0, cos Γ) by m φ_s.
     k, n = gear.ratio * gear.axes[2, 2], gear.ratio * gear.axes[2, 0]
     _put(point, 0, x, y, u)
     _put(point, 1, s * sine, -s * cosine, 0.0)
@@ -101,7 +101,7 @@ def face(gear, roll, phi, turn, point):  # type: ignore[no-untyped-def]
 
 @compiled
 def helicoids(gear, roll, axial, turn, points):  # type: ignore[no-untyped-def]
-    """Points (6, 3, n) of a cylindrical gear's flank."""
+    """Compute points (6, 3, n) of a cylindrical gear's flank."""
     point = np.empty((6, 3))
     for k in range(len(roll)):
         helicoid(gear, roll[k], axial[k], turn[k], point)
@@ -110,7 +110,7 @@ def helicoids(gear, roll, axial, turn, points):  # type: ignore[no-untyped-def]
 
 @compiled
 def faces(gear, roll, phi, turn, points):  # type: ignore[no-untyped-def]
-    """Points (6, 3, n) of a face gear's flank."""
+    """Compute points (6, 3, n) of a face gear's flank."""
     point = np.empty((6, 3))
     for k in range(len(roll)):
         face(gear, roll[k], phi[k], turn[k], point)
@@ -119,7 +119,7 @@ def faces(gear, roll, phi, turn, points):  # type: ignore[no-untyped-def]
 
 @compiled
 def find(flanks, start, turns, known, stations, last, limits, found):  # type: ignore[no-untyped-def]
-    """Unknowns (m, n, 5) of valleys at stations (m, n), NaN where there are none."""
+    """Find the unknowns (m, n, 5) of valleys at stations (m, n), NaN where there are none."""
     own, other, work, step = np.empty((6, 3)), np.empty((6, 3)), np.empty((7, 3)), np.empty(5)
     slope = np.empty(5)
     for i in range(len(stations)):
@@ -141,7 +141,7 @@ def find(flanks, start, turns, known, stations, last, limits, found):  # type: i
                 done = moved <= last
                 if done or not np.isfinite(moved):
                     break
-                # Later steps are a quarter of the one before, or Newton's method gets nowhere.
+                # Newton's method fails if later steps do not shrink to a quarter of the one before.
                 if number >= limits.sure and not moved < 0.25 * before:
                     break
                 before = moved
@@ -151,7 +151,7 @@ def find(flanks, start, turns, known, stations, last, limits, found):  # type: i
 
 @compiled
 def interpolate(known, stations, found):  # type: ignore[no-untyped-def]
-    """Unknowns (m, n, 5) at stations (m, n) from what is known at evenly spaced ones."""
+    """Interpolate the unknowns (m, n, 5) at stations (m, n) from those at evenly spaced ones."""
     for i in range(len(stations)):
         for j in range(stations.shape[1]):
             _interpolate(known, i, stations[i, j], found[i, j])
@@ -159,7 +159,7 @@ def interpolate(known, stations, found):  # type: ignore[no-untyped-def]
 
 @compiled
 def trace(flanks, start, turns, found, own, other, tangent):  # type: ignore[no-untyped-def]
-    """Flanks (6, 3, m·n) and derivatives (m, n, 3) of the driver's points over the station."""
+    """Compute both flanks (6, 3, m·n) and the driver points' derivatives (m, n, 3) by station."""
     first, second, work, slope = np.empty((6, 3)), np.empty((6, 3)), np.zeros((7, 3)), np.empty(5)
     for i in range(found.shape[0]):
         for j in range(found.shape[1]):
@@ -175,7 +175,7 @@ def trace(flanks, start, turns, found, own, other, tangent):  # type: ignore[no-
 
 @compiled
 def _interpolate(known, i, station, at):  # type: ignore[no-untyped-def]
-    """Cubic interpolation of the unknowns (5,) of valley `i`; NaN where nothing is known."""
+    """Interpolate the unknowns (5,) of valley `i` cubically; NaN where none are known."""
     count = known.stations.shape[1]
     if count == 0:
         at[:] = np.nan
@@ -193,7 +193,7 @@ def _interpolate(known, i, station, at):  # type: ignore[no-untyped-def]
 
 @compiled
 def _both(flanks, a, b, c, d, turns, own, other):  # type: ignore[no-untyped-def]
-    """Points of the driver's and of the driven flank in the fixed frame."""
+    """Compute the points of the driver's and of the driven flank in the fixed frame."""
     helicoid(flanks.driver, a, b, turns[0], own)
     face(flanks.driven, c, d, turns[1], other)
     _carry(other, flanks.axes)
@@ -203,7 +203,7 @@ def _both(flanks, a, b, c, d, turns, own, other):  # type: ignore[no-untyped-def
 
 @compiled
 def _newton(flanks, start, i, turns, station, at, own, other, work, step):  # type: ignore[no-untyped-def]
-    """Newton's step of valley `i` on the unknowns `at`; returns how far it moves points [m]."""
+    """Make a Newton step of valley `i` on the unknowns `at`; return how far points move [m]."""
     _both(flanks, at[0], at[1], at[2], at[3], turns, own, other)
     gap, ahead, aside = at[4], station, 0.0
     for k in range(3):
@@ -229,11 +229,11 @@ def _solve(own, other, gap, major, minor, ahead, aside, work, step):  # type: ig
         (X_a δa + X_b δb)·e_major = ahead,
         (n_a δa + n_b δb + m_c δc + m_d δd)·e_minor = aside,
 
-    `apart` in the last row of `work`. The first three give δc and δd by δa and δb, for which two
-    equations are left.
+    with `apart` in the last row of `work`. The first three equations give δc and δd in terms of δa
+    and δb, for which two equations are left.
     """
     normal, ray_a, ray_b, lean, apart = own[1], work[0], work[1], work[5], work[6]
-    # Rows that read δc, δd and −δt off Y_c δc + Y_d δd − n δt, once divided by the determinant.
+    # Rows that, divided by the determinant, extract δc, δd and −δt from Y_c δc + Y_d δd − n δt.
     reads = work[2:5]
     _cross(other[3], normal, reads[0])
     _cross(normal, other[2], reads[1])
@@ -265,8 +265,8 @@ def _put(point, row, x, y, z):  # type: ignore[no-untyped-def]
 
 @compiled
 def _keep(point, points, k):  # type: ignore[no-untyped-def]
-    """Write a point down as number `k` of points (6, 3, n)."""
-    # A slice on the left would take seconds to compile, for what it says of wrong shapes.
+    """Store a point as number `k` of points (6, 3, n)."""
+    # Assigning to a slice would take seconds to compile, because of its message on wrong shapes.
     for row in range(6):
         for axis in range(3):
             points[row, axis, k] = point[row, axis]
@@ -274,7 +274,7 @@ def _keep(point, points, k):  # type: ignore[no-untyped-def]
 
 @compiled
 def _bend(point, row, x, y, z, turn):  # type: ignore[no-untyped-def]
-    """Change of the unit normal that turns about z besides; its part along the normal is nil."""
+    """Store the change of the unit normal, which also turns about z, less its part along it."""
     normal = point[1]
     x, y = x - turn * normal[1], y + turn * normal[0]
     along = normal[0] * x + normal[1] * y + normal[2] * z

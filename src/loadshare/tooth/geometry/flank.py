@@ -1,4 +1,4 @@
-"""A point of a tooth flank with all that contact needs to know of it."""
+"""Points of tooth flanks with their normals and derivatives, and vector algebra for them."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ class Patch:
     Parameters
     ----------
     components : array (6, 3, ...)
-        Components of `vectors`, each for itself, for all six are turned as one.
+        `vectors` with the components on axis 1, so that one product rotates all six vectors.
     """
 
     components: Array
 
     @cached_property
     def vectors(self) -> Array:
-        """Position, unit normal, and derivatives of either over a and b (6, ..., 3)."""
+        """Position, unit normal, and derivatives of both with respect to a and b (6, ..., 3)."""
         return np.moveaxis(self.components, 1, -1)
 
     @property
@@ -41,16 +41,16 @@ class Patch:
 
     @property
     def rays(self) -> Array:
-        """Derivatives (2, ..., 3) of the position over both surface parameters."""
+        """Derivatives (2, ..., 3) of the position with respect to both surface parameters."""
         return self.vectors[2:4]
 
     @property
     def bends(self) -> Array:
-        """Derivatives (2, ..., 3) of the unit normal over both surface parameters."""
+        """Derivatives (2, ..., 3) of the unit normal with respect to both surface parameters."""
         return self.vectors[4:6]
 
     def turned(self, rotation: Array, origin: Array | None = None) -> Patch:
-        """The patch carried to another frame: x ↦ rotation x + origin."""
+        """Return the patch in another frame: x ↦ rotation x + origin."""
         shape = self.components.shape
         components = (rotation @ self.components.reshape(6, 3, -1)).reshape(shape)
         if origin is not None:
@@ -58,7 +58,7 @@ class Patch:
         return Patch(components)
 
     def normal_change(self, direction: Array) -> Array:
-        """Change of the unit normal per length along tangential directions.
+        """Return the change of the unit normal per length along tangential directions.
 
         This is Weingarten's map. The curvature of the flank in a unit tangent t is
         t·(change along t), positive where the flank is convex.
@@ -81,16 +81,16 @@ class Patch:
 
 
 def patch(fill: Callable[..., None], numbers: tuple[Any, ...], *at: Array | float) -> Patch:
-    """Points at surface parameters a, b and turns [rad], broadcast against one another.
+    """Return points at surface parameters a, b and rotations [rad], broadcast together.
 
     Parameters
     ----------
     fill : callable
-        Compiled; from the numbers of a flank and the parameters (n,) to points (6, 3, n).
+        Compiled function that fills points (6, 3, n) from a flank's numbers and parameters (n,).
     numbers : tuple
-        The flank.
+        Numbers of the flank.
     *at : array or float
-        a, b and the turns.
+        a, b and the rotations.
     """
     parameters = np.broadcast_arrays(*at)
     components = np.empty((6, 3, parameters[0].size))
@@ -99,13 +99,13 @@ def patch(fill: Callable[..., None], numbers: tuple[Any, ...], *at: Array | floa
 
 
 def dot(first: Array, second: Array) -> Array:
-    """Scalar products along the last axis."""
+    """Return scalar products along the last axis."""
     product: Array = np.einsum("...i,...i->...", first, second)
     return product
 
 
 def cross(first: Array, second: Array) -> Array:
-    """Vector products along the last axis."""
+    """Return vector products along the last axis."""
     a, b, c = first[..., 0], first[..., 1], first[..., 2]
     d, e, f = second[..., 0], second[..., 1], second[..., 2]
     product = np.empty((3, *np.broadcast_shapes(a.shape, d.shape)))
@@ -137,20 +137,20 @@ def solve_3(first: Array, second: Array, third: Array, right: Array) -> tuple[Ar
 
 
 def unit(vectors: Array) -> Array:
-    """Vectors of length one."""
+    """Normalise vectors."""
     return vectors / np.sqrt(dot(vectors, vectors))[..., None]
 
 
 def relative_curvature(driver: Patch, driven: Patch, direction: Array) -> Array:
-    """Curvature of the gap between two touching flanks in a unit tangent direction [1/m].
+    """Return the curvature [1/m] of the gap between touching flanks in a unit tangent direction.
 
-    Both flanks count as positive where they are convex, so that two convex flanks add up.
+    Curvature is positive where a flank is convex, so the curvatures of two convex flanks add.
     """
     return dot(direction, driver.normal_change(direction) + driven.normal_change(direction))
 
 
 def principal_directions(driver: Patch, driven: Patch) -> tuple[Array, Array]:
-    """Directions of least and of greatest relative curvature at points of contact.
+    """Return the directions of least and greatest relative curvature at points of contact.
 
     The first is the major axis of the contact ellipse.
 

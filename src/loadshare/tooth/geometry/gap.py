@@ -14,9 +14,9 @@ from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import Patch, dot, solve_3
 
-# Parts of a line in which the least gap is looked for, at least.
+# Least number of parts of a line on which the least gap is searched for.
 FEWEST = 15
-# Stations of the second look, between those next to the least gap of the first.
+# Stations of the second grid, which lies between the neighbours of the first grid's least gap.
 FINER = 9
 
 
@@ -31,7 +31,7 @@ class Trace:
     Parameters
     ----------
     driver, driven : Patch
-        Both flanks where the normal of the driver's meets them, fixed frame.
+        Points of the driver's flank, and where its normals meet the driven flank, fixed frame.
     driver_at, driven_at : tuple of two arrays (m, n)
         Their surface parameters.
     gap : array (m, n)
@@ -52,7 +52,7 @@ class Trace:
     def slope(self) -> Array:
         """Derivative of the gap with respect to the station (m, n).
 
-        X + t n stays on the driven flank, so that its derivative has no part along that normal.
+        X + t n stays on the driven flank, so its derivative has no component along that normal.
         """
         across = self.driven.normal
         moving = self.tangent + self.gap[..., None] * self.driver.normal_change(self.tangent)
@@ -60,7 +60,7 @@ class Trace:
         return slope
 
     def part(self, part: tuple[Any, Any]) -> Trace:
-        """The trace of some of the lines and at some of the stations."""
+        """Return the trace of some of the lines at some of the stations."""
         own, other = (Patch(f.components[..., *part]) for f in (self.driver, self.driven))
         (a, b), (c, d) = self.driver_at, self.driven_at
         return Trace(
@@ -80,7 +80,7 @@ class Extents:
     Parameters
     ----------
     position : array (m,) of int
-        Which of the positions asked for a line belongs to.
+        Index of each line's position among those requested.
     pairs : array (m,)
         Pairs of teeth.
     start, end : array (m,)
@@ -88,7 +88,7 @@ class Extents:
     driver, driven : array (m,)
         Rotations of the gears [rad].
     trace : callable
-        From stations (m, n) [m] to the `Trace` of the lines there.
+        Function of stations (m, n) [m] that returns the `Trace` of the lines there.
     """
 
     position: NDArray[np.int64]
@@ -100,7 +100,7 @@ class Extents:
     trace: Callable[[Array], Trace]
 
     def rows(self, chosen: NDArray[np.int64]) -> Extents:
-        """Some of the lines."""
+        """Return some of the lines."""
 
         def trace(stations: Array) -> Trace:
             middles = 0.5 * (self.start + self.end)
@@ -112,10 +112,10 @@ class Extents:
         return replace(self, trace=trace, **{name: getattr(self, name)[chosen] for name in named})
 
     def spread(self, points: int) -> tuple[Array, slice]:
-        """Stations (m, n) for a first look at the lines, and which of them are wanted.
+        """Return stations (m, n) of a first grid on the lines, and which of them are requested.
 
-        Wanted are the middles of `points` equal parts of every line. Where these are few the parts
-        are divided further; the ends of the line are always there.
+        Requested are the middles of `points` equal parts of every line. If these are few, the
+        parts are divided further; the ends of the line are always included.
         """
         finer = -(-FEWEST // points) | 1  # odd, so that the middles of the parts stay
         middles = (np.arange(finer * points) + 0.5) / (finer * points)
@@ -125,10 +125,11 @@ class Extents:
 
 
 def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace]:
-    """Least gap on each line, ends included, and its station.
+    """Find the least gap on each line, ends included, and its station.
 
-    Two grids find the place; where the slope of the gap changes sign next to it, the secant of the
-    slope gives the station, or the tangents do, which meet in a kink such as that of end relief.
+    Two grids find the place. Where the slope of the gap changes sign next to it, the station is
+    refined by the secant of the slope or, for a kink such as that of end relief, by intersecting
+    the tangents; the lower gap is taken.
 
     Returns
     -------

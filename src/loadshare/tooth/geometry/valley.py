@@ -1,4 +1,4 @@
-"""Contact lines where contact is localised: valleys of the gap, and how far flanks reach there."""
+"""Contact lines of localised contact: valleys of the gap, and how far the flanks reach there."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import Patch, principal_directions
 from loadshare.tooth.geometry.gap import Trace
 
-# Stations of the first grid, and of those that close in on either end.
+# Stations of the first grid, and of the grids that narrow down either end.
 FIRST, FINER = 33, 9
 # The last grid's spacing is 1/1024 of the reach; linear interpolation within it leaves an error of
 # the margin's curvature times the square of that, nanometres for teeth of centimetres.
@@ -34,7 +34,7 @@ class Flanks(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """Where the valleys of m pairs of teeth begin: points at which both flanks nearly touch."""
+    """Origins of the valleys of m pairs of teeth: points at which both flanks nearly touch."""
 
     at: Array  # (m, 4): surface parameters on the driver's and on the driven flank
     point: Array  # (m, 3): origin of the stations [m]
@@ -43,7 +43,7 @@ class Anchor(NamedTuple):
 
 
 class Known(NamedTuple):
-    """Evenly spaced stations with what was found there; none where nothing was."""
+    """Evenly spaced stations and the unknowns found there; empty if none were found yet."""
 
     stations: Array  # (m, g)
     found: Array  # (m, g, 5)
@@ -76,11 +76,11 @@ class Valleys:
     flanks : Flanks
         The flanks of the gears.
     turns : array (m, 2)
-        How far the teeth of either gear have turned [rad].
+        Rotations of the teeth of either gear [rad].
     start : Anchor
-        Where the stations count from.
+        Origins of the stations.
     known : Known
-        From which Newton's method begins.
+        Starting values of Newton's method.
     """
 
     flanks: Flanks
@@ -89,17 +89,17 @@ class Valleys:
     known: Known = field(repr=False)
 
     def rows(self, chosen: Index) -> Valleys:
-        """The valleys of some pairs."""
+        """Return the valleys of some pairs."""
         start, known = ([part[chosen] for part in parts] for parts in (self.start, self.known))
         return Valleys(self.flanks, self.turns[chosen], Anchor(*start), Known(*known))
 
     def knowing(self, stations: Array, found: Array) -> Valleys:
-        """The same valleys with what was found (5, m, g) at evenly spaced stations (m, g)."""
+        """Return the same valleys with unknowns (5, m, g) known at even stations (m, g)."""
         kept = np.ascontiguousarray(np.moveaxis(found, 0, -1))
         return replace(self, known=Known(stations, kept))
 
     def guess(self, stations: Array) -> Array | None:
-        """What :meth:`find` finds, good to micrometres, where all that it takes is known."""
+        """Interpolate the result of :meth:`find` to micrometres; None where values are missing."""
         from loadshare.tooth.geometry.compiled import interpolate
 
         near = np.empty((*stations.shape, 5))
@@ -107,14 +107,14 @@ class Valleys:
         return np.moveaxis(near, -1, 0) if np.isfinite(near).all() else None
 
     def find(self, stations: Array, last: float = TEETH.last_step) -> Array:
-        """Surface parameters on both flanks and gap (5, m, n) at stations (m, n) [m].
+        """Find surface parameters on both flanks and gap (5, m, n) at stations (m, n) [m].
 
-        The gap is NaN where Newton's method finds no point. A step below `last` [m] is the last.
+        The gap is NaN where Newton's method finds no point; it ends with a step below `last` [m].
         """
         return np.moveaxis(self._find(stations, last), -1, 0)
 
     def trace(self, stations: Array) -> Trace:
-        """Flanks and gap at stations (m, n) [m]."""
+        """Return both flanks and the gap at stations (m, n) [m]."""
         from loadshare.tooth.geometry.compiled import trace
 
         found, shape = self._find(stations, TEETH.last_step), stations.shape
@@ -125,11 +125,11 @@ class Valleys:
         return Trace(own, other, (a, b), (c, d), gap, tangent)
 
     def _find(self, stations: Array, last: float) -> Array:
-        """Unknowns (m, n, 5)."""
+        """Return the unknowns (m, n, 5)."""
         from loadshare.tooth.geometry.compiled import find
 
         found = np.empty((*stations.shape, 5))
-        # Limits are handed over: compiled code would keep an old one.
+        # The limits are arguments, because compiled code would keep an old value of a global.
         find(self.flanks, self.start, self.turns, self.known, stations, last, TEETH, found)
         return found
 
@@ -138,24 +138,24 @@ class Margin(Protocol):
     """Distance from the nearest edge [m] at stations (k, n) on lines (k,), negative outside."""
 
     def __call__(self, stations: Array, lines: NDArray[np.int64], *, near: bool = False) -> Array:
-        """The margin (k, n); where `near`, what is known from earlier calls may replace it."""
+        """Return the margin (k, n); if `near`, it may be interpolated from earlier calls."""
         ...
 
 
 def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]:
-    """Ends of the stretch on which a margin is positive, on m lines at once.
+    """Find the ends of the stretch on which a margin is positive, on m lines at once.
 
     Parameters
     ----------
     margin : Margin
-        Of the lines by their numbers.
+        Margin on the lines, which it takes by index.
     reach : array (m,)
         The stretch lies between −reach and reach [m].
 
     Returns
     -------
     found : array (k,) of int
-        Lines with a positive station on the first grid, and more than a point about it.
+        Lines with a positive margin on the first grid, and on more than a point.
     start, end : array (k,)
         First and last station of their stretches [m].
     """
@@ -172,12 +172,12 @@ def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]
         first = np.where(beyond, side * steps, FIRST)
         out = np.argmin(np.where(first < 0, FIRST, first), axis=1)
         outside.append(stations[line, out])
-        # Where the stretch begins at the end of the reach there is nothing farther in.
+        # If the best station is itself the end of the reach, no station lies farther in.
         inside.append(stations[line, out - side * (out != best)])
     good, bad = np.array(inside), np.array(outside)
 
     def both_ends(grid: Array, *, near: bool = False) -> Array:
-        """Margins at stations (2, k, n)."""
+        """Return the margins at stations (2, k, n)."""
         stations = np.concatenate(list(grid), axis=1)
         return np.stack(np.split(margin(stations, found, near=near), 2, axis=1))
 
@@ -189,7 +189,7 @@ def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]
         after = np.maximum(np.argmax(values <= 0.0, axis=-1), 1)[..., None]
         good, bad = (np.take_along_axis(grid, at, -1)[..., 0] for at in (after - 1, after))
     within, beyond = np.moveaxis(both_ends(np.stack([good, bad], axis=-1)), -1, 0)
-    # The edge may lie outside the cell by what the grids' values were off.
+    # The edge may lie outside the cell, because the values on the grids were approximate.
     fall = np.maximum(within - beyond, np.finfo(float).tiny)
     ends = good + (bad - good) * np.clip(within / fall, -1.0, 2.0)
     start, end = np.clip(ends, -reach[found], reach[found])

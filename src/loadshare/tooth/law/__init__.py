@@ -1,1 +1,1 @@
-"""Where the law of a mesh comes from: a standard, a file, an analysis kept on disk."""
+"""Sources of the law of a mesh: a standard, a file, an analysis kept on disk."""

@@ -30,9 +30,9 @@ from loadshare.tooth.pair.gears import PairGears, gears_of
 from loadshare.tooth.pair.model import Load, Number, Positions
 
 MISSED = 0.01
-"""Part of the mean deflection that positions may miss silently."""
+"""Part of the mean deflection that positions may miss without a finding."""
 UNKNOWN = "its law file does not say of which gears: written anew, they would be compared"
-"""What the basis adds where a law file lacks its gears."""
+"""Text that the basis adds if a law file lacks its gears."""
 _GEARS = {"driver": "driver", "driven": "driven gear"}
 Share = Annotated[float, Strict(), Field(ge=0, allow_inf_nan=False)]
 
@@ -50,7 +50,7 @@ class Rim(Element):
     """Whether the gear's own is assumed because the pair does not say."""
 
     def text(self, gear: str, depth: str) -> str:
-        """Return what it says in a line; `depth` is what the gear's own is where it is assumed."""
+        """Return a line of text; `depth` is the gear's own, in words, in case it is assumed."""
         low, own, high = (f"{1e3 * value.si:.4g} mm" for value in self.thickness)
         softer, stiffer = (f"{100.0 * (self.stiffness[k] - 1.0):+.1f} %" for k in (0, 2))
         source = f" (assumed, {depth})" if self.assumed else ""
@@ -61,11 +61,11 @@ class Rim(Element):
 
 
 ROUNDED = 1e-3
-"""By how much a depth that a law file tells may be less than that assumed, relative."""
+"""Relative amount by which a depth in a law file may be less than the one assumed."""
 SIDEWAYS = 11.4
-"""By how much helical teeth yield more than slices say, over (sin β_b m/b)² (docs/ltca.md)."""
+"""How much more helical teeth yield than slices, over (sin β_b m/b)² (docs/ltca.md)."""
 SLICES = 0.05
-"""What of that is told: the error that slices have anyway is 2 to 6 %."""
+"""Amount from which that is reported: slices have an error of 2 to 6 % anyway."""
 
 
 class Stamp(Element):
@@ -140,7 +140,7 @@ class MeshLaw(Element):
     """What it was computed from."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield lists that are not as long as there are positions, and where the mesh is rigid."""
+        """Yield lists whose length is not the number of positions, and where the mesh is rigid."""
         for key in ("a", "b", "c", "misfit"):
             found = len(getattr(self, key))
             if found != self.computed.positions:
@@ -153,7 +153,7 @@ class MeshLaw(Element):
 
     @property
     def findings(self) -> tuple[str, ...]:
-        """How far the law hangs on rims and positions, a line each."""
+        """How the law depends on rims and positions, and what it leaves out, a line each."""
         lines = [rim.text(_GEARS[name], self._assumed(name)) for name, rim in self.rim.items()]
         missed = 0.0 if self.sampled is None else self.sampled - 1.0
         if abs(missed) > MISSED:
@@ -175,7 +175,7 @@ class MeshLaw(Element):
         return (*lines, *self._most_loaded())
 
     def _assumed(self, name: Literal["driver", "driven"]) -> str:
-        """How deep the body of a gear is whose rim the pair does not say, in words."""
+        """Return, in words, how deep the body of a gear is whose rim the pair does not give."""
         gear = getattr(self.computed.gears, name, None)
         if gear is None or None in (gear.module, gear.addendum, gear.dedendum):
             return RIM
@@ -185,7 +185,7 @@ class MeshLaw(Element):
 
     @property
     def yielding(self) -> float:
-        """By how much the teeth yield under T, over their height [-]; 0 where it is not known."""
+        """Largest deflection of the teeth under T, over their height [-]; 0 if it is not known."""
         gears, torque = self.computed.gears, self.computed.torque.si
         if gears is None or gears.driver.module is None:
             return 0.0
@@ -197,7 +197,7 @@ class MeshLaw(Element):
 
     @property
     def sideways(self) -> float:
-        """By how much slices yield too little, since helical teeth bend sideways as well [-]."""
+        """Part by which slices yield too little, because helical teeth bend sideways too [-]."""
         gears = self.computed.gears
         if self.computed.compliance != "slices" or gears is None or gears.driver.module is None:
             return 0.0
@@ -220,7 +220,7 @@ class MeshLaw(Element):
         )
 
     def as_law(self, assumed: Sequence[str] = ()) -> dict[str, Any]:
-        """The table `law` of a mesh: a, b and c, what they are from, and where that holds.
+        """Return the table `law` of a mesh: a, b and c, their basis, and the loads they hold for.
 
         Parameters
         ----------
@@ -243,7 +243,7 @@ class MeshLaw(Element):
 
 
 def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
-    """Law of a pair from its analysis.
+    """Return the law of a pair from its analysis.
 
     Parameters
     ----------
@@ -279,7 +279,7 @@ def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
 
 
 def _sureness(pair: PairFile) -> dict[str, Any]:
-    """How far the law depends on its rims and on its positions, where slices can show it."""
+    """Return how the law depends on its rims and positions, if slices can solve the contact."""
     from loadshare.tooth.pair.sensitivity import rim_effects, sampled_deflection
 
     found: dict[str, Any] = {}
@@ -298,7 +298,7 @@ def _sureness(pair: PairFile) -> dict[str, Any]:
 
 
 def _carried(pair: PairFile, found: Ltca) -> dict[str, Any]:
-    """Load on the pairs of teeth, where pitch deviations tell teeth apart."""
+    """Return the load on the pairs of teeth, if pitch deviations make the teeth differ."""
     one, two = pair.geometry.driver.gear, pair.geometry.driven.gear
     if one.pitch is None and two.pitch is None:
         return {}
@@ -345,7 +345,7 @@ def load_law(path: str | Path) -> MeshLaw:
 
 
 def parsed_law(text: str) -> MeshLaw | None:
-    """Return the law of a text, or None where it holds none."""
+    """Return the law that a text holds, or None if it holds none."""
     try:
         return _law(tomllib.loads(text), Origin("law"))
     except (tomllib.TOMLDecodeError, CaseError):

@@ -1,4 +1,4 @@
-"""The law of a pair, computed, or kept from an earlier run."""
+"""The law of a pair, computed or read from the cache."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ Tick = Callable[[int, int], None]
 
 
 def known_law(pair: PairFile) -> MeshLaw | None:
-    """Law that the cache holds for a pair, if it does."""
+    """Return the law that the cache holds for a pair; None if it holds none."""
     text = read_entry(_place(pair))
     return None if text is None else parsed_law(text)
 
 
 def computed_law(pair: PairFile, progress: Tick | None = None) -> MeshLaw:
-    """Analyse a pair, and keep and return its law.
+    """Analyse a pair, and cache and return its law.
 
     Parameters
     ----------
@@ -44,21 +44,21 @@ def computed_law(pair: PairFile, progress: Tick | None = None) -> MeshLaw:
 
 
 def kept_law(pair: PairFile, found: Ltca) -> MeshLaw:
-    """Return the law of an analysis, and keep it in the cache."""
+    """Return the law of an analysis, after writing it to the cache."""
     law = law_of(pair, found)
     write_entry(_place(pair), law_text(law))
     return law
 
 
 def _place(pair: PairFile) -> str:
-    """Place of a law: by the version, the pair, and the sources of this room and its settings."""
+    """Return a law's place in the cache: by version, pair, and this package's code and settings."""
     key = digest_of(f"{code_hash()}\n{__version__}\n{pair.hash}")
     return f"laws/{key}.toml"
 
 
 @cache
 def code_hash(room: Path = Path(__file__).parents[1]) -> str:
-    """SHA-256 of the sources of this room and its settings: another method, another entry."""
+    """Return the SHA-256 of this package's code and settings: a new method gets a new entry."""
     found = hashlib.sha256(repr(TEETH).encode())
     for file in sorted(room.rglob("*.py")):
         found.update(file.relative_to(room).as_posix().encode())

@@ -1,4 +1,4 @@
-"""The pair of gears that a mesh of a case is, for a law from the gears' own teeth."""
+"""The gear pair of a mesh of a case, for a law from the gears' own teeth."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from loadshare.case import Case, Gear
 
 MODELS = {"ltca": "slices", "ltca elements": "finite elements"}
-"""Compliance of the teeth by the word for the law."""
+"""Model of the teeth by the keyword for the law."""
 LOAD = 50e6
-"""Tooth force per face width and module of the rated torque where none is given [Pa]."""
+"""Tooth force per face width and module for the rated torque if none is given [Pa]."""
 
 
 def inline_pair(case: Case, name: str) -> PairFile:
-    """Return the pair that two gears of a case make, as a pair file would say it.
+    """Return the pair that two gears of a case form, as from a pair file.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def inline_pair(case: Case, name: str) -> PairFile:
     Raises
     ------
     CaseError
-        With everything that is wrong with the gears or with their mesh, by the keys of the case.
+        If the gears or their mesh have problems; it lists all of them by the keys of the case.
     """
     mesh = case.meshes[name]
     centres = case.centres()
@@ -49,7 +49,7 @@ def inline_pair(case: Case, name: str) -> PairFile:
             "torque": f"{torque!r} N*m",
             "driver": _gear(driver),
             "driven": _gear(driven),
-            # To a picometre, so that planets' pairs are one whose places are rounded.
+            # To a picometre, so that planets whose places differ by rounding share one pair.
             "centre_distance": f"{1e3 * distance:.9f} mm",
             "analysis": {
                 "positions": case.operating.positions,
@@ -65,7 +65,7 @@ def inline_pair(case: Case, name: str) -> PairFile:
 
 
 def assumed_of(case: Case, name: str, pair: PairFile) -> tuple[str, ...]:
-    """What the pair of a mesh takes for granted, because the case does not say."""
+    """Return what the pair of a mesh assumes because the case does not say."""
     mesh = case.meshes[name]
     gears = dict(zip(("driver", "driven gear"), (case.gears[n] for n in mesh.ends), strict=True))
     bodies = pair.geometry.driver.gear, pair.geometry.driven.gear
@@ -109,7 +109,7 @@ def _gear(gear: Gear) -> dict[str, Any]:
 
 
 def _too_deep(case: Case, name: str, gear: Gear) -> Iterator[Problem]:
-    """Yield the rim of an external gear that is deeper than the gear itself."""
+    """Yield a problem if the rim of an external gear is deeper than the gear itself."""
     radius = _rim(gear)
     if gear.tooth is not None and radius is not None and radius <= 0.0:
         what = "leaves no bore in the body below the teeth"
@@ -118,7 +118,7 @@ def _too_deep(case: Case, name: str, gear: Gear) -> Iterator[Problem]:
 
 
 def _rim(gear: Gear) -> float | None:
-    """Radius at which the body ends, where the gear says so [m]; the rim on a web counts first."""
+    """Return the radius at which the body ends [m], if given; the rim on a web takes precedence."""
     tooth = gear.tooth
     if gear.rim is not None and tooth is not None:
         return tooth.root - tooth.kind * gear.rim.si
@@ -127,7 +127,7 @@ def _rim(gear: Gear) -> float | None:
 
 
 def _in_case(case: Case, name: str, problem: Problem) -> Problem:
-    """A problem of the pair by the keys of the case."""
+    """Return a problem of the pair with the keys of the case."""
     which, _, key = problem.key.partition(".")
     mesh = case.meshes[name]
     ends = {"driver": mesh.driver, "driven": mesh.driven}

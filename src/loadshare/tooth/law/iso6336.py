@@ -1,6 +1,6 @@
 """Mesh stiffness of a cylindrical pair by the formulas of ISO 6336-1, method B.
 
-It is what teeth of steel were measured to have under 100 N/mm of face width and more.
+It is the stiffness measured on steel teeth under 100 N/mm of face width and more.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 SHIFTS = (-0.5, 2.0)
 """Least and largest x1 + x2 to which the standard's series was fitted."""
 MEASURED = 0.8
-"""C_M, the standard's."""
+"""C_M of the standard."""
 LEAST_RATIO = 1.2
 """Transverse contact ratio from which the standard's mesh stiffness holds for spur gears [-]."""
 LEAST_LOAD = 100e3
@@ -63,7 +63,7 @@ def formula_stiffness(
     blank_factor: float = 1.0,
     measured_factor: float = MEASURED,
 ) -> FormulaStiffness:
-    """Stiffness of a steel pair by formula.
+    """Return the stiffness of a steel pair by formula.
 
     q' is the flexibility of a pair of discs fitted by the standard's series, c'_th = 1/q',
     c' = C_M c'_th C_R C_B cos β, c_γα = c' (0.75 ε_α + 0.25), c_γβ = 0.85 c_γα.
@@ -76,7 +76,7 @@ def formula_stiffness(
     profile_shift : tuple of two floats
         x1, x2, from −0.5 to 2 in sum.
     dedendum : tuple of two floats
-        h_fP of both basic racks in modules; their mean counts.
+        h_fP of both basic racks in modules; their mean is used.
     contact_ratio : float
         Transverse contact ratio ε_α; the mesh formula holds from `LEAST_RATIO` for spur gears.
     pressure_angle, helix_angle : float
@@ -125,21 +125,21 @@ def formula_stiffness(
 
 
 def blank_factor(web: float, rim: float) -> float:
-    """C_R of a gear with a thin web: 1 + ln(b_s/b) / (5 e^(s_R/5m_n)).
+    """Return C_R of a gear with a thin web: 1 + ln(b_s/b) / (5 e^(s_R/5m_n)).
 
     Parameters
     ----------
     web : float
-        Thickness of the web over the face width, from 0.2 to 1.2; beyond, the ends count.
+        Thickness of the web over the face width, limited to 0.2 to 1.2.
     rim : float
-        Thickness of the rim in modules, from 1; less counts as 1.
+        Thickness of the rim in modules; less than 1 counts as 1.
     """
     web, rim = min(max(web, 0.2), 1.2), max(rim, 1.0)
     return 1.0 + math.log(web) / (5.0 * math.exp(rim / 5.0))
 
 
 def basis_of(gears: tuple[Gear, Gear], distance: float, *, measured: bool) -> str:
-    """Say which of the standard's factors are in a mesh's stiffness, and where it is outside.
+    """Say which of the standard's factors a mesh's stiffness includes, and if it is out of range.
 
     Parameters
     ----------
@@ -158,11 +158,11 @@ def basis_of(gears: tuple[Gear, Gear], distance: float, *, measured: bool) -> st
 
 
 def least_torque(gears: tuple[Gear, Gear]) -> float:
-    """Torque on the first gear of a mesh from which the standard's stiffness holds [N·m].
+    """Return the torque on a mesh's first gear from which the standard's stiffness holds [N·m].
 
-    Below F_t K_A/b = 100 N/mm it has c' fall in proportion to the load. As a law of a mesh that
-    would be a deflection that no load changes, or, as a tangent, one without end: no law for an
-    equilibrium. K_A counts as 1.
+    Below F_t K_A/b = 100 N/mm the standard's c' falls in proportion to the load. As a law of a mesh
+    that would be a deflection independent of the load or, as a tangent, an unbounded one: no law
+    for an equilibrium. K_A counts as 1.
 
     Source: ISO 6336-1, single stiffness c'.
     """
@@ -171,7 +171,7 @@ def least_torque(gears: tuple[Gear, Gear]) -> float:
 
 
 def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool = True) -> float:
-    """Stiffness of a mesh of two gears of a case along its line of action, c_γα b [N/m].
+    """Return the stiffness of a mesh of two gears along its line of action, c_γα b [N/m].
 
     Parameters
     ----------
@@ -180,14 +180,14 @@ def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool 
     distance : float
         Centre distance [m].
     measured : bool
-        Whether C_M counts.
+        Whether C_M is applied.
 
     Raises
     ------
     ValueError
         If a value is outside what the formulas were fitted to.
     """
-    # The formula's first gear is the one with fewer teeth; an internal gear is a rack to it.
+    # The formula's first gear is the one with fewer teeth; it treats an internal gear as a rack.
     pair = sorted(gears, key=_as_pinion)
     (one, width), (two, other) = (gear.teeth_and_width for gear in pair)
     width = min(width, other)
@@ -208,7 +208,7 @@ def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool 
 
 
 def _as_pinion(gear: Gear) -> tuple[bool, int, float]:
-    """Order of gears of a pair: the pinion first; of equal teeth that with the larger shift."""
+    """Return a sort key: the pinion first; of equal teeth, the gear with the larger shift."""
     return gear.type == "internal", gear.teeth or 0, -(gear.profile_shift or 0.0)
 
 

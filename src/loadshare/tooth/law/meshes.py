@@ -1,4 +1,4 @@
-"""Meshes that name a pair file or a law file, turned into meshes with their law."""
+"""Meshes that name a pair file, a law file or a method, turned into meshes with their law."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ if TYPE_CHECKING:
 
 Tick = Callable[[int, int], None]
 Problems = dict[Problem, None]
-"""What is wrong: what several meshes share is reported once."""
+"""Problems, as keys: one that several meshes share is reported once."""
 
 APART = 0.1
-"""How far centres may be from where teeth mesh without backlash and need no word, in modules."""
+"""Difference from the centre distance without backlash that needs no hint, in modules."""
 OF_A_MESH = ("rated_torque", "pressure_angle", "helix_angle")
-"""Keys of a mesh that bear on its law."""
+"""Keys of a mesh that affect its law."""
 
 
 def bears_on_laws(path: KeyPath) -> bool:
-    """Tell whether laws that are computed may follow from what is at a key path, or a pattern.
+    """Return whether computed laws may depend on what is at a key path, or a pattern.
 
-    Or whether the file from which a law is must agree with it.
+    It is true as well if a file that a law comes from must agree with that.
     """
     section, key = (str(path[k]) if k < len(path) else "" for k in (0, 2))
     if fnmatchcase("meshes", section):
@@ -46,7 +46,7 @@ def bears_on_laws(path: KeyPath) -> bool:
 
 
 def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = ()) -> Case:
-    """Replace `geometry`, `law_file` and the words for `law` of the meshes of a case by numbers.
+    """Replace `geometry`, `law_file` and keywords for `law` of the meshes of a case by numbers.
 
     Laws of pairs are computed at the positions of the case, once for each pair file, and kept on
     disk (:mod:`loadshare.tooth.law.folder`). File names are relative to the file that gives them.
@@ -55,19 +55,19 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     ----------
     case : Case
     progress : callable, optional
-        Called after each computed position with how many are done, and how many there are.
+        Called after each computed position with the number done and the total.
     leave : collection of str
-        Meshes whose word for `law`, or name of a file, stays as it is.
+        Meshes whose keyword for `law`, or file name, stays as it is.
 
     Returns
     -------
     Case
-        The same object where all laws are numbers.
+        The same object if all laws are numbers.
 
     Raises
     ------
     CaseError
-        With all problems of the files, and all that the case says otherwise of the gears.
+        With all problems of the files, and everything in which the case differs from their gears.
     Refused
         If a position of a pair has no certified contact.
     """
@@ -108,7 +108,7 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
 
 
 def with_own_laws(case: Case, varied: Iterable[KeyPath]) -> Case:
-    """Return a case in which laws of which a number varies are numbers, and no longer the teeth's.
+    """Return a case in which laws with a varied number are numbers, detached from the teeth.
 
     Parameters
     ----------
@@ -130,16 +130,16 @@ def with_own_laws(case: Case, varied: Iterable[KeyPath]) -> Case:
 
 
 def written_in(case: Case, folders: Iterable[Path] | None = None) -> Case:
-    """Return a case as it can be written into any of some folders, or anywhere.
+    """Return a case in a form that can be written into any of some folders, or anywhere.
 
-    A law whose file would not be found from there becomes numbers; every other stays as it is, as
-    it follows the next change of teeth.
+    A law whose file would not be found from there becomes numbers; every other stays as it is, so
+    that it follows the next change of teeth.
 
     Parameters
     ----------
     case : Case
     folders : iterable of Path, optional
-        By default it may be anywhere, where no file is found.
+        By default it may be written anywhere, and no file is found from there.
 
     Raises
     ------
@@ -162,9 +162,9 @@ def written_in(case: Case, folders: Iterable[Path] | None = None) -> Case:
 def _inline(
     case: Case, names: Sequence[str], problems: Problems
 ) -> tuple[dict[str, PairFile], dict[str, tuple[str, ...]]]:
-    """Pairs of the meshes whose law is of their gears' teeth, and what they assume.
+    """Return the pairs of meshes whose law is computed from their gears, and what they assume.
 
-    What an analysis takes for granted marks the law as assumed.
+    What an analysis assumes marks the law as assumed.
     """
     if not names:
         return {}, {}
@@ -182,7 +182,7 @@ def _inline(
 def _read(
     case: Case, sources: dict[str, str], problems: Problems
 ) -> tuple[dict[str, MeshLaw], dict[str, PairFile]]:
-    """Laws and pairs by mesh; problems of their files, and with what does not fit the case."""
+    """Return laws and pairs by mesh; add problems of their files, and where these differ."""
     from loadshare.tooth.law.file import load_law
     from loadshare.tooth.pair.agree import disagreements
     from loadshare.tooth.pair.file import load_pair
@@ -224,7 +224,7 @@ def _read(
 
 
 def _by_formula(case: Case, names: Iterable[str], problems: Problems) -> dict[str, dict[str, Any]]:
-    """Laws at the driver by mesh."""
+    """Return laws by formula, at the driver, by mesh."""
     from loadshare.tooth.law.iso6336 import basis_of, least_torque, mesh_stiffness
 
     centres = case.centres()
@@ -250,7 +250,7 @@ def _by_formula(case: Case, names: Iterable[str], problems: Problems) -> dict[st
 
 
 def _distance_hint(pair: tuple[Gear, Gear], distance: float) -> str:
-    """Say at which centre distance [m] two gears would mesh, if they are too far apart."""
+    """Say which centre distance [m] has no backlash, if that of two gears is far from it."""
     one, two = pair[0].tooth, pair[1].tooth
     if one is None or two is None:
         return ""
@@ -262,7 +262,7 @@ def _distance_hint(pair: tuple[Gear, Gear], distance: float) -> str:
 
 
 def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLaw]:
-    """Laws by the hash of their pair: those of the cache, and the others computed."""
+    """Return laws by the hash of their pair: from the cache or, if not there, computed."""
     from loadshare.tooth.law.folder import computed_law, known_law
 
     laws = {key: law for key, pair in pairs.items() if (law := known_law(pair)) is not None}
@@ -275,7 +275,7 @@ def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLa
 
 
 def _from(progress: Tick | None, before: int, total: int) -> Tick | None:
-    """Progress of one pair as that of all."""
+    """Return a callback that counts the progress of one pair as that of all."""
     if progress is None:
         return None
     tell = progress
@@ -283,7 +283,7 @@ def _from(progress: Tick | None, before: int, total: int) -> Tick | None:
 
 
 def _still_assumed(patterns: Iterable[str]) -> list[str]:
-    """Patterns of `assumed` that follow the files to the laws that take their place."""
+    """Return the patterns of `assumed`, with those of files moved to the laws that replace them."""
     found: dict[str, None] = {}
     for pattern in patterns:
         last = parse(pattern)[-1]

@@ -1,1 +1,1 @@
-"""Pair files: what they may say, how they are read, what is worth knowing of them."""
+"""Pair files: what they may contain, how they are read, and warnings about their pairs."""

@@ -1,4 +1,4 @@
-"""What a case says of two gears against what the pair is of which their law is."""
+"""Comparison of the gears of a case with those of the pair that their law was computed for."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from loadshare.tooth.pair.gears import PairGear, PairGears
 
 Tell: TypeAlias = Callable[[str, str, str], Problem]
-"""From a key of a gear, what the file has of it, and what is allowed, to a problem."""
+"""Function from a gear's key, what the file has for it and what is allowed, to a problem."""
 OF_RADIUS = {"module", "teeth", "pressure_angle", "helix_angle"}
 """Keys from which a base radius follows."""
 OF_SHAPE = ("profile_shift", "dedendum", "tip_radius")
-"""Keys of the shape of a tooth, in modules, that a case and a pair give alike."""
+"""Keys of the shape of a tooth, in modules, with the same meaning in a case and a pair."""
 
 
 def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Iterator[Problem]:
-    """Yield what a case says otherwise of a mesh than the file that it names.
+    """Yield where a case differs about a mesh from the file that it names.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Itera
     name : str
         Name of the mesh.
     gears : PairGears
-        The gears of which the law is.
+        The gears that the law was computed for.
     source : str
-        What messages call the file.
+        Name of the file in messages.
     """
     mesh = case.meshes[name]
     here = f"{source} has"
@@ -55,7 +55,7 @@ def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Itera
         return
     angles = [("pressure_angle", line.pressure_angle, gears.working_angle.si)]
     if mesh.helix_angle is not None:
-        # The helix is not needed for the law; a case that leaves it out says nothing of it.
+        # The law does not need the helix; if a case leaves it out, there is nothing to compare.
         angles.append(("helix_angle", line.helix_angle, gears.base_helix_angle.si))
     for key, found, wanted in angles:
         if abs(abs(found) - wanted) <= TEETH.angle:
@@ -93,12 +93,12 @@ def _gear(gear: Gear, gears: PairGears, own: PairGear, tell: Tell) -> Iterator[P
 
 
 def _dimensions(gear: Gear, gears: PairGears, own: PairGear) -> Iterator[tuple[str, float, float]]:
-    """Keys that the case gives, its value and that of the pair [m, rad or 1]."""
+    """Yield keys that the case gives, with its value and that of the pair [m, rad or 1]."""
     for key in gear.given("module", "pressure_angle", "helix_angle"):
         wanted = getattr(own, key)
         if wanted is not None:
             values = getattr(gear, key).si, wanted.si
-            # Halves of a herringbone gear have either hand.
+            # The halves of a herringbone gear have opposite hands.
             yield key, *(map(abs, values) if gears.helices == 2 else values)
     for key in gear.given(*OF_SHAPE):
         wanted = getattr(own, key)
@@ -107,14 +107,14 @@ def _dimensions(gear: Gear, gears: PairGears, own: PairGear) -> Iterator[tuple[s
 
 
 def _allowed(key: str, wanted: float) -> float:
-    """How far two values of a key may be apart [m, rad or modules]."""
+    """Return how far apart two values of a key may be [m, rad or modules]."""
     if key in ANGLES:
         return TEETH.angle
     return TEETH.radius * (abs(wanted) if key == "module" else 1.0)
 
 
 def _tip(gear: Gear, own: PairGear, tell: Tell) -> Iterator[Problem]:
-    """Yield the addendum that, with the alteration of the tip, is not that of the pair."""
+    """Yield an addendum that, with the alteration of the tip, differs from that of the pair."""
     keys = gear.given("tip_alteration", "addendum")
     if not keys or gear.tooth is None or own.addendum is None:
         return
@@ -128,7 +128,7 @@ def _tip(gear: Gear, own: PairGear, tell: Tell) -> Iterator[Problem]:
 def _face_width(
     gear: Gear, facing_it: Gear, gears: PairGears, own: PairGear, tell: Tell
 ) -> Iterator[Problem]:
-    """Yield a face width that is neither that of the pair nor cut to it where the faces overlap."""
+    """Yield a face width that is not the pair's, neither as given nor cut to the faces' overlap."""
     if gear.face_width is None or facing_it.face_width is None or own.face_width is None:
         return
     least = own.face_width.si

@@ -53,9 +53,9 @@ class PairFile:
     Attributes
     ----------
     name : str
-        Of the file, without its ending.
+        Name of the file, without its extension.
     content : HelicoidContent or FaceGearContent
-        What the file says.
+        Content of the file.
     geometry : HelicoidPair or FaceGearPair
         The two gears in mesh, without undercut, pointed teeth or interference.
     """
@@ -66,7 +66,7 @@ class PairFile:
 
     @property
     def title(self) -> str:
-        """One line that says what the pair is; the name where the file has none."""
+        """One line that says what the pair is; its name if the file has none."""
         return self.content.title or self.name
 
     @property
@@ -81,7 +81,7 @@ class PairFile:
 
     @cached_property
     def hash(self) -> str:
-        """SHA-256 of what bears on the law: all values in SI units, no titles and notes."""
+        """SHA-256 of what affects the law: all values in SI units, no titles and notes."""
         values = self.content.model_dump(mode="json", exclude=set(ABOUT), context="SI")
         text = json.dumps(values, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
         return hashlib.sha256(text.encode()).hexdigest()
@@ -92,8 +92,8 @@ class PairFile:
 
         They turn the pair by a constant angle. In a train they are installation errors of the face
         gear, which the case states; the law leaves the angle out, so that it is not counted twice.
-        A tilt of the axes is no error that a case can state: its lead stays in the law. With
-        centre distance and axial shift of cylindrical gears the ideal pair moves along.
+        A case cannot state a tilt of the axes as an error, so its lead stays in the law. The ideal
+        pair follows the centre distance and axial shift of cylindrical gears.
         """
         geometry = self.geometry
         if isinstance(geometry, HelicoidPair):
@@ -142,13 +142,13 @@ class PairFile:
         Parameters
         ----------
         progress : callable, optional
-            Called after each position with how many are done, and how many there are.
+            Called after each position with the number done and the total.
 
         Raises
         ------
         Refused
-            If a position has no contact, or one that its certificate does not pass, or the face is
-            wider than the model can follow, or the teeth yield by all of their height.
+            If a position has no contact, or one that fails its certificate, or the face is wider
+            than the model can follow, or the teeth yield by their whole height.
         """
         chosen = self.analysis
         try:
@@ -172,12 +172,12 @@ class PairFile:
         return found
 
     def _refuse_crushed(self, found: Ltca) -> None:
-        """Refuse an analysis of which linear elasticity cannot say anything.
+        """Refuse an analysis to which linear elasticity does not apply.
 
         Raises
         ------
         Refused
-            If the teeth yield by all of their height, as an answer of a train is refused.
+            If the teeth yield by their whole height, a limit that holds for trains too.
         """
         module = self.geometry.driver.gear.module
         part = float(found.approach.max()) / (CERTIFY.height * module)
@@ -204,7 +204,7 @@ def load_pair(path: str | Path) -> PairFile:
     Raises
     ------
     CaseError
-        With all problems of the file at once; those of the geometry are reported when every value
+        With all problems of the file at once; those of the geometry are reported once every value
         can be read.
     """
     path = Path(path)
@@ -239,7 +239,7 @@ def _content(data: dict[str, Any], origin: Origin) -> HelicoidContent | FaceGear
 
 
 def _missing(data: Mapping[str, Any], origin: Origin) -> Iterator[Problem]:
-    """Yield what the driver must say for both gears."""
+    """Yield keys that the driver must give for both gears and does not."""
     driver = data.get("driver")
     for key, allowed in (("module", LENGTH.allowed), ("pressure_angle", ANGLE.allowed)):
         if isinstance(driver, dict) and key not in driver:
@@ -247,7 +247,7 @@ def _missing(data: Mapping[str, Any], origin: Origin) -> Iterator[Problem]:
 
 
 def _unmatched(data: Mapping[str, Any], origin: Origin) -> list[Problem]:
-    """Patterns of `assumed` that match no key of the file."""
+    """Return problems of patterns of `assumed` that match no key of the file."""
     assumed = data.get("assumed")
     patterns = tuple(map(str, assumed)) if isinstance(assumed, list) else ()
     known = tuple(path for path in walk(data) if path[0] not in ABOUT)
@@ -259,7 +259,7 @@ def _unmatched(data: Mapping[str, Any], origin: Origin) -> list[Problem]:
 
 
 def _placed(problem: Problem, data: Mapping[str, Any], origin: Origin) -> Problem:
-    """A problem of the geometry, with its file and what was written there."""
+    """Return a problem of the geometry with its file and what was written there."""
     here = origin.problem(data, parse(problem.key), problem.message, problem.allowed, problem.hint)
     return here if here.given else replace(here, given=as_given(problem.given).strip('"'))
 
@@ -274,7 +274,7 @@ def built(content: HelicoidContent | FaceGearContent) -> HelicoidPair | FaceGear
     Raises
     ------
     CaseError
-        With everything that is wrong with the gears or with their mesh.
+        If the gears or their mesh have problems; it lists all of them.
     """
     return _helicoid(content) if isinstance(content, HelicoidContent) else _face(content)
 
@@ -286,7 +286,7 @@ def _helicoid(content: HelicoidContent) -> HelicoidPair:
     }
     driver = _gear(content.driver, helices)
     kind = -1 if content.driver.internal != content.driven.internal else 1
-    # What the driven gear leaves out is what fits its driver.
+    # What the driven gear leaves out is chosen to fit its driver.
     fitting = {
         "module": driver.module,
         "pressure_angle": driver.pressure_angle,
@@ -309,14 +309,14 @@ def _face(content: FaceGearContent) -> FaceGearPair:
 
 
 def _gear(element: Cylindrical, fitting: dict[str, Any]) -> HelicoidGear:
-    """A gear; `fitting` gives what it leaves out."""
+    """Return a gear; `fitting` gives what it leaves out."""
     values = _si(element)
     values["modification"] = Modification(**values["modification"])
     return HelicoidGear(**(fitting | values))
 
 
 def _si(element: Any) -> dict[str, Any]:
-    """The values of an element in SI units, without what it leaves out."""
+    """Return the values of an element in SI units, without what it leaves out."""
     found: dict[str, Any] = element.model_dump(mode="json", exclude_none=True, context="SI")
     if "pitch" in found:
         found["pitch"] = PitchDeviations(element.pitch.ahead, element.pitch.first_tooth)

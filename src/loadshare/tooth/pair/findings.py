@@ -1,4 +1,4 @@
-"""What is worth knowing of a pair though it does not forbid it."""
+"""Warnings about a pair that is valid."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from loadshare.tooth.unloaded.touch import contact_points
 
 # Tips thinner than this, in modules, are commonly avoided for case-hardened teeth.
 THIN_TIP = 0.2
-# Pairs that touch within this of the first [rad] count as touching.
+# Pairs of teeth that touch within this angle of the first [rad] count as touching.
 ROUND_OFF = 1e-9
 
 REMEDY = {
@@ -29,14 +29,14 @@ REMEDY = {
 
 
 def findings(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Problem, ...]:
-    """Contact at edges, thin tips and contact that is not localised.
+    """Return warnings of contact at edges, thin tips and contact that is not localised.
 
     Parameters
     ----------
     pair : HelicoidPair or FaceGearPair
         The two gears.
     positions : int
-        Positions of the mesh cycle that are looked at for contact at an edge.
+        Number of positions of the mesh cycle that are checked for contact at an edge.
 
     Returns
     -------
@@ -52,7 +52,7 @@ def findings(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Pr
 
 
 def thin_tips(pair: HelicoidPair | FaceGearPair) -> Iterator[Problem]:
-    """Tips that are thinner than is common."""
+    """Yield tips that are thinner than is common."""
     for name, gear in (("driver", pair.driver.gear), ("driven", pair.driven.gear)):
         if isinstance(gear, HelicoidGear):
             land = 2.0 * gear.tip * gear.half_angle(gear.tip)
@@ -75,14 +75,14 @@ def _not_localised(pair: HelicoidPair | FaceGearPair) -> Iterator[Problem]:
 
 
 def edge_contacts(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Problem, ...]:
-    """One finding for every edge of the active flanks at which the pair touches first.
+    """Return a finding for every edge of the active flanks at which the pair touches first.
 
     Parameters
     ----------
     pair : HelicoidPair or FaceGearPair
         The two gears.
     positions : int
-        Positions of the mesh cycle that are looked at.
+        Number of positions of the mesh cycle that are checked.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What a pair file may say."""
+"""The content of pair files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
 Deviations = Annotated[tuple[Length, ...], Field(min_length=1)]
 
 ABOUT = ("title", "source", "notes", "assumed")
-"""The keys that say something about a pair and nothing about its teeth."""
+"""Keys that describe a pair but not its teeth."""
 STEEL = "206 GPa"
 
 
@@ -70,13 +70,13 @@ class Pitch(Element):
     """Tooth that meets at the pitch point at the first position, from 1 [-]."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield that both lists are given, or none."""
+        """Yield a rule if both lists are given, or neither."""
         if (self.single is None) == (self.cumulative is None):
             yield Rule("takes one list", allowed="single or cumulative")
 
     @property
     def ahead(self) -> tuple[float, ...]:
-        """How far each tooth stands ahead [m]; a long pitch puts the next tooth back."""
+        """How far each tooth is ahead [m]; a long pitch sets the next tooth back."""
         if self.cumulative is not None:
             return tuple(value.si for value in self.cumulative)
         steps = (-value.si for value in (self.single or ())[:-1])

@@ -1,7 +1,7 @@
-"""How far a computed law hangs on the rims and on where the mesh cycle is sampled.
+"""How strongly a computed law depends on the rims and on the sampling of the mesh cycle.
 
-Both are found by slices, whatever the pair is analysed by: only ratios are given, and slices take a
-moment.
+Both are found with slices, whatever model the pair is analysed with: only ratios are given, and
+slices are fast.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.pair.file import PairFile
 
 THINNER, THICKER = 0.5, 1.5
-"""Rims that are tried, over the pair's own."""
+"""Thicknesses of the rims that are tried, over the pair's own."""
 Which = Literal["driver", "driven"]
 
 
 @dataclass(frozen=True, slots=True)
 class RimEffect:
-    """Mean stiffness of a pair on other rims of one gear.
+    """Mean stiffness of a pair with other rims of one gear.
 
     Attributes
     ----------
     thickness : tuple of float
-        Below the root: of a thinner rim, of the gear's own, and of a thicker one [m].
+        Thickness below the root of a thinner rim, of the gear's own, and of a thicker one [m].
     stiffness : tuple of float
-        T over the mean deflection of the cycle, over that on the gear's own rim.
+        T over the mean deflection of the cycle, relative to that with the gear's own rim.
     """
 
     thickness: tuple[float, float, float]
@@ -37,7 +37,9 @@ class RimEffect:
 
 
 def rim_effects(pair: PairFile) -> dict[Which, RimEffect]:
-    """Rims half as thick and half as thick again, or half-way to a solid body where that is less.
+    """Return the effect of thinner and of thicker rims of either gear.
+
+    They are half as thick, and half as thick again, or half-way to a solid body if that is less.
 
     Parameters
     ----------
@@ -74,7 +76,7 @@ def rim_effects(pair: PairFile) -> dict[Which, RimEffect]:
 
 
 def sampled_deflection(pair: PairFile) -> float:
-    """Mean elastic deflection at the positions of a pair, over that of the whole mesh cycle.
+    """Return the mean elastic deflection at a pair's positions over that of the whole mesh cycle.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class ContactLine:
     ----------
     pair : int
         Index of the pair of teeth. Pair 0 meets at the pitch point at phase 0, and pair k is on
-        tooth k of the driver: it meets earlier the larger k is.
+        tooth k of the driver; pairs with a larger k meet earlier.
     points : array (n, 3)
         Points on the driver's flank, in the middle of n equal parts of the line, fixed frame [m].
     normals : array (n, 3)
@@ -73,7 +73,7 @@ class ContactLine:
 
 @dataclass(frozen=True, eq=False)
 class MeshPosition:
-    """All that touches, or nearly touches, at one position of the mesh cycle.
+    """Pairs of teeth that touch, or nearly touch, at one position of the mesh cycle.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class GearPair(ABC):
     """
 
     misalignment: DataclassInstance
-    """How far the gears are off; nothing by default."""
+    """Misalignment of the gears; none by default."""
 
     @property
     @abstractmethod
@@ -146,7 +146,7 @@ class GearPair(ABC):
 
     @property
     def driven_step(self) -> int:
-        """+1 or −1: two external gears' teeth are met in opposite order, from pair to pair."""
+        """Step of the driven tooth from pair to pair, +1 or −1: −1 for two external gears."""
         return -self.driven_side
 
     @property
@@ -171,10 +171,10 @@ class GearPair(ABC):
         return (last - first) * self.driver.teeth / (2.0 * math.pi)
 
     def openings(self, pairs: Array) -> Array:
-        """How far pitch deviations part the flanks of pairs (m,) along their normals [m].
+        """Return how far pitch deviations part the flanks of pairs (m,) along their normals [m].
 
-        A tooth that is ahead is nearer to its partner on the driver, and farther on the driven
-        gear; that the contact line moves along with it is left out.
+        A tooth of the driver that is ahead is nearer to its partner, one of the driven gear is
+        farther from it; that the contact line moves along with the tooth is neglected.
         """
         one, two = self.driver.gear, self.driven.gear
         if one.pitch is None and two.pitch is None:
@@ -189,9 +189,9 @@ class GearPair(ABC):
 
     @property
     def changes(self) -> tuple[float, ...]:
-        """Phases at which lines begin, end, or come to an end of the face, without load.
+        """Phases at which lines begin, end, or reach an end of the face, without load.
 
-        There the contact of a pair of teeth that stands ideally enters or leaves the range of roll.
+        There the contact of an ideally placed pair of teeth enters or leaves the range of roll.
         """
         driver = self.ideal(np.zeros(1))[0]
         pitches = self.driver.gear.kind * self.driver.teeth / (2.0 * math.pi)
@@ -201,18 +201,18 @@ class GearPair(ABC):
 
     @abstractmethod
     def ideal(self, phase: Array) -> tuple[Array, Array]:
-        """Rotations of driver and driven gear at phases of the ideal pair [rad]."""
+        """Return the rotations of driver and driven gear at phases of the ideal pair [rad]."""
 
     @abstractmethod
     def extents(self, driver: Array, driven: Array) -> Extents:
-        """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
+        """Return the pairs' lines on both active flanks at positions (k,), by position and pair."""
 
     @abstractmethod
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
-        """`margins` along the lines of pairs near contact, on both flanks or not."""
+        """Return `margins` along the lines of pairs near contact, whether on both flanks or not."""
 
     def margins(self, driver_at: Place, driven_at: Place) -> Mapping[str, Array]:
-        """Distance to every edge of the active flanks by name [m], negative beyond it."""
+        """Return the distance [m] to each named edge of the active flanks, negative beyond it."""
         sides = ("driver", self.driver, driver_at), ("driven", self.driven, driven_at)
         return {
             f"{name} {edge}": margin
@@ -221,22 +221,22 @@ class GearPair(ABC):
         }
 
     def roll(self, pairs: Array, axial: Array | float, driver: Array) -> Array:
-        """Driver's angle of roll where its flank crosses the plane of action."""
+        """Return the driver's angle of roll where its flank crosses the plane of action."""
         gear = self.driver.gear
         phi = driver + 2.0 * math.pi * pairs / gear.teeth + gear.base_half_angle
         return self.working_angle + gear.kind * (phi + gear.twist * axial)
 
     def turns(self, pairs: Array, driver: Array, driven: Array) -> tuple[Array, Array]:
-        """How far the teeth of pairs have turned at rotations of their gears [rad]."""
+        """Return how far the teeth of pairs have turned at rotations of their gears [rad]."""
         pitches = 2.0 * math.pi / self.driver.teeth, 2.0 * math.pi / self.driven.teeth
         return driver + pitches[0] * pairs, driven + self.driven_step * pitches[1] * pairs
 
     def driver_patch(self, pairs: Array, at: Place, rotation: Array) -> Patch:
-        """Points of the driver's flanks at surface parameters `at`, fixed frame."""
+        """Return points of the driver's flanks at surface parameters `at`, fixed frame."""
         return self.flanks[0].patch(*at, self.turns(pairs, rotation, rotation)[0])
 
     def driven_patch(self, pairs: Array, at: Place, rotation: Array) -> Patch:
-        """Points of the driven gear's flanks at surface parameters `at`, fixed frame."""
+        """Return points of the driven gear's flanks at surface parameters `at`, fixed frame."""
         place = self.driven.placement
         patch = self.flanks[1].patch(*at, self.turns(pairs, rotation, rotation)[1])
         return patch.turned(place.axes, place.origin)
@@ -244,7 +244,7 @@ class GearPair(ABC):
     def positions(
         self, phases: int | Sequence[float], points_per_line: int
     ) -> tuple[MeshPosition, ...]:
-        """Unloaded contact at several phases, all at once.
+        """Find the unloaded contact at several phases, all at once.
 
         Parameters
         ----------
@@ -294,7 +294,7 @@ class GearPair(ABC):
 
 
 def transmission_error(pair: GearPair, phase: float) -> float:
-    """Lead of the driver over the ideal pair when the first flanks touch [rad].
+    """Return the lead of the driver over the ideal pair when the first flanks touch [rad].
 
     Raises
     ------
@@ -307,10 +307,10 @@ def transmission_error(pair: GearPair, phase: float) -> float:
 def touching(
     pair: GearPair, phases: Sequence[float], points: int = FEWEST
 ) -> tuple[Array, Extents, Trace]:
-    """Where the first flanks touch.
+    """Find where the first flanks touch.
 
     The driver turns until the least gap over all lines of a position is zero; each step is the
-    least gap over the arm, and the lines move along.
+    least gap over the arm, after which the lines are found anew.
 
     Returns
     -------
@@ -349,7 +349,7 @@ def touching(
 
 
 def meeting_problems(pair: GearPair) -> list[Problem]:
-    """The problem of a misalignment with which no teeth meet at some position; none without one."""
+    """Return a problem if, because of the misalignment, no teeth meet at some position."""
     off = {name: value for name, value in asdict(pair.misalignment).items() if value}
     if not off:
         return []
@@ -364,7 +364,7 @@ def meeting_problems(pair: GearPair) -> list[Problem]:
 
 
 def _missed(margins: Mapping[str, Array], far: float) -> str:
-    """What ends the flanks short of one another, where they miss by the least; `far` is no miss."""
+    """Say by how much the flanks miss at least, if less than `far`, and at which edge."""
     names, values = list(margins), np.stack([np.ravel(part) for part in margins.values()])
     values = np.where(np.isfinite(values), values, -np.inf)
     worst = values.min(axis=0)
@@ -376,7 +376,7 @@ def _missed(margins: Mapping[str, Array], far: float) -> str:
 
 
 def between(first: Array, last: Array) -> tuple[NDArray[np.int64], Array]:
-    """Whole numbers from `first` to `last` (k,): the place in them, and the number (m,)."""
+    """Return indices into `first` and `last` (k,), and the whole numbers between the two (m,)."""
     low, high = np.ceil(first), np.floor(last)
     numbers = np.arange(low.min(), high.max() + 1.0)
     place, at = np.nonzero((numbers >= low[:, None]) & (numbers <= high[:, None]))

@@ -47,12 +47,12 @@ class ContactPoint:
 
 
 def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
-    """First contact of every pair of teeth at one phase, each pair taken alone.
+    """Find the first contact of every pair of teeth at one phase, each pair taken alone.
 
     The contact equations, equal points and opposite normals in five unknowns (two parameters on
-    either flank and the driver's angle), are solved by Newton's method from the place of the least
-    gap on the pair's line, with the driver turned on until that line touches. Steps along a line
-    contact, where the equations are singular, are left out. Where the flanks touch at an edge, no
+    either flank and the driver's angle), are solved by Newton's method. It starts at the least gap
+    on the pair's line, with the driver turned further until that line touches, and takes no steps
+    along a line contact, where the equations are singular. Where the flanks touch at an edge, no
     inner point of contact exists and the edge is named.
 
     Parameters
@@ -106,10 +106,11 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
 
 
 def _alone(pair: GearPair, found: Extents) -> tuple[Extents, Array, Array]:
-    """Lines (m,) of pairs, each with the driver turned on until that pair touches.
+    """Return lines (m,) of pairs, each with the driver turned further until that pair touches.
 
-    Far from its contact a pair has another line than at it, and a gap over the arm is only nearly
-    the angle that closes it. A line that leaves the flanks on the way stays where it was last.
+    This takes several steps: a pair's line far from its contact is not that at contact, and a gap
+    over the arm is only nearly the angle that closes it. A line that leaves the flanks on the way
+    keeps its last place.
 
     Returns
     -------
@@ -138,11 +139,11 @@ def _alone(pair: GearPair, found: Extents) -> tuple[Extents, Array, Array]:
 
 
 def _sooner(pair: GearPair, met: Array, line: Array, refined: Array) -> Array:
-    """Which answers (m, 1, 1) of Newton's method count: on both flanks, no later than the line.
+    """Return which results (m, 1, 1) of Newton's method count: on both flanks, not after the line.
 
-    Next to a line contact the equations are nearly singular and can lead off the flanks; the place
-    of the least gap on the line then stands. It leaves out that the profile slopes across the line,
-    so that a pair touches sooner than its line says, never later.
+    Next to a line contact the equations are nearly singular and can lead off the flanks; then the
+    place of the least gap on the line is kept. The line neglects the slope of the profile across
+    it, so a pair touches sooner than its line says, never later.
     """
     a, b, c, d, lead = np.moveaxis(refined, -1, 0)
     margins = pair.margins((a, b), (c, d)).values()
@@ -154,16 +155,16 @@ def _sooner(pair: GearPair, met: Array, line: Array, refined: Array) -> Array:
 def _newton(
     pair: GearPair, pairs: Array, unknowns: Array, driver: Array, driven: Array
 ) -> tuple[Array, Array]:
-    """Solve the contact equations; unknowns (m, 1, 5) with the driver's further turn as last.
+    """Solve the contact equations; the driver's further turn is the last of unknowns (m, 1, 5).
 
-    Returns them, and for which pairs (m, 1) they are solved.
+    Return them, and for which pairs (m, 1) they are solved.
     """
     for _ in range(TEETH.meets):
         a, b, c, d, turn = np.moveaxis(unknowns, -1, 0)
         own = pair.driver_patch(pairs, (a, b), driver + turn)
         other = pair.driven_patch(pairs, (c, d), driven)
         first = unit(own.rays[0])
-        # In metres too, so that the rows weigh alike.
+        # These rows are in metres too, so that all have the same weight.
         across = pair.arm * np.stack([first, np.cross(own.normal, first)], axis=-1)
 
         def equations(apart: Array, opening: Array, across: Array = across) -> Array:
