@@ -1,5 +1,5 @@
 """Pictures and reports: one specification for screen and paper, and no network.
 
-Nothing is imported here, so that the command line may take number formats from this room without
+Nothing is imported here, so that the command line can use number formats from this package without
 waiting for Altair.
 """

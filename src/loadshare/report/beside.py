@@ -1,7 +1,7 @@
-"""Pictures are converted in a thread of their own, beside what computes and writes the rest.
+"""Conversion of pictures in a thread of its own, in parallel with computing and writing the rest.
 
-The converter is a JavaScript engine, which takes half a second to start and holds no lock of
-Python's while it draws.
+The converter is a JavaScript engine, which takes half a second to start and does not hold Python's
+global lock while it draws.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ def start() -> None:
 
 
 def begin(conversion: str, what: object, **settings: Any) -> Future[Any]:
-    """Begin a conversion, by the name of vl-convert, of a specification or of SVG."""
+    """Begin a conversion of a specification or of SVG, by its name in vl-convert."""
     thread = _thread()
     try:
         return thread.submit(_convert, conversion, what, settings)
     except BaseException:
-        # Interrupted while the thread starts, it is one that the pool does not know of and never
-        # ends; the interpreter, which does know, would wait for it.
+        # If this is interrupted while the thread starts, the pool does not know of the thread and
+        # never ends it, but the interpreter does know of it and would wait for it.
         thread.shutdown(wait=False)
         _thread.cache_clear()
         raise

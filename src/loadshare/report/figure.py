@@ -33,12 +33,12 @@ if TYPE_CHECKING:
     import altair as alt
 
 ENDINGS = (".png", ".svg", ".pdf", ".html", ".json")
-"""Of pictures on disk."""
+"""Endings of picture files."""
 SCALES = 0.1, 10.0
 """Least and largest scale of a PNG; beyond, it has no pixel, or more than fit in memory."""
 _CLIP = re.compile(r'(id="|url\(#)clip(\d+)("|\))')
 
-# The first that a machine has; vl-convert brings the last but one along.
+# The first that the machine has is used; vl-convert brings the last but one with it.
 FONT = "Helvetica Neue, Helvetica, Arial, Liberation Sans, Roboto, sans-serif"
 
 CONFIG: dict[str, Any] = {
@@ -68,12 +68,12 @@ CONFIG: dict[str, Any] = {
         "tickColor": SOFT,
         "labelLimit": 220,
     },
-    # Every figure is written below its tick, and none runs into the next.
+    # Every number is written below its tick, and none runs into the next.
     "axisQuantitative": {
         "labelFlush": False,
         "labelOverlap": True,
         "labelSeparation": 6,
-        # To be cut, figures would have to be measured three times.
+        # With a limit, every number would have to be measured three times.
         "labelLimit": 0,
     },
     "legend": {
@@ -98,9 +98,9 @@ class Figure(Comparable):
     Parameters
     ----------
     name : str
-        Short, for a file: "floats".
+        Short name, for a file: "floats".
     chart : altair chart or dict
-        Also a specification in Vega-Lite.
+        A chart, or a specification in Vega-Lite.
 
     Attributes
     ----------
@@ -170,14 +170,14 @@ class Figure(Comparable):
         ----------
         path : path-like
             Ending in ``.png``, ``.svg``, ``.pdf``, ``.html`` (with hover read-out, works offline)
-            or ``.json`` (the Vega-Lite specification). The folder is made.
+            or ``.json`` (the Vega-Lite specification). The folder is created.
         scale : float
             Pixels of a PNG per unit of the specification, 0.1 to 10.
 
         Returns
         -------
         Path
-            Of the file.
+            Path of the file.
 
         Raises
         ------
@@ -226,7 +226,7 @@ class Figure(Comparable):
             return figure_page(self.spec, title["text"] if isinstance(title, dict) else title)
         if form == "json":
             return json.dumps(self.spec, indent=1, ensure_ascii=False) + "\n"
-        # What paper and pixels show is drawn once, as SVG.
+        # Every picture is drawn once, as SVG, from which PNG and PDF are converted.
         settings = {"scale": scale} if form == "png" else {}
         return bytes(beside.begin(f"svg_to_{form}", self.to_svg(), **settings).result())
 
@@ -236,9 +236,9 @@ class Figure(Comparable):
         Parameters
         ----------
         prefix : str
-            Put before the names within it, for several pictures in one document.
+            Prefix of the names within it, for several pictures in one document.
         """
-        # The names of clipping paths go on from picture to picture of a process.
+        # Clipping paths are numbered on from picture to picture of a process.
         numbers: dict[str, int] = {}
         return _CLIP.sub(
             lambda m: f"{m[1]}{prefix}clip{numbers.setdefault(m[2], len(numbers) + 1)}{m[3]}",
@@ -246,7 +246,7 @@ class Figure(Comparable):
         )
 
     def begin(self) -> Figure:
-        """Begin to draw the picture as SVG, beside what is done before it is asked for."""
+        """Begin to draw the picture as SVG, in parallel with what is done until it is needed."""
         _ = self._as_svg
         return self
 
@@ -264,7 +264,7 @@ def _figure(of: Figure | alt.TopLevelMixin) -> Figure:
 
 
 def _altair() -> Any:
-    """Return Altair, which asks for the user's home even where there is none."""
+    """Import Altair, which asks for the user's home directory even if there is none."""
     try:
         Path.home()
     except RuntimeError:

@@ -1,4 +1,4 @@
-"""The flanks that carry at a position, each with its own force."""
+"""The loaded flanks at a position, each with its own force."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from loadshare.settings import CERTIFY
 
 
 class Flank(NamedTuple):
-    """A flank that carries.
+    """A loaded flank.
 
     Attributes
     ----------
     mesh : str
     drive : bool
-        Drive flank of the train's mesh, or coast flank.
+        Whether it is the drive flank of the train's mesh, not the coast flank.
     force : float
-        Along its own line of action [N].
+        Force along its own line of action [N].
     turned : bool
-        Whether the train's mesh has its gears the other way round than its name.
+        Whether the train's mesh has its gears in the reverse order of its name.
     """
 
     mesh: str
@@ -52,9 +52,9 @@ def reaction_size(position: Position, gear: str) -> float:
 
 
 def carrying(position: Position) -> Iterator[Flank]:
-    """Yield the flanks that carry at a position, mesh by mesh.
+    """Yield the loaded flanks at a position, mesh by mesh.
 
-    The force of a mesh is that of its drive flank less that of its coast flank; where a mesh is
+    The force of a mesh is that of its drive flank less that of its coast flank; if a mesh is
     jammed, both carry more than the difference.
     """
     forces, least = position.equilibrium.flank_force, least_force(position)

@@ -25,7 +25,7 @@ ALIKE = 1e-9
 
 
 def decimals(values: Iterable[float], significant: int = 5) -> int:
-    """Return how many decimals, at least one, show the largest value to so many digits."""
+    """Return the number of decimals, at least one, that gives the largest value these digits."""
     largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
     if largest == 0.0:
         return 1
@@ -33,7 +33,7 @@ def decimals(values: Iterable[float], significant: int = 5) -> int:
 
 
 def fixed(value: float | None, places: int) -> str:
-    """Return a value with so many decimals; no minus sign before a zero."""
+    """Return a value with `places` decimals; no minus sign before a zero."""
     if value is None:
         return NONE
     return f"{round(value, places) + 0.0:.{places}f}"
@@ -56,20 +56,20 @@ def interval(found: Estimate, form: str = ".4g") -> str:
 
 
 def small(value: float) -> str:
-    """Return a figure of which only the size matters, such as a residual."""
+    """Return a figure whose order of magnitude alone matters, such as a residual."""
     return "0" if value == 0.0 else f"{value:.1e}"
 
 
 def runs(numbers: Iterable[int], to: str = "–") -> list[str]:
-    """Return whole numbers in short, rising and each once: ``1–3`` and ``7``."""
-    # Numbers that follow one another are as far from their places in the row.
+    """Return the runs in whole numbers, rising and without repeats: ``1–3`` and ``7``."""
+    # Consecutive numbers differ from their places in the row by the same amount.
     placed = groupby(enumerate(sorted(set(numbers))), key=lambda item: item[1] - item[0])
     found = [[number for _, number in run] for _, run in placed]
     return [f"{run[0]}{to}{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in found]
 
 
 def significant(value: float, digits: int = 4) -> str:
-    """Return a value with so many significant digits, without an exponent and trailing zeros."""
+    """Return a value with `digits` significant digits, without exponent and trailing zeros."""
     if value == 0.0 or not math.isfinite(value):
         return f"{value:g}"
     places = digits - 1 - math.floor(math.log10(abs(value)))
@@ -79,7 +79,7 @@ def significant(value: float, digits: int = 4) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit as it is written, and how many of it an SI unit holds.
+    """A unit as it is written, and the factor to it from the SI unit.
 
     Attributes
     ----------
@@ -93,11 +93,11 @@ class Unit:
     factor: float = 1.0
 
     def of(self, value: float) -> float:
-        """Value in this unit; no minus sign before a zero."""
+        """Return the value in this unit; no minus sign before a zero."""
         return value * self.factor + 0.0
 
     def title(self, what: str) -> str:
-        """Title of an axis or a column: ``torque [N·m]``."""
+        """Return the title of an axis or a column: ``torque [N·m]``."""
         return f"{what} [{self.name}]" if self.name else what
 
 
@@ -106,7 +106,7 @@ MICROMETRE = Unit("µm", 1e6)
 MILLIMETRE = Unit("mm", 1e3)
 MICRORADIAN = Unit("µrad", 1e6)
 ROUND_OFF = 1e-12
-"""Length that is as good as none [m]."""
+"""Length that counts as zero [m]."""
 
 # By the unit's name in labelled arrays: from small to large, each with the SI value at which the
 # next one becomes easier to read.
@@ -121,7 +121,7 @@ _LADDERS: dict[str, tuple[tuple[Unit, float], ...]] = {
 
 
 def engineering(values: Iterable[float], unit: str) -> Unit:
-    """Return the unit in which values are read best.
+    """Return the unit in which values are easiest to read.
 
     Parameters
     ----------
@@ -140,6 +140,6 @@ def engineering(values: Iterable[float], unit: str) -> Unit:
 
 
 def read_best(value: float, unit: str, digits: int = 4) -> str:
-    """Return a value [SI] with so many significant digits in the unit in which it is read best."""
+    """Return a value [SI] with `digits` significant digits, in the unit that is easiest to read."""
     best = engineering([value], unit)
     return f"{significant(best.of(value), digits)} {best.name}"

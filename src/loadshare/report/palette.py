@@ -1,7 +1,7 @@
 """The look of gears and meshes: the same gear looks the same in every picture.
 
-A look is a colour, a dash and a shape. The colours are told apart with the common colour-vision
-deficiencies and alternate between dark and light; dash and shape carry the distinction in grey.
+A look is a colour, a dash and a shape. The colours can be told apart with the common colour-vision
+deficiencies and alternate between dark and light; in grey, dash and shape distinguish them.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from loadshare.case.keys import ends_of
 from loadshare.results import Result
 
 INK = "#1f2933"
-"""Lines and words."""
+"""Lines and text."""
 SOFT = "#616e7c"
-"""What is beside the point: axes, references, notes."""
+"""Secondary elements: axes, references, notes."""
 FAINT = "#e4e7eb"
 """Grids and areas."""
 WARNING = "#b3261e"
-"""What is wrong."""
+"""Whatever is wrong."""
 
 COLOURS = (
     "#1b4f8f",
@@ -51,7 +51,7 @@ class Look:
     dash : tuple of int
         Lengths of strokes and gaps; (1, 0) is a full line.
     shape : str
-        Of its points, by the name that Vega gives it.
+        Shape of its points, by its name in Vega.
     """
 
     colour: str
@@ -76,19 +76,19 @@ class Palette:
         self._driven = Counter(driven for _, driven in ends.values())
 
     def gear(self, name: str) -> Look:
-        """Look of a gear."""
+        """Return the look of a gear."""
         return look(self._number.get(name, len(self._number)))
 
     def mesh(self, name: str) -> Look:
-        """Look of a mesh: that of the gear by which its branch is told apart."""
+        """Return the look of a mesh: that of the gear that distinguishes its branch."""
         gear = self.branch(name)
         return self.gear(gear) if gear else look(len(self._number) + len(name))
 
     def branch(self, mesh: str) -> str | None:
-        """Gear that distinguishes a mesh from its neighbours; None for a mesh without known gears.
+        """Return the gear that distinguishes a mesh from its neighbours; None without known gears.
 
-        Where the torque gathers (idlers on an output gear) it is the driver, where the torque
-        divides, or runs on, the driven gear.
+        Where torque paths join (idlers on an output gear) it is the driver; where they divide, or
+        simply continue, it is the driven gear.
         """
         if mesh not in self._ends:
             return None
@@ -97,7 +97,7 @@ class Palette:
 
 
 def look(number: int) -> Look:
-    """Look number `number`; 70 differ, neighbours in everything."""
+    """Return look number `number`; 70 are different, and neighbours differ in everything."""
     return Look(
         COLOURS[number % len(COLOURS)],
         DASHES[number % len(DASHES)],
@@ -106,7 +106,7 @@ def look(number: int) -> Look:
 
 
 def palette_of(result: Result) -> Palette:
-    """Looks of a result's gears and meshes.
+    """Return the looks of a result's gears and meshes.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def palette_of(result: Result) -> Palette:
 
 
 def ends_from_names(meshes: Iterable[str], gears: Iterable[str]) -> dict[str, tuple[str, str]]:
-    """Driver and driven gear of the meshes whose names, a-b, give them."""
+    """Return driver and driven gear of the meshes whose names, a-b, give them."""
     known = set(gears)
     found = {mesh: ends_of(mesh, known) for mesh in meshes}
     return {mesh: ends for mesh, ends in found.items() if ends and set(ends) <= known}

@@ -1,4 +1,4 @@
-"""The pictures of whatever was found: `loadshare.plot`, and `plot` of results and studies."""
+"""The pictures of results and studies: `loadshare.plot`, and `plot` of each."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from loadshare.study.tolerance.result import OVERS, Over, Tolerance
 
 @singledispatch
 def plot(found: object, *settings: Any, **named: Any) -> Any:
-    """Draw what was found.
+    """Draw a result or a study.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def plot(found: object, *settings: Any, **named: Any) -> Any:
     Raises
     ------
     TypeError
-        If there are no pictures of such a thing.
+        If there are no pictures of objects of this type.
     """
     raise TypeError(f"there are no pictures of {type(found).__name__}, only of results and studies")
 

@@ -28,11 +28,11 @@ class Plots:
     result: Result
 
     def torque(self) -> Figure:
-        """Torque on the driver of every mesh over the positions, one panel for each stage."""
+        """Draw the torque on every mesh's driver over the positions, one panel for each stage."""
         return branches.torque(self.result)
 
     def share(self, over: branches.Mean = "stage") -> Figure:
-        """Load-sharing coefficient of every branch over the positions.
+        """Draw the load-sharing coefficient of every branch over the positions.
 
         Parameters
         ----------
@@ -47,7 +47,7 @@ class Plots:
         return branches.share(self.result, over)
 
     def floats(self) -> Figure:
-        """Each float's centre in its region, enlarged and true to shape.
+        """Draw each float's centre in its region, enlarged and true to shape.
 
         Raises
         ------
@@ -57,9 +57,9 @@ class Plots:
         return rests.floats(self.result, build_train(self.result.solved))
 
     def law(self) -> Figure:
-        """Deformation of the meshes over torque, with the points at which they work."""
+        """Draw the deformation of the meshes over torque, with their operating points."""
         return laws.law(self.result, build_train(self.result.solved))
 
     def train(self) -> Figure:
-        """Drawing of the train, with the push of the flanks that carry at the first position."""
+        """Draw the train, with the forces of the loaded flanks at the first position."""
         return trains.train(self.result.case, self.result)

@@ -1,4 +1,4 @@
-"""What a result shows, row by row; page and screen choose their columns from it."""
+"""The contents of a result, row by row, from which page and screen choose their columns."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from loadshare.results.laws import law_lines
 from loadshare.settings import CERTIFY, JOB
 
 FOLDED = 24
-"""Rows from which a table is shown only when asked for."""
+"""Number of rows above which a table is shown only when asked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Cell:
     ----------
     text : str
     value : float or None
-        By which it is sorted; the text where there is none.
+        Value by which it is sorted; the text if there is none.
     assumed : bool
         Whether it shows an input that is an assumption.
     link : str
@@ -55,9 +55,9 @@ class Column:
     Attributes
     ----------
     title : str
-        With its unit.
+        Title, with its unit.
     figures : bool
-        Whether it holds figures, which are set to the right.
+        Whether it holds figures, which are aligned to the right.
     """
 
     title: str
@@ -111,7 +111,7 @@ def table(
         Titles of columns that are not called like their field.
     notes : iterable of str
     most : float
-        Rows up to which the table is shown without being asked for.
+        Number of rows up to which the table is shown without being asked for.
     """
     fields = dict.fromkeys(words, False) | dict.fromkeys(figures, True)
     columns = [Column((heads or {}).get(name, name), right) for name, right in fields.items()]
@@ -120,7 +120,7 @@ def table(
 
 
 def load_text(case: Case) -> str:
-    """Load of a case, and where it enters and leaves, in words."""
+    """Return the load of a case, and where it enters and leaves, in words."""
     operating = case.operating
     low, high = min(operating.input_torque), max(operating.input_torque)
     load = f"{high:.7g}" if low == high else f"{low:.7g} to {high:.7g}"
@@ -128,7 +128,7 @@ def load_text(case: Case) -> str:
 
 
 def omegas(result: Result) -> Iterator[Record]:
-    """Largest Ω of every stage and of the system over both means, and where it is reached."""
+    """Yield the largest Ω of every stage and the system, over both means, and where it occurs."""
     for stage, value in result.omega.items():
         meshes = result.stages.get(stage, ())
         group = result.pair_omega[stage]
@@ -150,7 +150,7 @@ def reached(shares: Shares, meshes: Sequence[str]) -> str:
     ----------
     shares : sequence of (position, mapping of mesh to float or None)
     meshes : sequence of str
-        Of the stage; none for the whole system, for which nothing is named.
+        Meshes of the stage; empty for the whole system, for which no branch is named.
     """
     found = [(s[m], m, k) for k, s in shares for m in meshes]
     known = [(v, m, k) for v, m, k in found if v is not None]
@@ -158,7 +158,7 @@ def reached(shares: Shares, meshes: Sequence[str]) -> str:
         return "" if not meshes else NONE
     largest = omega(max(value for value, _, _ in known))
     top = [(m, k) for v, m, k in known if omega(v) == largest]
-    # Of branches that share alike, which is a hair ahead is round-off.
+    # Among branches with equal shares, round-off decides which one is ahead.
     mesh, position = top[0]
     if len(top) == len(found):
         return "all alike"
@@ -168,25 +168,25 @@ def reached(shares: Shares, meshes: Sequence[str]) -> str:
 
 
 def torque_places(result: Result) -> int:
-    """Decimals with which torques are printed."""
+    """Return the number of decimals with which torques are printed."""
     return decimals(t for p in result.positions for t in p.torque.values())
 
 
 def alike(result: Result) -> bool:
-    """Whether every mesh carries the same at all positions, as far as it is printed."""
+    """Return whether every mesh carries the same at all positions, to the printed decimals."""
     places = torque_places(result)
     texts = [[fixed(t, places) for t in p.torque.values()] for p in result.positions]
     return all(text == texts[0] for text in texts)
 
 
 def torques(result: Result, columns: Literal["alike", "each", "summed"]) -> Iterator[Record]:
-    """Torque of every mesh and its largest Ω over the positions.
+    """Yield the torque of every mesh and its largest Ω over the positions.
 
     Parameters
     ----------
     result : Result
     columns : {"alike", "each", "summed"}
-        One torque; one at each position; least, mean and most of them.
+        One torque; one at each position; least, mean and largest of them.
     """
     places = torque_places(result)
     for mesh in result.positions[0].torque:
@@ -208,7 +208,7 @@ def torques(result: Result, columns: Literal["alike", "each", "summed"]) -> Iter
 
 
 def torque_notes(result: Result, rows: Iterable[Record]) -> list[str]:
-    """Notes below the torques of the meshes."""
+    """Return the notes below the torques of the meshes."""
     notes = []
     if len(result.positions) > 1:
         sentences = "The same at all positions.", "Ω is the largest over the positions."
@@ -222,7 +222,7 @@ def torque_notes(result: Result, rows: Iterable[Record]) -> list[str]:
 
 
 def unloaded(result: Result) -> float:
-    """Torque [N·m] up to which a flank carries nothing but round-off."""
+    """Return the torque [N·m] up to which a flank carries nothing but round-off."""
     flanks = (
         max(coast, p.torque[mesh] + coast)
         for p in result.positions
@@ -232,18 +232,18 @@ def unloaded(result: Result) -> float:
 
 
 def largest(shares: Iterable[float | None]) -> Cell:
-    """Largest Ω of those that are known."""
+    """Return the largest Ω of those that are known."""
     value = max((s for s in shares if s is not None), default=None)
     return Cell(omega(value), value)
 
 
 def reaction_places(positions: Sequence[Position]) -> int:
-    """Decimals with which reactions of rings are printed."""
+    """Return the number of decimals with which reactions of rings are printed."""
     return decimals(math.hypot(*f.reaction) for p in positions for f in p.floats.values())
 
 
 def rest(position: Position, gear: str, places: int) -> Record:
-    """Where a float is, what bounds it and what its ring carries, to so many decimals [N]."""
+    """Return where a float is, its margin and its ring's reaction [N] to `places` decimals."""
     found = position.floats[gear]
     x, y = position.displacement[gear]
     reaction = math.hypot(*found.reaction)
@@ -257,9 +257,10 @@ def rest(position: Position, gear: str, places: int) -> Record:
 
 
 def loads(result: Result) -> Iterator[Record]:
-    """What gears and shafts carry, each the largest over the positions; what carries nothing not.
+    """Yield the largest loads of gears and shafts over the positions, except those that are zero.
 
-    Of a gear the torque from outside, a load or what balances it, and the force on its bearing.
+    For a gear they are the torque from outside, a load or what balances it, and the force on its
+    bearing.
     """
     found = [(p.position, p.loads) for p in result.positions]
     gears = {g: [(x.gears[g], at) for at, x in found] for g in found[0][1].gears}
@@ -281,7 +282,7 @@ def loads(result: Result) -> Iterator[Record]:
 def _loads(
     every: Iterable[Sequence[tuple[float, int]]],
 ) -> Callable[[Sequence[tuple[float, int]]], tuple[Cell, Cell]]:
-    """What writes the largest of loads at positions, and where it is, beside all others."""
+    """Return a function that writes the largest of some loads, and where, beside all others."""
     sizes = [abs(value) for values in every for value, _ in values]
     places, least = decimals(sizes), 1e-9 * max(sizes, default=0.0)
 
@@ -289,10 +290,10 @@ def _loads(
         most = max((abs(value) for value, _ in values), default=0.0)
         if most <= least:
             return Cell(NONE), Cell(NONE)
-        # Of positions that are alike, which is a hair ahead is round-off.
+        # Among positions with equal loads, round-off decides which one is ahead.
         top = [(value, at) for value, at in values if abs(value) >= most * (1.0 - ALIKE)]
         value, at = top[0]
-        # Small beside the largest, it would lose its digits.
+        # A load that is small beside the largest would lose its digits.
         text = fixed(value, places) if abs(value) >= 10.0 ** (3 - places) else significant(value)
         return Cell(text, value), Cell("all" if len(top) == len(values) > 1 else str(at), at)
 
@@ -300,7 +301,7 @@ def _loads(
 
 
 def yielding(result: Result) -> Iterator[Record]:
-    """Transmission error of the train and its stiffness at every position."""
+    """Yield the transmission error of the train and its stiffness at every position."""
     for p in result.positions:
         error, stiffness = p.elastic.transmission_error, p.elastic.torsional_stiffness
         yield {
@@ -311,14 +312,14 @@ def yielding(result: Result) -> Iterator[Record]:
 
 
 def error_text(result: Result) -> str:
-    """How much the transmission error at the input varies, in a sentence."""
+    """Return, in a sentence, how much the transmission error at the input varies."""
     errors = [p.elastic.transmission_error["input"] for p in result.positions]
     span = significant(1e6 * (max(errors) - min(errors)), 4)
     return f"From peak to peak the transmission error at the input is {span} µrad."
 
 
 def meshes(result: Result) -> Iterator[Record]:
-    """Every mesh at every position: its point of the cycle, its load and its deflection."""
+    """Yield every mesh at every position: its point of the cycle, its load and its deflection."""
     places = torque_places(result)
     for mesh in result.positions[0].torque:
         for p in result.positions:
@@ -342,7 +343,7 @@ def meshes(result: Result) -> Iterator[Record]:
 
 
 def measures(result: Result) -> Iterator[Record]:
-    """Largest figures of the displacements over the positions, and their bounds."""
+    """Yield the largest figures of the displacements over the positions, and their bounds."""
     for name, measure, position in result.validity:
         nowhere = measure.value == 0.0
         bounds = {"warning": measure.warning, "refusal": measure.refusal}
@@ -356,7 +357,7 @@ def measures(result: Result) -> Iterator[Record]:
 
 
 def residuals(result: Result) -> Iterator[Record]:
-    """Worst value of every residual over the positions."""
+    """Yield the worst value of every residual over the positions."""
     for name in result.positions[0].certificate.residuals:
         worst = max(result.positions, key=lambda p: p.certificate.residuals[name].scaled)
         residual = worst.certificate.residuals[name]
@@ -372,10 +373,10 @@ def residuals(result: Result) -> Iterator[Record]:
 
 
 def proved(result: Result) -> float:
-    """Largest distance of a torque from the exact one, over the largest torque, proved.
+    """Return the proved bound on a torque's distance from the exact one, over the largest torque.
 
-    Each of a few positions is looked at closely. Of many that would take ten times as long as to
-    solve them: what was proved of all together is enough.
+    If there are few positions, each is bounded closely. For many, that would take ten times as long
+    as solving them, and the bound that was proved for all together is enough.
     """
     closely = len(result.positions) <= JOB.each
     every = (p.certificate for p in result.positions)

@@ -1,4 +1,4 @@
-"""What follows from teeth and dimensions, row by row: for the screen and the page."""
+"""Quantities that follow from teeth and dimensions, row by row, for the screen and the page."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TOLERANCES = {
 
 
 def teeth_tables(case: Case) -> Iterator[Table]:
-    """Yield what follows from the teeth of gears and the dimensions of shafts, table by table.
+    """Yield tables of what follows from the teeth of gears and the dimensions of shafts.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def _meshes(case: Case) -> Iterator[Record]:
 
 
 def _overlap_ratio(driver: Gear, driven: Gear) -> float | None:
-    """ε_β = b sin β/(π m_n), with the smaller face width."""
+    """Return ε_β = b sin β/(π m_n), with the smaller face width."""
     tooth, widths = driver.tooth, (driver.face_width, driven.face_width)
     if tooth is None or widths[0] is None or widths[1] is None:
         return None

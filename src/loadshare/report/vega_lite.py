@@ -1,7 +1,7 @@
-"""Vega-Lite as plain data: channels, layers and panels, in the words of its reference.
+"""Vega-Lite as plain data: channels, layers and panels, in the terms of its reference.
 
-Altair writes the same, but importing it and turning its charts into data takes longer than a case
-takes to be solved and put into tables.
+Altair writes the same, but importing it and turning its charts into data takes longer than solving
+a case and putting it into tables.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ MAJOR = 6
 SCHEMA = f"https://vega.github.io/schema/vega-lite/v{MAJOR}.json"
 KINDS = {"Q": "quantitative", "N": "nominal"}
 PARTS = ("layer", "concat", "hconcat", "vconcat")
-"""Keys of a view that hold others."""
+"""Keys of a view that hold other views."""
 SIZES = ("width", "height")
 OWN_LEGENDS = {"scale": {"color": "independent", "shape": "independent"}}
 
@@ -27,7 +27,7 @@ Row = dict[str, Any]
 
 @cache
 def version() -> str:
-    """Version of Vega-Lite that draws, such as "6.4": the newest that the converter has."""
+    """Return the version of Vega-Lite that draws, such as "6.4": the converter's newest."""
     import vl_convert
 
     known = [tuple(map(int, text.split("."))) for text in vl_convert.get_vegalite_versions()]
@@ -54,7 +54,7 @@ def panel(layers: Iterable[Drawing], width: float, height: float, **more: Any) -
 
 
 def joined(how: str, views: Iterable[Drawing], **more: Any) -> Drawing:
-    """Return views as one: as "concat", "hconcat" or "vconcat"."""
+    """Return several views as one, joined by "layer", "concat", "hconcat" or "vconcat"."""
     whole: Drawing = {how: [], **more}
     for view in views:
         # Selections of a single layer stay with it; those of several name their views.
@@ -75,7 +75,7 @@ def layered(views: Sequence[Drawing]) -> Drawing:
 
 
 def with_datasets(view: Drawing) -> Drawing:
-    """Return a view with its rows apart, so that those of several layers are there once."""
+    """Return a view with its rows in datasets, so that rows of several layers are stored once."""
     datasets = dict(view.get("datasets", {}))
     names: dict[int, str] = {}
 

@@ -36,9 +36,10 @@ def verdict_tables(result: Result) -> Iterator[Table]:
 
 
 def measure_of(result: Result) -> str:
-    """Return what the largest Ω of a result is.
+    """Return the symbol of the largest Ω of a result.
 
-    K_γ only if all positions of the case are in it, and the drivers of each stage are of one size.
+    It is K_γ only if all positions of the case are in the result, and the drivers of each stage are
+    of one size.
     """
     count, found = result.positions[0].train.count, result.positions
     if len(found) >= count:
@@ -51,7 +52,7 @@ def measure_of(result: Result) -> str:
 
 
 def sharing(result: Result) -> Table:
-    """Largest Ω of every stage.
+    """Return the largest Ω of every stage.
 
     Over the mean of the stage and over all positions it is K_γ of ISO 6336-1, if drivers are of
     one size.
@@ -66,7 +67,7 @@ def sharing(result: Result) -> Table:
 
 
 def resting(result: Result) -> Table:
-    """Where every float rests, in words."""
+    """Return where every float rests, in words."""
     numbers = [p.position for p in result.positions]
     least = max(map(least_force, result.positions))
     rows = []
@@ -98,7 +99,7 @@ def largest_forces(result: Result) -> Iterator[Record]:
         if not found:
             continue
         value, where, position = max(found, key=lambda f: f[0])
-        # What the certificate does not distinguish from nothing is none.
+        # What the certificate does not distinguish from zero is shown as none.
         value = value if value > least else 0.0
         unit = engineering([value], of)
         texts = [significant(unit.of(v), DIGITS) for v, other, _ in found if other == where]
@@ -112,7 +113,7 @@ def largest_forces(result: Result) -> Iterator[Record]:
 
 
 def trust(result: Result) -> Mapping[str, str]:
-    """How far the answer can be trusted, and on what it rests, each in a sentence.
+    """Return how far the answer can be trusted, and what it rests on, each in a sentence.
 
     Parameters
     ----------

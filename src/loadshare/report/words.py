@@ -1,4 +1,4 @@
-"""What was found, in words."""
+"""Results in words."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from loadshare.results.differences import ROUND_OFF
 from loadshare.train.period import Period
 
 ALONG = 1e-9
-"""How far a direction may be from an axis and still be called by its name."""
+"""How far a direction may be from an axis and still be given the axis's name."""
 
 
 def period_text(period: Period, driving: str) -> str:
@@ -44,7 +44,7 @@ def rest_lines(
     positions : sequence of int
         Their numbers.
     least : float
-        Reaction [N] up to which there is none.
+        Reaction [N] up to which it counts as none.
     """
     where = Counter(_where(rest) for rest in rests)
     if len(where) == 1:
@@ -82,9 +82,9 @@ def boundary_name(name: str) -> str:
 
 
 def spline_lines(rests: Sequence[FloatState], least: float = 0.0) -> list[str]:
-    """Return the stage of a float's spline over the positions and its force; none without one.
+    """Return the stage of a float's spline over the positions and its force; empty without one.
 
-    A force up to `least` [N] is none.
+    A force up to `least` [N] counts as none.
     """
     stages = Counter(rest.spline for rest in rests if rest.spline)
     if not stages:
@@ -120,7 +120,7 @@ def undetermined_lines(positions: Sequence[Position]) -> list[str]:
     """Return a line for every range, with the coordinates that have it; none if all is determined.
 
     Over several positions a coordinate is given from the least to the largest of all its values. An
-    end that is round-off beside those of the others is 0; what has no other is left out.
+    end that is round-off relative to the largest is 0; a range with no other end is left out.
     """
     groups: dict[str, list[str]] = {}
     every = {
@@ -159,7 +159,7 @@ def range_text(name: str, low: float, high: float) -> str:
 
 
 def advice(result: Result) -> str:
-    """What to think of displacements above the bound of a warning; empty if there are none."""
+    """Return warnings about large displacements and missing backlash; empty if there are none."""
     large: dict[int, list[str]] = {}
     neither: dict[str, list[int]] = {}
     apart: dict[str, list[int]] = {}

@@ -1,4 +1,4 @@
-"""Branch by branch, stage by stage: what torque and share have in common.
+"""Pictures of torque and share, branch by branch and stage by stage.
 
 One panel for each stage. A figure that changes over the positions is drawn as lines; one that does
 not is drawn as bars, one for each branch, which say more than level lines.
@@ -32,18 +32,18 @@ WIDTH, ROW = 300, 26
 
 @dataclass(frozen=True)
 class Reading:
-    """What is drawn of every branch.
+    """The figure that is drawn for every branch.
 
     Attributes
     ----------
     field : str
-        Of the rows.
+        Field of the rows that holds it.
     title : str
-        Of the axis.
+        Title of the axis.
     places : int
         Decimals of its figures.
     least : float
-        Least width of the axis: what is smaller shall not look large.
+        Least width of the axis, so that small differences do not look large.
     reference : float or None
         Value that the branches would have if they shared evenly, at which bars start; without one
         they start at 0.
@@ -57,7 +57,7 @@ class Reading:
 
 
 def torque(result: Result) -> Figure:
-    """Torque on the driver of every mesh over the positions, one panel for each stage.
+    """Draw the torque on every mesh's driver over the positions, one panel for each stage.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def torque(result: Result) -> Figure:
 
 
 def share(result: Result, over: Mean = "stage") -> Figure:
-    """Load-sharing coefficient Ω of every branch over the positions, one panel for each stage.
+    """Draw the load-sharing coefficient Ω of every branch over the positions, stage by stage.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def share(result: Result, over: Mean = "stage") -> Figure:
     LoadshareError
         If the case has no stages, or no branch carries load.
     ValueError
-        For another mean.
+        If there is no such mean.
     """
     one_of("over", over, get_args(Mean))
     field = {"stage": "share", "group": "pair"}[over]
@@ -133,7 +133,7 @@ def _rows(result: Result) -> tuple[Unit, list[Row]]:
 
 
 def stages_of(result: Result) -> dict[str, tuple[str, ...]]:
-    """Meshes of every stage by its title, those of no stage last."""
+    """Return the meshes of every stage by its title, those of no stage last."""
     staged = {mesh for meshes in result.stages.values() for mesh in meshes}
     rest = tuple(mesh for mesh in result.positions[0].torque if mesh not in staged)
     if not result.stages:
@@ -145,9 +145,9 @@ def stages_of(result: Result) -> dict[str, tuple[str, ...]]:
 def _figure(
     name: str, title: str, result: Result, reading: Reading, unit: Unit, rows: Sequence[Row]
 ) -> Figure:
-    """One panel for each stage, side by side; a mesh of no stage has no share.
+    """Draw one panel for each stage, side by side; a mesh of no stage has no share.
 
-    Where a branch has no share at some positions, as nothing is carried there, its line is broken.
+    If a branch has no share at some positions, because nothing is carried, its line is broken.
     """
     palette = palette_of(result)
     hover = marks.hover(
@@ -178,7 +178,7 @@ def _figure(
 
 
 def _same_everywhere(result: Result, rows: Sequence[Row], field: str) -> str:
-    """Words for a figure that is the same at several positions; empty otherwise."""
+    """Say that a figure is the same at all positions, or at which position it is, or nothing."""
     positions = [p.position for p in result.positions]
     if len(positions) > 1:
         return f"the same at all {len(positions)} positions" if _alike(rows, field) else ""
@@ -206,7 +206,7 @@ def _lines(
     y = axis(field, reading.title, domain, tickCount=6)
     spaced = {"zero": False, "padding": 12}
     there = sorted({row["position"] for row in rows})
-    # Beside one another in panels, few ticks come at halves, which would be written as wholes.
+    # In panels side by side, a few ticks would be at halves, and be written as whole numbers.
     ticks = {"values": there} if len(there) <= TICKS else {"tickMinStep": 1}
     x = axis("position:Q", "position", scale=spaced, format="d", grid=False, **ticks)
     missing = set(range(there[0], there[-1])) - {*there}
@@ -239,7 +239,7 @@ def _bars(
     where = {"x": x, "y": y, "tooltip": hover}
     ends = {"x2": channel("start"), "color": channel("mesh:N", scale=scale, legend=None)}
     layers = [layer("bar", shown, where | ends, height=13)]
-    # What is printed as the reference shall not appear on its other side by round-off.
+    # A value that is printed as the reference must not get onto its other side by round-off.
     below = [round(row[reading.field], reading.places) < start for row in shown]
     for is_below, align, dx in ((True, "right", -5), (False, "left", 5)):
         part = [row for row, its in zip(shown, below, strict=True) if its is is_below]
@@ -252,6 +252,6 @@ def _bars(
 
 
 def _reference_rule(reading: Reading, **where: Channel) -> Drawing:
-    """Rule at the reference, in the channel of the values: an axis of its own would begin at 0."""
+    """Return a rule at the reference, on the values' axis: one of its own would begin at 0."""
     rows = [{reading.field: reading.reference}]
     return layer("rule", rows, where, color=SOFT, strokeWidth=1)

@@ -19,7 +19,7 @@ EXPECTED = 2.0
 
 
 def comparison(found: Comparison) -> Figure:
-    """Picture of every measured figure: computed less measured, in standard deviations.
+    """Draw every measured figure: computed less measured, in standard deviations.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ LABEL = 300
 
 
 def critical(found: Critical) -> Figure:
-    """Picture of the events of all positions: an element in a row, the input along x.
+    """Draw the events of all positions: an element in a row, the input along x.
 
     Parameters
     ----------

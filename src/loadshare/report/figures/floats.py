@@ -26,17 +26,17 @@ SIDE = 284
 SAME = 0.008
 """Points closer than this part of the panel's side are one point with several numbers."""
 NUMBERED = 8
-"""Points up to which all are numbered; of more, each fifth is."""
+"""Number of points up to which all are numbered; of more, every fifth is."""
 
 
 def floats(result: Result, train: Train) -> Figure:
-    """Each float's centre in its region.
+    """Draw each float's centre in its region.
 
     Parameters
     ----------
     result : Result
     train : Train
-        Of the same case.
+        Train of the same case.
 
     Returns
     -------
@@ -89,7 +89,7 @@ class _Panel(Panel):
         self.places = self._here(journey.path)
 
     def chart(self, lines: int) -> Drawing:
-        """Return the panel, its words filled up to so many lines: all plots begin at one height."""
+        """Return the panel, with `lines` lines of words so that all plots begin at one height."""
         self._feel()
         layers = [
             *self._region(),
@@ -148,7 +148,7 @@ class _Panel(Panel):
         return self.line(rows, "circle", hover("circle:N"), **style)
 
     def _origin(self) -> list[Any]:
-        """Cross at the centre's place without displacement."""
+        """Return a cross at the centre's place without displacement."""
         arm = 0.04 * self.half
         rows = [
             *path_rows([(-arm, 0.0), (arm, 0.0)], bar=1),
@@ -158,7 +158,7 @@ class _Panel(Panel):
 
     def _path(self) -> list[Any]:
         journey = self.journey
-        # Of points that fall together, the uppermost speaks for all of them.
+        # Where points coincide, the uppermost lists the positions of all of them.
         called = {n: places_text(numbers) for _, numbers in self._spots() for n in numbers}
         rows = [
             {
@@ -192,7 +192,7 @@ class _Panel(Panel):
         ]
 
     def _shaft(self) -> list[Point]:
-        """Path of the reaction's arrow; empty without a reaction."""
+        """Return the path of the reaction's arrow; empty without a reaction."""
         reaction = self.journey.hardest_rest.reaction
         size = reaction_size(self.journey.positions[self.journey.hardest], self.journey.gear)
         if not size:
@@ -207,7 +207,7 @@ class _Panel(Panel):
         return self.line(shaft, clip=True, color=WARNING, strokeWidth=2, strokeCap="round")
 
     def _names(self) -> list[Any]:
-        """Words in the picture, the most telling first: they find the best places."""
+        """Return the words in the picture; the most important come first, for the best places."""
         journey, labels = self.journey, self.labels
         shaft = self._shaft()
         if shaft:
@@ -232,7 +232,7 @@ class _Panel(Panel):
         return all(a <= v <= b for a, v, b in zip(self.low, point, self.high, strict=True))
 
     def _spots(self) -> list[tuple[Point, list[int]]]:
-        """Places with the numbers of their positions, places that fall together as one."""
+        """Return places with the numbers of their positions, coincident places as one."""
         spots: list[tuple[Point, list[int]]] = []
         for place, position in zip(self.places, self.journey.positions, strict=True):
             near = (n for spot, n in spots if math.dist(spot, place) <= SAME * 2.0 * self.half)
@@ -247,6 +247,6 @@ class _Panel(Panel):
 def _facts(name: str, touch: Touch | None) -> dict[str, Any]:
     if touch is None:
         return {"boundary": name, "margin": None, "force": None}
-    # Round-off of a margin that is none would read as a negative zero.
+    # Round-off of a zero margin would read as a negative zero.
     margin = round(MICROMETRE.of(touch.margin), 6) + 0.0
     return {"boundary": name, "margin": margin, "force": touch.force}

@@ -1,6 +1,6 @@
-"""Words placed where they cover least: each takes the best of some places around its point.
+"""Labels placed where they cover least: each takes the best of some places around its point.
 
-What is further away is joined to its point by a thin line.
+A label that is further away is joined to its point by a thin line.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from loadshare.report.vega_lite import Channel, Drawing, Row, channel, layer
 from loadshare.train.gear import Vector
 
 SIZE = 10
-"""Of the letters [px]."""
+"""Size of the letters [px]."""
 BROAD = 0.56
 """Mean width of a letter over its height."""
 WAYS = np.array([(math.cos(k * math.pi / 8), math.sin(k * math.pi / 8)) for k in range(16)])
 """Directions that are tried around a point."""
 FURTHER = np.array([1.0, 2.5, 4.0])
-"""Gaps that are tried, over the one wanted; beyond the first, a line leads to the label."""
+"""Gaps that are tried, over the one wanted; for all but the first, a line joins the label."""
 RIM = 1.0
 """Room around a label that others leave free [px]."""
 CLEAR = 2.0
 """Room above and below a label that lines leave free, for letters that reach further [px]."""
 STEP = 3.0
-"""Distance between the points by which a line is felt [px]."""
+"""Distance between the points that represent a line [px]."""
 MOST = 400
 """Most points of one straight piece: a line may run far beyond the panel."""
 CLEARLY = 1.5
-"""How many times further a label is from what it does not name."""
+"""How many times further a label must be from points that it does not name."""
 ALONG = np.linspace(0.0, 1.0, 10)
-"""Where a line to a label is looked at."""
+"""Places at which a line to a label is checked, as parts of its length."""
 
 
 class Labels:
@@ -47,13 +47,13 @@ class Labels:
     low, high : (float, float)
         Corners of the panel, in the units of its data.
     pixels : float
-        Of one such unit, the same in both directions.
+        Pixels per unit of the data, the same in both directions.
 
     Attributes
     ----------
     pixels : float
     rows : list of dict
-        What was placed: x, y of the middle, text, colour.
+        Labels that were placed: x, y of the middle, text, colour.
     """
 
     def __init__(self, low: Point, high: Point, pixels: float) -> None:
@@ -97,7 +97,7 @@ class Labels:
         gap : float
             Between point and label [px].
         others : sequence of (float, float)
-            Points that it shall not seem to name, by its place or by the line that leads to it.
+            Points that it must not seem to name, by its place or by the line that joins it.
         colour : str
             Of the letters.
         """
@@ -134,14 +134,14 @@ class Labels:
         return [*(lines if self._leaders else []), *(texts if self.rows else [])]
 
     def _around(self, anchor: Vector, half: Vector, gap: float) -> Vector:
-        """Places around a point: corners (further, ways, 2, 2), half the size being given."""
-        # A box begins in its direction, with its side or, obliquely, with its corner.
+        """Return boxes around a point: corners (further, ways, 2, 2), with half the size `half`."""
+        # The side of a box faces the point or, in oblique directions, its corner does.
         aside = half * np.clip(1.5 * WAYS, -1.0, 1.0)
         middle = anchor + FURTHER[:, None, None] * gap / self.pixels * WAYS + aside
         return np.stack([middle - half, middle + half], axis=-2)
 
     def _cost(self, boxes: Vector) -> Vector:
-        """What boxes cost for what they cover, and for leaving the panel."""
+        """Return the cost of boxes, for what they cover and for leaving the panel."""
         low, high = boxes[..., 0, :], boxes[..., 1, :]
         above = np.array([0.0, CLEAR / self.pixels])
         ends = low - above, high + above
@@ -169,7 +169,7 @@ class Labels:
 
 
 def _within(points: Vector, low: Vector, high: Vector) -> Vector:
-    """Which of some points (…, n, 2) are in each of some boxes."""
+    """Return which of some points (…, n, 2) are in each of some boxes."""
     x, y = points[..., 0], points[..., 1]
     left, right, lower, upper = (
         v[..., None] for v in (low[..., 0], high[..., 0], low[..., 1], high[..., 1])

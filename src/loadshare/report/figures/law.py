@@ -1,4 +1,4 @@
-"""How the meshes yield: deformation over torque, and where each mesh works."""
+"""Picture of the mesh laws: deformation over torque, and where each mesh works."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ POINTS = 60
 
 
 def law(result: Result, train: Train) -> Figure:
-    """Deformation at the driver over torque, with the points at which the meshes work.
+    """Draw the deformation at the driver over torque, with the points at which the meshes work.
 
     Parameters
     ----------
     result : Result
     train : Train
-        Of the same case.
+        Train of the same case.
 
     Returns
     -------
@@ -59,9 +59,9 @@ def law(result: Result, train: Train) -> Figure:
 
 
 def _working(result: Result, train: Train) -> Iterator[Row]:
-    """Torque [N·m] and deformation at the driver [rad] of every flank that carries.
+    """Yield the torque [N·m] and deformation at the driver [rad] of every loaded flank.
 
-    A mesh of which none does is at the end of its drive flank's law.
+    A mesh without a loaded flank is where the law of its drive flank begins.
     """
     for p in result.positions:
         at = train.flank_positions(p.position)
@@ -87,7 +87,7 @@ def _working(result: Result, train: Train) -> Iterator[Row]:
 
 
 def _curves(train: Train, meshes: Sequence[str], reach: float) -> Iterator[Row]:
-    """Every law of the meshes once, over torques [N·m] up to `reach`."""
+    """Yield every law of the meshes once, over torques [N·m] up to `reach`."""
     seen: dict[tuple[Any, float, float], int] = {}
     for name in meshes:
         mesh = train.meshes[name]
@@ -97,14 +97,14 @@ def _curves(train: Train, meshes: Sequence[str], reach: float) -> Iterator[Row]:
                 continue
             curve = seen[key] = len(seen)
             for k in range(POINTS + 1):
-                # Denser towards zero, where a Hertz law turns.
+                # Denser towards zero, where a Hertz law curves most.
                 torque = reach * (k / POINTS) ** 2
                 angle = _deformation(mesh, position, torque)
                 yield {"curve": curve, "torque": torque, "angle": angle}
 
 
 def _deformation(mesh: Mesh, position: int, torque: float, drive: bool = True) -> float:
-    """Δφ(T) = a + bT + cT^(2/3) [rad at the driver], a being the gap; without the backlash."""
+    """Return Δφ(T) = a + bT + cT^(2/3) [rad at the driver], a the gap, without the backlash."""
     radius = mesh.first_radius
     compression = mesh.law(position).compression(torque / radius)
     gap = mesh.gap(position, drive) - (0.0 if drive else mesh.backlash)
@@ -118,7 +118,7 @@ def _scaled(row: Row, torque: Unit, angle: Unit) -> Row:
 def _panel(
     curves: list[Row], points: list[Row], by_mesh: dict[str, Any], torque: Unit, angle: Unit
 ) -> Drawing:
-    # The axes end where the laws do: a figure at the very end would push the panel's title up.
+    # The axes end where the laws do: a number at the very end would push the panel's title up.
     reach, top = (max(row[name] for row in curves) for name in ("torque", "angle"))
     title = torque.title("torque on the driver")
     x = axis("torque:Q", title, [0.0, reach], tickCount=6)

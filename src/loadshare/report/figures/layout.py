@@ -1,4 +1,4 @@
-"""Where everything is, ready to be drawn, even for a case that is not valid yet."""
+"""Places of gears, meshes and shafts in a drawing, even for a case that is not valid yet."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FLOATS, ELASTIC, FIXED = "floats", "on an elastic bearing", "on a rigid bearing"
 FLAT = 1e-9
 """Heights that differ by less than this part of the train are one height."""
 OUTSIDE = 1.07
-"""Radius of an internal gear's bent arrow over its largest radius: inside it are the pinions."""
+"""Radius of an internal gear's bent arrow over its largest radius: the pinions are inside it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +40,7 @@ class Body:
     rims : tuple of float
         Inner and outer radius of a face gear's teeth [m], if given.
     sense : int
-        +1 counter-clockwise against the axis, −1 clockwise, 0 where it does not turn or that is not
+        +1 counter-clockwise against the axis, −1 clockwise, 0 if it does not turn or this is not
         known.
     held : str
         What holds the centre.
@@ -59,11 +59,11 @@ class Body:
     role: str
 
     def is_round(self, frame: Vector) -> bool:
-        """Whether a view shows it as a circle, not from the side."""
+        """Return whether a view shows it as a circle, not from the side."""
         return abs(float(np.cross(frame[0], frame[1]) @ self.axis)) > 1.0 - 1e-6
 
     def circle(self, radius: float, start: float = 0.0, turn: float = 2.0 * math.pi) -> Vector:
-        """Points (n, 3) [m] on a circle about the axis, from angle `start` on over `turn` [rad]."""
+        """Return points (n, 3) [m] on a circle about the axis, over `turn` from `start` [rad]."""
         angles = np.linspace(start, start + turn, 73)
         directions = np.column_stack((np.cos(angles), np.sin(angles)))
         return np.asarray(self.centre + radius * directions @ transverse_frame(self.axis))
@@ -87,7 +87,7 @@ class Pair:
         Directions in which flanks push the driven gear.
     distance, needed : float
         Distance of the centres across the axes, or height of a pinion over its face gear, as it is
-        and as the radii need it [m].
+        and as the radii require it [m].
     """
 
     name: str
@@ -144,10 +144,10 @@ class Layout:
 
     @property
     def frames(self) -> list[Vector]:
-        """What is to the right and upwards in every view.
+        """Directions to the right and upwards in every view.
 
-        The first is along the common axis; one from the side, where heights differ, has that axis
-        upwards, and to the right what is there in the first.
+        The first view is along the common axis. If heights differ, a second one from the side has
+        that axis upwards, and the same direction to the right.
         """
         axis = self.common_axis
         frame = transverse_frame(axis)
@@ -159,20 +159,20 @@ class Layout:
         return sorted(self.bodies.values(), key=lambda body: -self.reach(body))
 
     def _heights_differ(self, axis: Vector) -> bool:
-        """Whether there is more to be seen from the side."""
+        """Return whether a view from the side shows more."""
         heights = [float(body.centre @ axis) for body in self.bodies.values()]
         size = max(body.base_radius for body in self.bodies.values())
         crossed = any(abs(float(b.axis @ axis)) < 1.0 - 1e-6 for b in self.bodies.values())
         return crossed or max(heights) - min(heights) > FLAT * size
 
     def reach(self, body: Body) -> float:
-        """Largest radius that is drawn of a gear [m]."""
+        """Return the largest radius that is drawn of a gear [m]."""
         pitch = [p.radii[body.name] for p in self.pairs if body.name in p.radii]
         largest = max([body.base_radius, *body.rims, *pitch])
         return OUTSIDE * largest if body.kind == "internal" else largest
 
     def radii(self, body: Body) -> tuple[dict[str, float], dict[str, float]]:
-        """Radii [m] of the full and of the dashed circles of a gear, by what they are."""
+        """Return the radii [m] of a gear's full and dashed circles, by description."""
         if body.kind == "face":
             rims = dict(zip(("inner", "outer"), body.rims, strict=False))
             acting = {"acting radius": body.base_radius}
@@ -195,9 +195,9 @@ def layout_of(case: Sections, train: Train | None, flanks: Iterable[Flank] | Non
     case : Case or Draft
         A draft leaves out what could not be read.
     train : Train or None
-        Of the case, for running senses and directions of push; None where there is none yet.
+        Train of the case, for running senses and directions of push; None if there is none yet.
     flanks : iterable of Flank, optional
-        Those that carry; without them the drive flanks are taken.
+        The loaded flanks; by default the drive flanks.
     """
     centres = case.centres()
     # In the order of the train, by which all pictures colour their gears.
@@ -242,7 +242,7 @@ def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | 
 
 
 def _radius(case: Sections, name: str, gear: Gear, centre: Vector) -> float:
-    """Acting radius; of a carrier the distance of its outermost pin, or that of a middling gear."""
+    """Return the acting radius; of a carrier that of its outermost pin, or of the median gear."""
     if not gear.is_carrier:
         return gear.acting_radius
     centres, axis = case.centres(), np.array(axis_of(gear))
@@ -287,7 +287,7 @@ Place = tuple[tuple[float, float], Vector, float, float]
 
 
 def _parallel_place(driver: Body, driven: Body, angle: float) -> Place:
-    """Pitch radii, pitch point, distance of the centres across the axis, and the one needed."""
+    """Return pitch radii, pitch point, distance of the centres across the axis, and that needed."""
     radii = driver.base_radius / math.cos(angle), driven.base_radius / math.cos(angle)
     between = driven.centre - driver.centre
     between = between - (between @ driver.axis) * driver.axis
@@ -303,7 +303,7 @@ def _parallel_place(driver: Body, driven: Body, angle: float) -> Place:
 
 
 def _face_place(driver: Body, driven: Body, angle: float) -> Place:
-    """The same of a face gear: its acting radius, and the height of the pinion over it."""
+    """Return the same of a face gear: its acting radius, and the height of the pinion over it."""
     face, pinion = (driver, driven) if driver.kind == "face" else (driven, driver)
     pitch = pinion.base_radius / math.cos(angle)
     towards = pinion.centre - face.centre

@@ -22,7 +22,7 @@ UNLOADED = "no load"
 
 
 def stiffness(found: Ltca, title: str) -> Figure:
-    """Secant mesh stiffness over the mesh cycle at T, 0.95 T and 0.9 T.
+    """Draw the secant mesh stiffness over the mesh cycle at T, 0.95 T and 0.9 T.
 
     Parameters
     ----------
@@ -50,12 +50,12 @@ def stiffness(found: Ltca, title: str) -> Figure:
 
 
 def stiffness_unit(values: np.ndarray) -> Unit:
-    """Unit in which stiffnesses [N·m/rad] are read best."""
+    """Return the unit in which stiffnesses [N·m/rad] are easiest to read."""
     return Unit("MN·m/rad", 1e-6) if values.max() >= 2e6 else Unit("kN·m/rad", 1e-3)
 
 
 def transmission_error(found: Ltca, title: str) -> Figure:
-    """Transmission error over the mesh cycle, without load and loaded.
+    """Draw the transmission error over the mesh cycle, without load and loaded.
 
     Parameters
     ----------
@@ -88,11 +88,11 @@ def transmission_error(found: Ltca, title: str) -> Figure:
 
 
 def _panel(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what: str) -> Drawing:
-    """Lines over the cycle, by name."""
+    """Draw lines over the cycle, by name."""
     rows = list(_rows(phase, values, unit))
     looks = {name: look(k) for k, name in enumerate(values)}
     every = [row["y"] for row in rows]
-    # What stays within round-off shall not fill the panel.
+    # Variation within round-off must not fill the panel.
     least = max(1e-3 * max(map(abs, every)), 1e-6)
     title = unit.title(what)
     y = axis("y:Q", title, padded(min(every), max(every), least))
@@ -103,7 +103,7 @@ def _panel(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what
 
 
 def _rows(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit) -> Iterable[Row]:
-    """Rows of every line, the first position once more at the end of the cycle."""
+    """Yield the rows of every line, the first position once more at the end of the cycle."""
     for name, line in values.items():
         for x, y in zip([*phase, phase[0] + 1.0], [*line, line[0]], strict=True):
             yield {"name": name, "x": float(x), "y": unit.of(float(y))}

@@ -1,4 +1,4 @@
-"""Pictures of the loaded flank: load on the contact lines, and the pattern that contact leaves."""
+"""Pictures of the loaded flank: load on the contact lines, and contact pattern."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from loadshare.tooth.geometry.body import ToothBody
 
 WIDTH, HEIGHT = 460, 230
 SHADES = "tealblues"
-"""Light to dark in one direction, so that it reads in grey."""
+"""Light to dark in one direction, so that it can be read in grey."""
 MOST = 0.99
-"""Part of the loaded length by which the shades are chosen."""
+"""Part of the loaded length that the range of shades covers."""
 BELOW = "99 % of the loaded length below"
 STEPS = 65
 """Points of a profile."""
@@ -38,7 +38,7 @@ class Plane:
     height: np.ndarray
 
     def at(self, uw: np.ndarray) -> np.ndarray:
-        """Places (n, 2) [m] of flank coordinates (n, 2)."""
+        """Return the places (n, 2) [m] of flank coordinates (n, 2)."""
         return np.column_stack([self.length * uw[:, 1], np.interp(uw[:, 0], self.u, self.height)])
 
     @property
@@ -57,7 +57,7 @@ def plane_of(body: ToothBody, side: int) -> Plane:
 
 
 def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
-    """Load per length on every contact line of the cycle, on the driver's flank.
+    """Draw the load per length on every contact line of the cycle, on the driver's flank.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     Returns
     -------
     Figure
-        Every line where it is at its position of the cycle; grey where it carries nothing.
+        Every line in its place at its position of the cycle; grey where it carries nothing.
     """
     lines = _lines(found)
     rows = [row for number, line in lines for row in _ribbon(planes[0], number, line)]
@@ -82,7 +82,7 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     tooltip = hover("position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "load [N/mm]", ".4~g"))
     ends = {**where, "x2": channel("x2"), "y2": channel("y2")}
     shown = ends | {"color": colour, "tooltip": tooltip}
-    # Thin enough that the lines of neighbouring positions stand apart.
+    # Thin enough that the lines of neighbouring positions do not overlap.
     thick = float(np.clip(0.6 * HEIGHT / max(len(lines), 1), 2.0, 6.0))
     layers = [
         layer("rule", bare, ends, strokeWidth=1, color=SOFT, opacity=0.5),
@@ -97,14 +97,14 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
 
 
 def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
-    """Areas of contact over the cycle on both flanks, by their pressure.
+    """Draw the areas of contact over the cycle on both flanks, by their pressure.
 
     Parameters as for :func:`load_map`.
 
     Returns
     -------
     Figure
-        One panel for each flank; the bands are as wide as Hertz makes them.
+        One panel for each flank; the bands have the Hertzian width.
     """
     lines = [(number, line) for number, line in _lines(found) if line.loaded]
     top = _top([line.pressure for _, line in lines], lines, 1e-6)
@@ -133,13 +133,13 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
 
 
 def _lines(found: Ltca) -> list[tuple[int, LineLoad]]:
-    """Lines of all positions under the rated torque, with the position, from 1."""
+    """Return the lines of all positions under the rated torque, with the position, from 1."""
     load = int(np.argmin(np.abs(found.torque - found.rated)))
     return [(k + 1, line) for k, row in enumerate(found.lines) for line in row[load]]
 
 
 def _axes(plane: Plane) -> dict[str, Any]:
-    """Axes over the whole flank."""
+    """Return axes over the whole flank."""
     sizes = [MILLIMETRE.of(size) for size in plane.size]
     titles = ("along the tooth [mm]", "from the fillet to the tip [mm]")
     return {
@@ -151,7 +151,7 @@ def _axes(plane: Plane) -> dict[str, Any]:
 def _top(
     values: Sequence[np.ndarray], lines: Sequence[tuple[int, LineLoad]], factor: float
 ) -> float:
-    """Value below which most of the loaded length stays.
+    """Return the value below which most of the loaded length stays.
 
     A point at an edge of the flank may carry many times what the rest of the line does.
     """
@@ -163,21 +163,21 @@ def _top(
 
 
 def _shades(title: list[str], top: float) -> Channel:
-    """Channel of a shade from 0 to `top`; what is above has the darkest."""
+    """Return the channel of a shade from 0 to `top`; values above have the darkest."""
     scale = {"scheme": SHADES, "domain": [0.0, top], "nice": False, "clamp": True}
     legend = {"type": "gradient", "gradientLength": 160}
     return channel("value:Q", title=title, scale=scale, legend=legend)
 
 
 def _edges(places: np.ndarray) -> np.ndarray:
-    """Edges (n + 1, 2) of the cells of a line whose middles (n, 2) are given."""
+    """Return the edges (n + 1, 2) of the cells of a line whose middles (n, 2) are given."""
     middle = 0.5 * (places[1:] + places[:-1])
     first, last = 2.0 * places[0] - middle[0], 2.0 * places[-1] - middle[-1]
     return np.vstack([first, middle, last])
 
 
 def _ribbon(plane: Plane, number: int, line: LineLoad) -> Iterator[Row]:
-    """Cells of a line with their load."""
+    """Yield the cells of a line with their load."""
     edges = MILLIMETRE.factor * _edges(plane.at(line.line.driver_uw))
     for start, end, load in zip(edges, edges[1:], 1e-3 * line.per_length, strict=False):
         yield {
@@ -189,7 +189,7 @@ def _ribbon(plane: Plane, number: int, line: LineLoad) -> Iterator[Row]:
 
 
 def _band(plane: Plane, number: int, line: LineLoad, which: int) -> Iterator[Row]:
-    """Corners of the cells of the area of contact, with their pressure."""
+    """Yield the corners of the cells of the area of contact, with their pressure."""
     uw = line.line.driven_uw if which else line.line.driver_uw
     edges = _edges(plane.at(uw))
     along = np.diff(edges, axis=0)

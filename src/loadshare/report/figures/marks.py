@@ -1,4 +1,4 @@
-"""What all pictures are drawn with: looks as scales, lines, words, axes, rules."""
+"""Elements of all pictures: looks as scales, lines, words, axes, rules."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Subtitle = str | Sequence[str]
 
 
 def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any]:
-    """Colour and shape by a field's names, with one legend.
+    """Return colour and shape by a field's names, with one legend.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any
 
 
 def distinct(looks: Mapping[str, Look]) -> list[Look]:
-    """Looks in order, those that occurred before given another dash and shape."""
+    """Return looks in order; repeated ones get another dash and shape."""
     found: list[Look] = []
     for wanted in looks.values():
         use, number = wanted, 0
@@ -70,7 +70,7 @@ def curves(
     width: float = 1.8,
     size: float = 26.0,
 ) -> list[Drawing]:
-    """Lines with a point at every row; colour, dash and shape tell the names apart.
+    """Return lines with a point at every row; colour, dash and shape distinguish the names.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def curves(
     tooltip : list of channels
         Shown for each point.
     order : channel, optional
-        Along which the points are joined; by default from left to right.
+        Order in which the points are joined; by default from left to right.
     width : float
         Of the lines [px].
     size : float
@@ -106,7 +106,7 @@ def curves(
 def rimmed(
     rows: Sequence[Row], channels: Mapping[str, Any], colour: str = "", **style: Any
 ) -> list[Drawing]:
-    """Words with a white rim, which keeps them readable where they must cross a line.
+    """Return words with a white rim, which keeps them readable where they must cross a line.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def rimmed(
 
 
 def path_rows(points: Iterable[Point], **fields: Any) -> list[Row]:
-    """Rows of a path: x and y to seven digits, and their order."""
+    """Return the rows of a path: x and y to seven digits, and their order."""
     return [
         {"x": float(f"{x:.7g}"), "y": float(f"{y:.7g}"), "order": k, **fields}
         for k, (x, y) in enumerate(points)
@@ -258,7 +258,7 @@ TOP = 4.0
 def rules(
     rows: Sequence[Row], x: Any, pixels: float, *, tooltip: Any = None, words: bool = True
 ) -> list[Drawing]:
-    """Upright rules with words along them, on the side with space; else only in the tooltip.
+    """Return vertical rules with words along them where there is room; else only in the tooltip.
 
     Parameters
     ----------
@@ -267,7 +267,7 @@ def rules(
         ``top`` is where its words begin below the upper end of the rule [px].
     x : channel
     pixels : float
-        Of a unit of x.
+        Pixels per unit of x.
     tooltip : list of channels, optional
     words : bool
         Whether the words are written.
@@ -291,7 +291,7 @@ def rules(
 
 
 def _sides(places: Sequence[float]) -> list[str]:
-    """Side of each rule [px, rising] on which its words have room; empty where neither has."""
+    """Return the side of each rule [px, rising] with room for its words; empty if neither has."""
     sides: list[str] = []
     taken = -math.inf
     for place, following in pairwise([*places, math.inf]):

@@ -8,11 +8,11 @@ from itertools import pairwise
 Point = tuple[float, float]
 
 STRAIGHT = 1e-9
-"""Area spanned by two steps of a path, over the square of its size, up to which it is none."""
+"""Area spanned by two steps of a path, over the square of its size, that counts as none."""
 
 
 def arrow(tail: Point, tip: Point, head: float) -> list[Point]:
-    """Path of an arrow with an open head of `head` length; nothing for one without length."""
+    """Return the path of an arrow with an open head of `head` length; empty without length."""
     dx, dy = tip[0] - tail[0], tip[1] - tail[1]
     length = math.hypot(dx, dy)
     if length == 0.0:
@@ -25,7 +25,7 @@ def arrow(tail: Point, tip: Point, head: float) -> list[Point]:
 
 
 def corners(path: list[Point]) -> list[Point]:
-    """Path without the points along its straight pieces: a circle from the side has three left."""
+    """Return a path without points along straight pieces: a circle from the side keeps three."""
     flat = STRAIGHT * math.dist(path[0], path[len(path) // 2]) ** 2
     kept = path[:1]
     for (x, y), (after_x, after_y) in pairwise(path[1:]):
@@ -36,11 +36,11 @@ def corners(path: list[Point]) -> list[Point]:
 
 
 def circle(centre: Point, radius: float, count: int = 120) -> list[Point]:
-    """Path of a circle, closed."""
+    """Return the path of a circle, closed."""
     return arc(centre, radius, 0.0, 2.0 * math.pi, count)
 
 
 def arc(centre: Point, radius: float, start: float, end: float, count: int = 60) -> list[Point]:
-    """Path of an arc from angle `start` to `end` [rad]."""
+    """Return the path of an arc from angle `start` to `end` [rad]."""
     angles = [start + (end - start) * k / count for k in range(count + 1)]
     return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]

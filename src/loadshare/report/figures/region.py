@@ -1,7 +1,7 @@
 """One float over the positions of a result, and the region in which its centre may move.
 
-All of it in metres, in the gear's transverse frame, the centre's own place being the origin. Arcs
-are the exact arcs of the rings, not the faces by which the solver approaches them.
+All lengths are in metres, in the gear's transverse frame, with the origin at the centre's place
+without displacement. Arcs are the exact arcs of the rings, not the solver's tangent faces.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Boundary:
     Attributes
     ----------
     name : str
-        As the certificate names it, without the ring.
+        Name in the certificate, without that of the ring.
     path : list of (float, float)
         The part within the window [m].
     outward : (float, float)
@@ -53,13 +53,13 @@ class Boundary:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Where a centre may be.
+    """Region in which a centre may be.
 
     Attributes
     ----------
     pieces : list of list of (float, float)
-        Closed outlines [m]; one, unless errors pinch a drum. None where several limits hold a gear:
-        what they leave together is not drawn.
+        Closed outlines [m]; one, unless errors pinch a drum. Empty if several limits hold a gear:
+        their common region is not drawn.
     boundaries : list of Boundary
     """
 
@@ -68,7 +68,7 @@ class Region:
 
 
 def features(train: Train, gear: str) -> dict[str, float]:
-    """Distance [m] from the gear's centre to each boundary of what limits it, by name."""
+    """Return the distance [m] from the gear's centre to each boundary of its limits, by name."""
     found: dict[str, float] = {}
     for limit in train.limits.get(gear, ()):
         if isinstance(limit, RoundRing):
@@ -86,7 +86,7 @@ def region(
     displacement: Mapping[str, tuple[float, float]],
     window: float,
 ) -> Region | None:
-    """Region of a float at a position; None for a gear that nothing limits.
+    """Return the region of a float at a position; None for a gear without limits.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def region(
     position : int
         1-based; errors that turn may shift the arcs.
     displacement : mapping of gear to (float, float)
-        Of every gear [m]: the arcs move with the neighbours.
+        Displacement of every gear [m]: the arcs move with the neighbours.
     window : float
         Half the side of the square in which the region is drawn [m].
     """
@@ -115,7 +115,7 @@ def region(
 def _disc(train: Train, ring: RoundRing) -> Region:
     x, y = (float(v) for v in train.gears[ring.gear].plane @ ring.offset)
     outline = circle((x, y), ring.radius)
-    # Named at the upper right, where neither axis is.
+    # It is labelled at the upper right, away from both axes.
     outward = (math.sqrt(0.5), math.sqrt(0.5))
     return Region([outline], [Boundary(boundary_name(ring.name), outline, outward)])
 
@@ -127,7 +127,7 @@ def _drum(
     displacement: Mapping[str, tuple[float, float]],
     window: float,
 ) -> Region:
-    """Drum between the rings of two neighbours, line by line across it."""
+    """Return the drum between the rings of two neighbours, line by line across it."""
     gear = train.gears[ring.gear]
     across = gear.plane @ ring.across
     along = np.array([across[1], -across[0]])
@@ -192,7 +192,7 @@ def _drum(
 MILLIMETRES = 75.0
 """Width of a panel for which the magnification is given [mm]."""
 WITHIN = 4.0
-"""A boundary up to so many times as far as the float moved is in the picture."""
+"""A boundary is in the picture if it is at most this many times as far as the float moved."""
 LEAST = 1e-9
 """Half the side of a picture in which nothing has an extent [m]."""
 
@@ -246,12 +246,12 @@ class Journey:
 
     @cached_property
     def circles(self) -> dict[str, float]:
-        """Radii, within the picture, at which the spline changes its stage, by what they are."""
+        """Radii, within the picture, at which the spline changes its stage, by description."""
         return {name: radius for name, radius in self._stages.items() if radius <= self._far}
 
     @cached_property
     def view(self) -> tuple[Point, float]:
-        """Middle and half the side of the square that shows it all."""
+        """Middle and half the side of the square that shows everything."""
         points = [*self.path, (0.0, 0.0)]
         if self.region:
             for piece in self.region.pieces or [edge.path for edge in self.region.boundaries]:
@@ -306,7 +306,7 @@ class Journey:
 
     @cached_property
     def _far(self) -> float:
-        """Distance up to which what is around belongs in the picture."""
+        """Distance up to which boundaries and stages belong in the picture."""
         nearest = min((d for d in self._around.values() if d > 0.0), default=0.0)
         return WITHIN * max(self._moved, nearest)
 

@@ -18,17 +18,17 @@ WIDTH = 320
 ROW = 22
 """Height of an input's row [px]."""
 MOST = 20
-"""Inputs that are shown; of the others, the number is given."""
+"""Number of inputs that are shown at most; the others are only counted."""
 LABEL = 300
 """Longest name of an input [px]."""
 ALIKE = 1e-6
-"""Relative difference of both sides that no reader needs to see."""
+"""Relative difference of both sides up to which they share a bar."""
 BOTH = "either way"
 CALLED = {"falling": "input falls", "rising": "input rises"}
 
 
 def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage") -> Figure:
-    """Bars of how Ω of a stage changes with every input, largest first.
+    """Draw bars of how Ω of a stage changes with every input, largest first.
 
     A bar is the derivative times the whole value of the input, so that inputs of different units
     can be compared; an input that is 0 has none.
@@ -38,14 +38,14 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
     found : Sensitivity
     stage : str
     over : {"stage", "group"}
-        Over whose mean torque Ω is.
+        Whose mean torque Ω is taken over.
 
     Raises
     ------
     LoadshareError
         If no input has an effect on such a stage.
     ValueError
-        If Ω is over no such mean.
+        If there is no such mean.
     """
     one_of("over", over, OVERS)
     rates = found.omega if over == "stage" else found.pair_omega

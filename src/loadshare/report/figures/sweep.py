@@ -50,14 +50,14 @@ def sweep(
     position: int | None = None,
     events: Sequence[Event] = (),
 ) -> Figure:
-    """Picture of a figure over the parameters of a sweep.
+    """Draw a figure over the parameters of a sweep.
 
     Parameters
     ----------
     data : xarray.Dataset
-        As a sweep gives it. The dimensions of ``status`` are the parameters, one or two; their
+        Dataset of a sweep. The dimensions of ``status`` are the parameters, one or two; their
         coordinates have the attribute ``units``. The variable shown has these dimensions, and
-        besides them any of ``position``, ``component`` (x, y: the size is shown), and one of
+        in addition any of ``position``, ``component`` (x, y: the size is shown), and one of
         ``stage``, ``mesh``, ``float``, ``gear`` with a line or map for each name; its attributes
         are ``units`` (SI) and ``long_name``. NaN marks what was not certified.
     show : str
@@ -114,7 +114,7 @@ class _Shown:
         return self.unit.title(self.title)
 
     def domain(self, share: float) -> list[float]:
-        """Range of an axis, with a margin over the range of the values."""
+        """Return the range of an axis, with a margin over the range of the values."""
         finite = self.values[np.isfinite(self.values)]
         low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
         return padded(low, high, max(self.least, SHARE * max(abs(low), abs(high))), share)
@@ -170,7 +170,7 @@ def _shown(
 def _telling(
     data: xr.Dataset, show: str, variable: xr.DataArray, by: str, names: list[str]
 ) -> list[str]:
-    """Names to be shown by default: none that only repeats another, or has nothing to show."""
+    """Return the names shown by default: none that repeats another, or has nothing to show."""
     if show == "reaction" and "margin" in data:
         # Without a ring there is no reaction, and no margin either.
         return [n for n in names if bool(data["margin"].sel({by: n}).notnull().any())] or names
@@ -204,7 +204,7 @@ def _refused(data: xr.Dataset) -> str:
 
 
 def _parameter(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
-    """Values of a parameter as given, and the title of its axis."""
+    """Return the values of a parameter as given, and the title of its axis."""
     units = str(data[name].attrs.get("units", ""))
     pretty = re.sub(r"\bum\b", "µm", units).replace("*", "·")
     return data[name].values, Unit("" if units == "1" else pretty).title(name)
@@ -234,7 +234,7 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
 
 
 def _clear(shown: _Shown, grid: np.ndarray, at: float, text: str, pixels: float) -> float:
-    """Where an event's words begin below the upper end of its rule, clear of the lines [px]."""
+    """Return how far below its rule's upper end an event's words are clear of the lines [px]."""
     low, high = shown.domain(0.08)
     # Most words are on the left of their rule.
     near = at + np.linspace(-BREADTH, 0.2 * BREADTH, 5) / pixels
@@ -254,7 +254,7 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
     colour = channel(
         "value:Q",
         title=textwrap.wrap(shown.axis, 36),
-        # Light to dark in one direction, so that it reads in grey.
+        # Light to dark in one direction, so that it can be read in grey.
         scale={"scheme": "tealblues", "domain": shown.domain(0.0), "nice": False},
         legend={"titleLimit": 240, "gradientLength": 200},
     )
@@ -275,7 +275,7 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
                 certified.append({**cell, "value": float(value)})
             else:
                 refused.append({**cell, "value": None})
-        # Each cell reaches under the next ones: seams would look like lines of the map.
+        # Each cell extends under the next ones, because seams would look like lines of the map.
         coloured = where | {"color": colour}
         layers = [layer("rect", certified, coloured, x2Offset=0.5, y2Offset=-0.5)]
         if refused:
@@ -288,7 +288,7 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
 
 
 def _edges(values: np.ndarray) -> np.ndarray:
-    """Edges of the cells about grid values: half way between them, and at the first and last."""
+    """Return the edges of cells around grid values: half-way between them, and at both ends."""
     values = np.asarray(values, dtype=float)
     if len(values) == 1:
         half = 0.5 * abs(values[0]) or 0.5

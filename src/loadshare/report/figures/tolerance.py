@@ -1,4 +1,4 @@
-"""Pictures of a tolerance study: how Ω scatters, and which input it comes from."""
+"""Pictures of a tolerance study: how Ω scatters, and which inputs cause it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ WIDTH, HEIGHT = 420, 190
 ROW = 22
 """Height of an input's row [px]."""
 MOST = 20
-"""Inputs that are shown; of the others, the number is given."""
+"""Number of inputs that are shown at most; the others are only counted."""
 BAR, TOTAL = COLOURS[0], COLOURS[1]
 SHARE, BELOW = "share of samples", "samples at or below"
 PERCENT: dict[str, Any] = {"format": "~%", "tickCount": 4}
@@ -32,7 +32,7 @@ HEADROOM = 1.3
 
 
 def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
-    """Distribution of a stage's Ω with its limit, and the share of each input in its variance.
+    """Draw the distribution of a stage's Ω with its limit, and each input's share in its variance.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
     Raises
     ------
     LoadshareError
-        If the stage, or what is needed to draw, is not there.
+        If the stage, or the data needed to draw, is missing.
     """
     stages = [str(s) for s in data["stage"].values] if "stage" in data.coords else []
     if stage not in stages:
@@ -95,7 +95,7 @@ def _histogram(one: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _marks(one: xr.Dataset, limit: Any) -> list[Row]:
-    """Values that are marked in the distribution: quantiles and the limit."""
+    """Return the values that are marked in the distribution: quantiles and the limit."""
     rows: list[Row] = []
     if "quantile" in one:
         rows += [
@@ -131,7 +131,7 @@ class _Distribution:
         return x, rules(self.marks, x, WIDTH / (high - low), tooltip=tooltip, words=words)
 
     def bars(self) -> Drawing:
-        """Share of the samples in each bin."""
+        """Draw the share of the samples in each bin."""
         part = self.counts / self.counts.sum()
         rows = [
             {"x": float(a), "x2": float(b), "share": float(v), "count": float(c)}
@@ -153,7 +153,7 @@ class _Distribution:
         return panel([layer("rect", rows, where, **style), *marked], WIDTH, HEIGHT)
 
     def cumulative(self) -> Drawing:
-        """Share of the samples at or below each edge."""
+        """Draw the share of the samples at or below each edge."""
         reached = np.concatenate([[0.0], np.cumsum(self.counts) / self.counts.sum()])
         rows = [{"x": float(v), "p": float(p)} for v, p in zip(self.edges, reached, strict=True)]
         x, marked = self.along("Ω", words=False)

@@ -1,4 +1,4 @@
-"""A drawing of the train, from which a wrong centre is seen at once."""
+"""A drawing of the train that shows a wrong centre at once."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def train(case: Sections, result: Result | None = None) -> Figure:
         A case, or what could be read of one: what does not fit is drawn in red, running senses and
         lines of action are left out.
     result : Result, optional
-        Of the case: its first position says which flanks carry. Without it, straight arrows are
-        those of the drive flanks, whichever way the load acts; of a mesh without backlash that of
-        the flank that it has, which the load presses.
+        Result of the case: its first position gives the loaded flanks. Without it, straight arrows
+        are those of the drive flanks, whichever way the load acts; for a mesh without backlash,
+        that of its only flank, which is the loaded one.
 
     Returns
     -------
@@ -131,7 +131,7 @@ class _View(Panel):
         return self.high[0] - self.low[0], self.high[1] - self.low[1]
 
     def chart(self, scale: float) -> Drawing:
-        """Return the view at so many pixels per millimetre."""
+        """Return the view at `scale` pixels per millimetre."""
         self.labels = Labels(self.low, self.high, scale)
         layers = [
             *self._circles(),
@@ -172,7 +172,7 @@ class _View(Panel):
         ]
 
     def _lines(self) -> list[Any]:
-        """Centre lines, shafts between gears that are not coaxial, axes of crossed gears."""
+        """Return centre lines of meshes, and lines of shafts."""
         rows: dict[str, list[Row]] = {"shaft": [], "fits": [], "misfit": []}
         for first, second in self.layout.shafts:
             rows["shaft"] += path_rows(self._between(first, second), part=f"{first} {second}")
@@ -202,11 +202,11 @@ class _View(Panel):
         ]
 
     def _between(self, first: str, second: str) -> list[Point]:
-        """Path from one gear's centre to another's."""
+        """Return the path from one gear's centre to another's."""
         return self._flat(np.array([self.layout.bodies[n].centre for n in (first, second)]))
 
     def _actions(self) -> list[Any]:
-        """Lines of action between their points of contact with the base circles."""
+        """Return lines of action between their points of contact with the base circles."""
         rows: list[Row] = []
         head = 0.012 * (self.high[0] - self.low[0])
         pushes = [(pair, push) for pair in self.layout.pairs for push in pair.pushes]

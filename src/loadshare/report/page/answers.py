@@ -1,4 +1,4 @@
-"""What was found, as tables."""
+"""Results as tables."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ YIELDING = {
 
 
 def omega_table(result: Result) -> Table:
-    """Largest Ω of every stage and of the system, and where it is reached."""
+    """Return the largest Ω of every stage and of the system, and where it is reached."""
     return table(
         "Load-sharing coefficient Ω, largest over branches and positions",
         records.omegas(result),
@@ -46,7 +46,7 @@ def omega_table(result: Result) -> Table:
 
 
 def torque_table(result: Result) -> Table:
-    """Torque of every mesh, summed up over the positions, and its largest Ω."""
+    """Return the torque of every mesh, summarised over the positions, and its largest Ω."""
     level = records.alike(result)
     torques = ("torque",) if level else ("least", "mean", "most")
     rows = list(records.torques(result, "alike" if level else "summed"))
@@ -60,7 +60,7 @@ def torque_table(result: Result) -> Table:
 
 
 def position_table(result: Result) -> Table:
-    """Every mesh at every position: its place in its cycle, load, coefficients and stiffness."""
+    """Return every mesh at every position: its point of the cycle, load, Ω and stiffness."""
     rows = list(records.meshes(result))
     notes = ["The error is the transmission error along the line of action; stiffness is tangent."]
     title = "Meshes at every position"
@@ -68,7 +68,7 @@ def position_table(result: Result) -> Table:
 
 
 def yield_table(result: Result) -> Table:
-    """Transmission error of the train and its stiffness at every position."""
+    """Return the transmission error of the train and its stiffness at every position."""
     rows = list(records.yielding(result))
     notes = [
         "How far the input turns beyond what its ratio to the output says, and the tangent of "
@@ -80,7 +80,7 @@ def yield_table(result: Result) -> Table:
 
 
 def float_table(result: Result) -> Table:
-    """Where every float rests; positions at which nothing differs share a row."""
+    """Return where every float rests; positions at which nothing differs share a row."""
     places = records.reaction_places(result.positions)
     rows: list[records.Record] = []
     for gear in result.positions[0].floats:
@@ -104,7 +104,7 @@ def float_table(result: Result) -> Table:
 
 
 def _undetermined(result: Result) -> list[str]:
-    """Notes on what the forces leave open."""
+    """Return notes on what the forces leave undetermined."""
     notes = [f"{line[0].upper()}{line[1:]}." for line in undetermined_lines(result.positions)]
     return notes + (
         ["Of what is not determined, the least displacement is given."] if notes else []
@@ -112,7 +112,7 @@ def _undetermined(result: Result) -> list[str]:
 
 
 def load_table(result: Result) -> Table:
-    """Torques from outside, force on bearings, torques of shafts, the largest of each."""
+    """Return the largest torques from outside, forces on bearings and torques of shafts."""
     return table(
         "Loads of gears, bearings and shafts: the largest",
         records.loads(result),
@@ -125,7 +125,7 @@ def load_table(result: Result) -> Table:
 
 
 def validity_table(result: Result) -> Table:
-    """Largest figures of the displacements over the positions, and their bounds."""
+    """Return the largest figures of the displacements over the positions, and their bounds."""
     warning = advice(result)
     notes = [
         "Lines of action and stops are taken where they stand before anything moves; this is how "
@@ -143,7 +143,7 @@ def validity_table(result: Result) -> Table:
 
 
 def certificate_table(result: Result) -> Table:
-    """Worst value of every residual over the positions."""
+    """Return the worst value of every residual over the positions."""
     return table(
         "Certificate: the worst residuals",
         records.residuals(result),
@@ -161,7 +161,7 @@ def certificate_table(result: Result) -> Table:
 
 
 def effort_text(result: Result) -> str:
-    """How the positions were solved, in a sentence."""
+    """Return, in a sentence, how the positions were solved."""
     efforts = [p.effort for p in result.positions]
     stamp = result.stamp
     kinds = ", ".join(dict.fromkeys(e.kind for e in efforts))

@@ -47,16 +47,16 @@ class Chapter:
         What is wrong with the case, or why positions were refused.
     case : Case or None
     result : Result or None
-        Of the certified positions.
+        Result of the certified positions.
     drawing : Figure or None
     figures : sequence of Figure
     summary : sequence of Table
-        Of the first screen.
+        Tables of the first screen.
     trust : mapping of str to str
-        Why the answer can be trusted, and what it rests on.
+        How far the answer can be trusted, and what it rests on.
     tables, inputs, derived : sequence of Table
     studies : sequence of StudyPart
-        Of the case, those that were run or handed in.
+        Studies of the case that were run or passed in.
     """
 
     file: str
@@ -77,14 +77,14 @@ class Chapter:
 
     @property
     def left_out(self) -> Mapping[str, str]:
-        """Studies that the case holds and the page does not show, and the kind of each."""
+        """Studies that the case holds but the page does not show, and the kind of each."""
         shown = {one.name for one in self.studies}
         held = self.case.study.items() if self.case else ()
         return {name: study.kind for name, study in held if name not in shown}
 
     @property
     def unanswered(self) -> list[str]:
-        """What is wrong with the case, and what its studies could not answer, in lines."""
+        """Lines on what is wrong with the case, and on what its studies could not answer."""
         open_ = [f"study {s.name}: {line}" for s in self.studies for line in s.problems]
         return [*self.problems, *open_]
 
@@ -104,13 +104,13 @@ class Chapter:
 
 
 def chapter_of_file(file: str | Path, changes: Mapping[str, Any] | None = None) -> Chapter:
-    """Solve a case file and put together its chapter; what is wrong with it becomes part of it.
+    """Solve a case file and assemble its chapter; problems of the file become part of it.
 
     Parameters
     ----------
     file : path-like
     changes : mapping of str to object, optional
-        To the case, as `Case.replace` takes them.
+        Changes to the case, as for `Case.replace`.
     """
     try:
         return chapter(load_case(file, changes=changes), str(file))
@@ -124,17 +124,17 @@ def chapter(
     progress: Progress | None = None,
     result: Result | None = None,
 ) -> Chapter:
-    """Solve a case and put together its chapter.
+    """Solve a case and assemble its chapter.
 
     Parameters
     ----------
     case : Case
     file : str
-        Where it comes from.
+        File that it comes from.
     progress : Progress, optional
         Called after every position.
     result : Result, optional
-        Of the case, where it is solved already.
+        Result of the case, if it is solved already.
 
     Raises
     ------
@@ -227,7 +227,7 @@ def _tables(result: Result) -> Iterator[Table]:
 
 
 def overview(chapters: list[Chapter]) -> Table:
-    """Table of all cases of a page."""
+    """Return the table of all cases of a page."""
     rows = []
     for number, one in enumerate(chapters, start=1):
         means = (one.result.omega, one.result.pair_omega) if one.result else ()

@@ -26,7 +26,7 @@ def comparison(names: Sequence[str], results: Sequence[Result]) -> list[Table]:
     Parameters
     ----------
     names : sequence of str
-        Of the results, as columns are called.
+        Names of the results, for the titles of columns.
     results : sequence of Result
         Two or more; differences are against the first.
     """
@@ -56,7 +56,7 @@ def _differing_inputs(names: Sequence[str], cases: Sequence[Case]) -> Table:
 
 
 def _differing_figures(names: Sequence[str], results: Sequence[Result]) -> Table:
-    """The figures that differ: Ω, then all others, what changes most first."""
+    """Return the figures that differ: Ω, then all others, those that change most first."""
     found = [_figures(result) for result in results]
     shared = [key for key in found[0] if any(key in other for other in found[1:])]
     largest: dict[str, float] = {}
@@ -108,7 +108,7 @@ def _change(change: float | None, base: float) -> Cell:
 
 
 def _figures(result: Result) -> Figures:
-    """Every figure that can be compared: its value and its SI unit."""
+    """Return every figure that can be compared: its value and its SI unit."""
     found: Figures = {}
     for means, name in ((result.omega, "Ω over stage"), (result.pair_omega, "Ω over group")):
         for stage, value in means.items():
@@ -138,7 +138,7 @@ def _figures(result: Result) -> Figures:
 
 
 def _differing_rests(names: Sequence[str], results: Sequence[Result]) -> Iterator[Table]:
-    """Where floats rest, if not everywhere alike."""
+    """Yield where floats rest, if this differs between results."""
     gears = dict.fromkeys(g for result in results for g in result.positions[0].floats)
     rows = []
     for gear in gears:

@@ -1,4 +1,4 @@
-"""What makes a page work without a network: scripts and templates that are written into it."""
+"""Scripts and templates that are written into a page so that it works without a network."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ OWN_SCRIPTS = "OWN_SCRIPTS"
 """Placeholder in the policy of a page for the hashes of its scripts."""
 SCRIPT = re.compile("<script>(.*?)</script>", re.DOTALL)
 EXPOSED = "window.vegaEmbed = vegaEmbed;"
-"""What the page's own script needs of the bundle."""
+"""The part of the bundle that the page's own script needs."""
 
 
 @cache
 def scripts() -> str:
-    """JavaScript that draws Vega-Lite specifications, for a script element.
+    """Return the JavaScript that draws Vega-Lite specifications, for a script element.
 
-    It takes about a second to put together, and is kept among the user's caches.
+    Assembling it takes about a second, so it is kept in the user's cache.
     """
     import vl_convert
 
@@ -45,7 +45,7 @@ def scripts() -> str:
 
 @cache
 def templates() -> Environment:
-    """Templates of this room; what they insert is escaped."""
+    """Return the templates of this package; what they insert is escaped."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     made = Environment(
@@ -55,13 +55,13 @@ def templates() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    # JSON knows no NaN; a browser would refuse the whole figure.
+    # JSON has no NaN; a browser would refuse the whole figure.
     made.policies["json.dumps_kwargs"] = {"allow_nan": False, "ensure_ascii": True}
     return made
 
 
 def render(template: str, **values: Any) -> str:
-    """Fill in a template; its policy lets only its own scripts run."""
+    """Fill in a template; the policy of the page lets only its own scripts run."""
     page = templates().get_template(template).render(scripts=scripts(), **values)
     hashes = (sha256(script.encode()).digest() for script in SCRIPT.findall(page))
     allowed = " ".join(f"'sha256-{b64encode(found).decode()}'" for found in hashes)

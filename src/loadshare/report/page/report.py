@@ -28,7 +28,7 @@ def report_page(chapters: Iterable[Chapter], made: datetime | None = None) -> st
     Parameters
     ----------
     chapters : iterable of Chapter
-        As `chapter` and `chapter_of_file` make them.
+        Chapters from `chapter` or `chapter_of_file`.
     made : datetime, optional
         When the page was made; now by default.
     """
@@ -47,7 +47,7 @@ def report_page(chapters: Iterable[Chapter], made: datetime | None = None) -> st
 
 
 def _differences(chapters: list[Chapter]) -> list[Table]:
-    """What differs between the cases that have an answer; nothing if there are not two."""
+    """Return what differs between the cases that have an answer; empty for fewer than two."""
     solved = {n: one.result for n, one in enumerate(chapters, start=1) if one.result}
     if len(solved) < 2:
         return []
@@ -64,7 +64,7 @@ def write_report(
     """Solve cases and write them, with figures and certificates, into one page that works offline.
 
     The studies that a case holds are run and shown, except tolerance studies, which may take long:
-    run those with `tolerance` and hand them in.
+    run those with `tolerance` and pass them in.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def write_report(
     CaseError
         If a `Case` cannot be solved at all.
     ValueError
-        If studies are handed in for more than one case.
+        If studies are passed in for more than one case.
     OSError
         If the page cannot be written.
     """
@@ -117,7 +117,7 @@ def save_report(chapters: Iterable[Chapter], path: str | Path) -> None:
 
 
 def versions() -> dict[str, str]:
-    """Versions of what the figures and pictures were made with."""
+    """Return the versions of the software that figures and pictures were made with."""
     found = {"loadshare": __version__, "Python": platform.python_version()}
     for package in PACKAGES:
         try:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 LONG = "tolerance"
 """Kind of study that is run for a page only when it is asked for by name."""
 POINTS = 61
-"""Of the sweep that is drawn behind critical values."""
+"""Number of points of the sweep that is drawn behind critical values."""
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,13 @@ class StudyPart:
     Attributes
     ----------
     name : str
-        Of the table ``[study.NAME]``, or as it was handed in.
+        Name of the table ``[study.NAME]``, or the one it was passed under.
     title : str
     facts : mapping of str to str
     figures : sequence of Figure
     tables : sequence of Table
     problems : sequence of str
-        What it could not answer.
+        Questions that it could not answer.
     """
 
     name: str
@@ -62,7 +62,7 @@ def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
     name : str
     found : Sweep, Critical, Sensitivity, March, Comparison, Fit or Tolerance
     case : Case
-        Of which it is.
+        The case of the study.
     """
     view = found._view()
     rows = [[Cell(text) for text in row] for row in view.rows]
@@ -82,13 +82,13 @@ def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
 def run_part(
     case: Case, name: str, *, kept: Path | None = None, progress: Progress | None = None
 ) -> StudyPart:
-    """Run a study that a case holds; what cannot be answered becomes part of the page.
+    """Run a study that a case holds; an error becomes part of the page.
 
     Parameters
     ----------
     case : Case
     name : str
-        Of the table ``[study.NAME]``.
+        Name of the table ``[study.NAME]``.
     kept : Path, optional
         Folder with the samples of a tolerance study, which are not solved again.
     progress : Progress, optional
@@ -122,7 +122,7 @@ def _figures(found: Any, _: Case) -> Iterator[Figure]:
 
 @_figures.register
 def _(found: Critical, case: Case) -> Iterator[Figure]:
-    """Where elements change, and Ω over the same inputs with these values marked."""
+    """Yield where elements change, and Ω over the same inputs with these values marked."""
     yield found.plot()
     if not found.events:
         return
@@ -157,13 +157,13 @@ def _(found: Tolerance, _: Case) -> Iterator[Figure]:
 
 @singledispatch
 def _more_tables(_: Any) -> Iterator[Table]:
-    """Yield the tables of a study besides that of its view."""
+    """Yield the tables of a study other than that of its view."""
     yield from ()
 
 
 @_more_tables.register
 def _(found: Tolerance) -> Iterator[Table]:
-    """Quantiles of Ω, and the worst case that was found."""
+    """Yield the quantiles of Ω, and the worst case that was found."""
     levels = list(found.omega[0].summary.quantiles) if found.omega else []
     rows = [
         [Cell(one.stage), Cell(one.over), *(_quantile(one.summary.quantiles[k]) for k in levels)]
