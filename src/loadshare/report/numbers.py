@@ -25,7 +25,7 @@ ALIKE = 1e-9
 
 
 def decimals(values: Iterable[float], significant: int = 5) -> int:
-    """Return the number of decimals, at least one, that gives the largest value these digits."""
+    """Return how many decimals, at least one, show `significant` digits of the largest value."""
     largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
     if largest == 0.0:
         return 1

@@ -282,7 +282,7 @@ def loads(result: Result) -> Iterator[Record]:
 def _loads(
     every: Iterable[Sequence[tuple[float, int]]],
 ) -> Callable[[Sequence[tuple[float, int]]], tuple[Cell, Cell]]:
-    """Return a function that writes the largest of some loads, and where, beside all others."""
+    """Return a function that writes the largest of some loads, and where, in digits fit for all."""
     sizes = [abs(value) for values in every for value, _ in values]
     places, least = decimals(sizes), 1e-9 * max(sizes, default=0.0)
 

@@ -120,7 +120,7 @@ def undetermined_lines(positions: Sequence[Position]) -> list[str]:
     """Return a line for every range, with the coordinates that have it; none if all is determined.
 
     Over several positions a coordinate is given from the least to the largest of all its values. An
-    end that is round-off relative to the largest is 0; a range with no other end is left out.
+    end that is round-off relative to the largest is 0; a range of which both ends are is left out.
     """
     groups: dict[str, list[str]] = {}
     every = {

@@ -24,7 +24,7 @@ BROAD = 0.56
 WAYS = np.array([(math.cos(k * math.pi / 8), math.sin(k * math.pi / 8)) for k in range(16)])
 """Directions that are tried around a point."""
 FURTHER = np.array([1.0, 2.5, 4.0])
-"""Gaps that are tried, over the one wanted; for all but the first, a line joins the label."""
+"""Gaps that are tried, over the one wanted; beyond the first, a line joins label and point."""
 RIM = 1.0
 """Room around a label that others leave free [px]."""
 CLEAR = 2.0

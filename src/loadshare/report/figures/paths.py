@@ -8,7 +8,7 @@ from itertools import pairwise
 Point = tuple[float, float]
 
 STRAIGHT = 1e-9
-"""Area spanned by two steps of a path, over the square of its size, that counts as none."""
+"""Area spanned by two steps of a path, over the square of its size, if it counts as straight."""
 
 
 def arrow(tail: Point, tip: Point, head: float) -> list[Point]:
