@@ -1,4 +1,4 @@
-"""What a case file may say, as one table of elements."""
+"""The sections that a case file may contain, with the type of their elements."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from loadshare.case.words import as_given
 from loadshare.errors import Problem
 
 ABOUT = ("title", "source", "notes", "assumed", "measured", "study")
-"""The keys that say something about a case and nothing about the machine."""
+"""The sections that describe a case but not the machine."""
 FLOATS = ("splines", "rings", "bearings")
-"""The sections of what lets a gear float, by gear."""
+"""The sections of elements that let a gear float, keyed by gear."""
 ENDS = {"meshes": ("driver", "driven"), "shafts": ("ends",)}
-"""Keys of what joins two gears that tell them; left out, the element's name does."""
+"""Keys that name the two gears an element joins; if left out, the element's name gives them."""
 
 
 class Sections(Element):
-    """What a case file may say, as a whole or as far as it could be read."""
+    """The sections of a case file, whether complete or only partly readable."""
 
     _data: Mapping[str, Any] = PrivateAttr()
     _origin: Origin = PrivateAttr()
@@ -85,11 +85,11 @@ class Sections(Element):
     """Studies of the case, by name."""
 
     def floats(self, gear: str) -> bool:
-        """Tell whether something lets a gear float that says nothing of its support."""
+        """Tell whether a spline, ring or bearing lets a gear float whose support is left out."""
         return any(gear in getattr(self, section) for section in FLOATS)
 
     def centres(self) -> dict[str, Vector]:
-        """Return the centres of the gears [m], of those for which they are given or follow."""
+        """Return the centres [m] of all gears for which they are given or can be derived."""
         return centres_of(self.gears, self.meshes)
 
     def outside_problem(self, key: str, named: FilePath) -> Problem | None:
@@ -99,7 +99,7 @@ class Sections(Element):
         return self._origin.outside_problem(named, self._origin.of(path), key, given)
 
     def problem(self, key: str | Path, message: str, allowed: str = "", hint: str = "") -> Problem:
-        """Return a problem with a key, with its file and what was given.
+        """Return a problem with a key, including its file and the value given.
 
         Parameters
         ----------

@@ -1,8 +1,9 @@
-"""Branches that are written once: a gear's `copies`, and with it all that names the gear.
+"""Expansion of branches written once: a gear's `copies`, and all elements that name the gear.
 
-A gear p with three copies is short for p1, p2 and p3; a mesh s-p for s-p1, s-p2 and s-p3; its
-bearing, ring, spline and errors for theirs. What is written of a single copy, such as errors.p2,
-counts before what is written of all, be it in another way: a stiffness before a law.
+A gear p with three copies is short for p1, p2 and p3, a mesh s-p for s-p1, s-p2 and s-p3, and the
+bearing, ring, spline and errors of p for those of each copy. What is written for a single copy,
+such as errors.p2, overrides what is written for all, even in another form: a stiffness overrides a
+law.
 """
 
 from __future__ import annotations
@@ -32,19 +33,19 @@ class _Pattern:
     turns: Mapping[str, tuple[float, ...]]
 
     def count(self, *names: str) -> int | None:
-        """Copies of an element that names gears; None where it names none that has copies."""
+        """Return how many copies the named gears have; None if none of them has, or they differ."""
         counts = {len(self.turns[name]) for name in names if name in self.turns}
         return counts.pop() if len(counts) == 1 else None
 
     def of(self, name: str, k: int) -> str:
-        """Name of a gear's copy number k, counted from 1; that of a gear without as it is."""
+        """Return the name of copy k of a gear, from 1; a gear without copies keeps its name."""
         return f"{name}{k}" if name in self.turns else name
 
 
 def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
-    """Return a case's plain data with all copies written out, and where each was written.
+    """Return a case's plain data with all copies written out, and the origin of their keys.
 
-    What is wrong with `copies` stays as it is, to be reported when the gear is read.
+    An invalid `copies` is left as it is and reported when the gear is read.
 
     Raises
     ------
@@ -62,7 +63,7 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
     moved: list[tuple[Path, Path]] = []
 
     def spread(section: str, ends: Callable[[str, Any], tuple[str, ...]]) -> dict[str, list[str]]:
-        """Write out a section; returns the names that each element came to."""
+        """Write out a section; return the new names of each element that has copies."""
         before = data.get(section)
         if not isinstance(before, Mapping):
             return {}
@@ -100,7 +101,7 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
 
 
 def _turns(gears: Mapping[str, Any]) -> Iterator[tuple[str, tuple[float, ...]]]:
-    """Gears with copies that can be written out, and the angles of these [rad]."""
+    """Yield the gears whose copies can be written out, with the angles of the copies [rad]."""
     for name, gear in gears.items():
         given = gear.get("copies") if isinstance(gear, Mapping) else None
         centre = gear.get("centre") if given is not None else None
@@ -115,7 +116,7 @@ def _turns(gears: Mapping[str, Any]) -> Iterator[tuple[str, tuple[float, ...]]]:
 
 
 def _taken(data: Data, origin: Origin, turns: Mapping[str, Sized]) -> Iterator[Problem]:
-    """Yield gears that stand on their own, but under the name of a copy of another."""
+    """Yield a problem for each gear of its own that has the name of another gear's copy."""
     for name, copies in turns.items():
         for k in range(1, len(copies) + 1):
             own = data["gears"].get(f"{name}{k}")
@@ -140,7 +141,7 @@ def _angle(given: object) -> float | None:
 
 
 def _ends(name: str, element: Any, keys: tuple[str, ...], gears: list[str]) -> tuple[str, ...]:
-    """The two gears of a mesh or shaft, as far as they are known."""
+    """Return the two gears of a mesh or shaft, as far as they are known."""
     given = [element.get(key) for key in keys] if isinstance(element, Mapping) else [None]
     if len(keys) == 1 and isinstance(given[0], list):
         given = given[0]
@@ -150,14 +151,14 @@ def _ends(name: str, element: Any, keys: tuple[str, ...], gears: list[str]) -> t
 
 
 def _renamed(name: str, ends: tuple[str, ...], pattern: _Pattern, k: int) -> str:
-    """Name of an element's copy number k."""
+    """Return the name of copy k of an element."""
     if ends == (name,) or "-".join(ends) == name:
         return "-".join(pattern.of(end, k) for end in ends)
     return f"{name}{k}"
 
 
 def _copied(section: str, element: Any, pattern: _Pattern, ends: tuple[str, ...], k: int) -> Any:
-    """An element's copy number k."""
+    """Return copy k of an element."""
     made = copy.deepcopy(element)
     if not isinstance(made, dict):
         return made
@@ -178,7 +179,7 @@ def _copied(section: str, element: Any, pattern: _Pattern, ends: tuple[str, ...]
 
 
 def _lay(table: Data, section: str, name: str, element: Any, *, under: bool = False) -> None:
-    """Put an element in a table; where one has its name, key by key, over it or under it."""
+    """Add an element to a table, merged with one of its name; if `under`, existing keys win."""
     there = table.get(name)
     if isinstance(there, dict) and isinstance(element, Mapping):
         low, high = (element, there) if under else (there, element)
@@ -190,7 +191,7 @@ def _lay(table: Data, section: str, name: str, element: Any, *, under: bool = Fa
 
 
 def _rename_in_stages(data: Data, meshes: Mapping[str, list[str]]) -> None:
-    """Name every copy of a mesh where a stage names the mesh."""
+    """Replace each mesh that a stage names by its copies, in place."""
 
     def named(given: Any) -> Any:
         if not isinstance(given, list):
@@ -217,7 +218,7 @@ def _rename_in_stages(data: Data, meshes: Mapping[str, list[str]]) -> None:
 
 
 def _patterns(given: Any, became: Mapping[str, Mapping[str, list[str]]]) -> list[Any]:
-    """A pattern of what is assumed, once for every copy that it speaks of."""
+    """Return a pattern of `assumed`, written out for every copy of the element it names."""
     try:
         path = parse(given) if isinstance(given, str) else ()
     except ValueError:

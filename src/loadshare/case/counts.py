@@ -1,4 +1,4 @@
-"""What keys of a case take: counts, which have no value between two whole numbers, or units."""
+"""Which keys of a case take whole numbers, and the SI units of the others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from loadshare.case.quantity import Dimension
 
 @cache
 def takes_count(path: Path) -> bool:
-    """Tell whether what a key takes is a whole number, as of teeth, copies or positions.
+    """Tell whether a key takes a whole number, such as a number of teeth, copies or positions.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def takes_count(path: Path) -> bool:
 
 @cache
 def unit_of(path: Path) -> str:
-    """Return the SI unit of what a key takes, empty where that is a bare number.
+    """Return the SI unit of a key's value; empty for a bare number.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def unit_of(path: Path) -> str:
 
 
 def _kinds(path: Path) -> list[Any]:
-    """Annotations of what is at a key."""
+    """Return the annotations of the value at a key."""
     kinds: list[Any] = [Content]
     for step in path:
         kinds = [below for kind in kinds for below in _below(kind, step)]
@@ -45,7 +45,7 @@ def _kinds(path: Path) -> list[Any]:
 
 
 def _below(kind: Any, step: str | int) -> Iterator[Any]:
-    """Yield the annotations of what is at a key, or a place of a list, of such a value."""
+    """Yield the annotations of what such a value holds at a key or list index."""
     if isinstance(kind, type) and issubclass(kind, Element):
         fields = {about.alias or name: about for name, about in kind.model_fields.items()}
         if step in fields:
@@ -62,7 +62,7 @@ def _below(kind: Any, step: str | int) -> Iterator[Any]:
 
 
 def _dimensions(kind: Any) -> Iterator[Dimension]:
-    """Yield what the values of an annotation may measure."""
+    """Yield the dimensions that an annotation allows."""
     if isinstance(kind, Dimension):
         yield kind
     for inner in get_args(kind):
@@ -70,7 +70,7 @@ def _dimensions(kind: Any) -> Iterator[Dimension]:
 
 
 def _is_whole(kind: Any) -> bool:
-    """Whether a value of an annotation may be a whole number alone, lists and tables apart."""
+    """Return whether an annotation allows a single whole number, outside lists and tables."""
     if kind is int:
         return True
     return get_origin(kind) not in (dict, tuple) and any(map(_is_whole, get_args(kind)))

@@ -1,7 +1,7 @@
-"""What the texts below the fields of elements say: for the schema, and for what is missing.
+"""Descriptions of fields, from the docstrings below them: for the schema and for messages.
 
-They are read from the source when they are first needed. Few cases need them, and reading them
-when the elements are defined would take a quarter of the time in which a command starts.
+They are read from the source when first needed. Few cases need them, and reading them when the
+elements are defined would take a quarter of the start-up time of a command.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def description(model: type[Element], field: str) -> str:
 
 
 def schema_of(model: type[Element], **settings: Any) -> dict[str, Any]:
-    """Return the JSON Schema of an element, with the descriptions of its fields and theirs.
+    """Return the JSON Schema of an element, with descriptions of all fields, nested ones included.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def schema_of(model: type[Element], **settings: Any) -> dict[str, Any]:
 
 
 def _within(model: type[Element], seen: set[type[Element]]) -> Iterator[type[Element]]:
-    """Yield the elements that an element may hold, except those seen, and at last itself."""
+    """Yield the types of elements nested in an element, except those seen, and last its own."""
     for about in model.model_fields.values():
         for inner in elements_in(about.annotation):
             if inner not in seen:

@@ -1,4 +1,4 @@
-"""A case on its way in: its elements, each read on its own, and what is wrong with them."""
+"""A case while it is read: its elements, each read on its own, and their problems."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Draft(Sections):
 
     @property
     def problems(self) -> list[Problem]:
-        """What is wrong with single elements."""
+        """Problems of single elements."""
         return self._problems
 
     def tell(self, path: Path, message: str, allowed: str = "", hint: str = "") -> None:
@@ -49,21 +49,21 @@ class Draft(Sections):
         Raises
         ------
         CaseError
-            If there are more than a case may have.
+            If the largest number of problems is reached.
         """
         self._problems.append(self.problem(path, message, allowed, hint))
         if len(self._problems) >= ALLOWED.problems:
             raise CaseError([*self._problems, self.problem((), MORE, "", "")])
 
     def once(self, name: str, find: Callable[[], Found]) -> Found:
-        """Return what several checks look at, found once all elements have been read."""
+        """Return a value that several checks need, computed once all elements have been read."""
         if name not in self._known:
             self._known[name] = find()
         found: Found = self._known[name]
         return found
 
     def centres(self) -> dict[str, Vector]:
-        """Return the centres of the gears [m], of those for which they are given or follow."""
+        """Return the centres [m] of all gears for which they are given or can be derived."""
         return self.once("centres", super().centres)
 
     def names(self, section: str) -> list[str]:
@@ -90,7 +90,7 @@ def read_draft(
     origin : Origin
         Where its keys are.
     before : (Sections, mapping), optional
-        A case that was read, and its plain data: what of the two is the same object is not read
+        An earlier case and its plain data: parts that are the same objects there are not read
         again.
 
     Returns
@@ -102,7 +102,7 @@ def read_draft(
     draft = Draft.model_construct(**defaults())
     draft._data, draft._origin = data, origin
     if before is not None and [*before[1]["gears"]] != draft.names("gears"):
-        # A name a-b may tell other gears.
+        # With other gears, a name a-b may stand for another pair.
         before = None
     if data and not any(key in fields for key in data):
         draft.tell((), "holds nothing that a case says", choices(fields))
@@ -120,7 +120,7 @@ def read_draft(
 
 
 def as_data(given: Any, file: str = "case", path: Path = ()) -> Any:
-    """Return what a user built in Python as plain data, the same that a file would give.
+    """Return what a user built in Python as the plain data that a file would give.
 
     Parameters
     ----------
@@ -129,17 +129,17 @@ def as_data(given: Any, file: str = "case", path: Path = ()) -> Any:
         out.
     file : str
     path : tuple of str or int
-        Where it is, for messages.
+        Where the object is, for messages.
 
     Returns
     -------
     object
-        Tables by text, lists, texts and numbers.
+        Tables with text keys, lists, texts and numbers.
 
     Raises
     ------
     CaseError
-        If it is nested too deeply, holds too many entries, or nothing that a file can hold.
+        If it is nested too deeply, or holds too many entries or something that no file can hold.
     """
     if len(path) > ALLOWED.depth:
         allowed = f"at most {ALLOWED.depth} tables and lists within one another"
@@ -154,7 +154,7 @@ def as_data(given: Any, file: str = "case", path: Path = ()) -> Any:
         return {key: as_data(item, file, (*path, key)) for key, item in named}
     given = as_text(given)
     if hasattr(given, "dtype") and hasattr(given, "tolist"):
-        # An array of NumPy or a column of pandas, neither of which is imported for this.
+        # A NumPy array or a pandas column; neither library is imported just to test for one.
         given = given.tolist()
     if isinstance(given, list | tuple | range | Iterator):
         return [as_data(item, file, (*path, k)) for k, item in enumerate(given)]
@@ -165,9 +165,9 @@ def as_data(given: Any, file: str = "case", path: Path = ()) -> Any:
 
 
 def defaults() -> dict[str, Any]:
-    """Return what sections are by default; to let Pydantic find out costs more than reading.
+    """Return the default of each section.
 
-    It looks at the signature of what makes each default.
+    Pydantic inspects the signature of every default factory, which takes longer than reading.
     """
     fields = Draft.model_fields.items()
     return {name: {} if about.default_factory else about.default for name, about in fields}
@@ -221,7 +221,7 @@ def _read(draft: Draft, path: Path, value: Any, kind: Any) -> Any:
 
 
 def _with_ends(draft: Draft, path: Path, item: Any) -> Any:
-    """Return an element with the gears that its name tells, or None where it tells none."""
+    """Return an element with the gears that its name gives; add a problem if it gives none."""
     keys = ENDS.get(str(path[0]))
     if keys is None or not isinstance(item, Mapping) or all(key in item for key in keys):
         return item

@@ -1,4 +1,4 @@
-"""What all elements of a case have in common: frozen, strict, with rules across their fields."""
+"""The base class of all elements of a case (frozen, strict, with rules across fields)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from loadshare.case.table import fixed
 from loadshare.readable import CONTROL
 from loadshare.settings import ALLOWED
 
-# Marks a step of pydantic's error locations as the choice of a shape, which is no key of the case.
+# Prefix of the steps in pydantic's error locations that name a shape of a value, not a key.
 MARK = "shape:"
 VALUE, LIST, NESTED, TABLE, LIMITS = (
     f"{MARK}{name}" for name in ("value", "list", "nested", "table", "limits")
@@ -34,7 +34,7 @@ VALUE, LIST, NESTED, TABLE, LIMITS = (
 
 @dataclass(frozen=True)
 class Rule:
-    """A rule across the fields of an element that does not hold.
+    """A broken rule across the fields of an element.
 
     Parameters
     ----------
@@ -58,16 +58,16 @@ class Element(BaseModel):
     model_config = ConfigDict(
         extra="forbid",
         frozen=True,
-        # Most cases hold few kinds of elements; what reads a kind is built with the first of it.
+        # Most cases hold few kinds of elements: the validator of a kind is built when first needed.
         defer_build=True,
         protected_namespaces=(),
     )
 
     WAYS: ClassVar[tuple[tuple[tuple[str, ...], ...], ...]] = ()
-    """For each matter that can be given in several ways, the keys of each way."""
+    """For each property that can be given in several ways, the keys of each way."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield the rules across this element's fields that do not hold.
+        """Yield the rules across this element's fields that are broken.
 
         Yields
         ------
@@ -131,7 +131,7 @@ def written(element: Element) -> dict[str, Any]:
 
 
 def same_but_for_values(one: Any, other: Any) -> bool:
-    """Tell whether two parts of a case differ in physical values at most, wherever both have one.
+    """Tell whether two parts of a case differ at most in physical values that both have.
 
     Parameters
     ----------
@@ -156,13 +156,13 @@ def same_but_for_values(one: Any, other: Any) -> bool:
 
 
 def without_other_ways(model: type[Element], low: Any, high: Any) -> Any:
-    """Return of plain data what stays where other data of the element count before it.
+    """Return `low` without the keys of a property that `high` gives in another way.
 
     Parameters
     ----------
     model : type of Element
     low, high : mapping
-        Keys of an element, and those that count before them.
+        Plain data of an element, and those that take precedence.
     """
     gone: set[str] = set()
     for ways in model.WAYS:
@@ -180,7 +180,7 @@ def elements_in(annotation: Any) -> Iterator[type[Element]]:
 
 
 def shaped(allowed: str, *, limits: tuple[str, ...] = ()) -> Discriminator:
-    """Return what picks the member of a union by the shape of the value: one problem, not several.
+    """Return a discriminator that picks a union's member by shape: one problem, not several.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def _readable(text: str) -> str:
 
 
 Text = Annotated[str, AfterValidator(_readable)]
-"""What is written for people."""
+"""Text for human readers."""
 
 Count = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.samples)]
 Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
@@ -243,7 +243,7 @@ PerPosition = Annotated[
 
 
 def without_default(schema: dict[str, Any]) -> None:
-    """Leave a default that no user would write out of the schema, in place."""
+    """Delete from a schema, in place, a default that no user would write."""
     del schema["default"]
 
 

@@ -15,9 +15,9 @@ from loadshare.errors import CaseError, Problem
 
 _PACKAGE = Path(__file__).parents[1]
 FOLDERS = (_PACKAGE / "cases", _PACKAGE.parents[1] / "cases")
-"""Where they are in an installation, and in a clone."""
+"""The folders of the cases in an installation and in a clone."""
 NO_CASES = ("pairs",)
-"""Folders of files that cases read."""
+"""Folders with files that cases read, which are not cases themselves."""
 
 
 @overload
@@ -35,7 +35,7 @@ def examples(name: str | PathLike[str] | None = None) -> tuple[str, ...] | Case:
     Returns
     -------
     tuple of str, or Case
-        All names without a name; else the case.
+        All names if `name` is left out, else the case.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def example_file(name: str) -> Path:
 def example_text(name: str) -> str:
     """Return a shipped case as a case file that needs no other.
 
-    What extends no other case and reads no other file is the file itself, comments included.
+    A case that extends no other and reads no other file is returned as its file, comments included.
 
     Raises
     ------

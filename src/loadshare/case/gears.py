@@ -1,4 +1,4 @@
-"""Gears and carriers: teeth, bodies, and where they are."""
+"""Gears and carriers: teeth, bodies and positions."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ OF_TEETH = (
     "outside_diameter",
     "ovalisation",
 )
-"""Keys of a gear that say more of its teeth, besides their number and module."""
+"""Keys of a gear that describe its teeth, besides their number and module."""
 USUAL_TEETH = {
     "pressure_angle": math.radians(20.0),
     "helix_angle": 0.0,
@@ -70,22 +70,22 @@ USUAL_TEETH = {
     "tip_alteration": 0.0,
     "thickness_allowance": 0.0,
 }
-"""Shape of teeth of which a gear says nothing, in SI units or modules."""
+"""Default shape of teeth, in SI units or modules."""
 OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
 """Keys of a gear that a carrier does not have."""
 STEEL_EXPANSION = 11.5e-6
 """Thermal expansion where none is given [1/K]."""
 HARMONICS = 7
-"""How many harmonics of a rim there are at most: 2 to 8."""
+"""Largest number of harmonics of a rim: 2 to 8."""
 YOUNG = 206e9
-"""Of steel [Pa]."""
+"""Young's modulus of steel [Pa]."""
 COPIES = range(2, 33)
 """How many copies a gear may have."""
 RADIUS_TOLERANCE = 1e-3
-"""How far a given base radius may be from that of the teeth, as a part of it [-]."""
+"""Largest relative difference between a given base radius and that of the teeth [-]."""
 SYMMETRIC = 1e-9
-"""How far the two entries off the diagonal of a support may be apart for want of written digits, as
-a part of the largest entry [-]."""
+"""Largest difference between the off-diagonal entries of a support, due to rounding in the file,
+relative to the largest entry [-]."""
 STEEPEST = Quantity("45 deg", math.radians(45))
 STEEPEST_HELIX = math.radians(60)
 
@@ -109,11 +109,11 @@ class Tooth(InvoluteTooth):
 
 AXES = "x, y, z, or a list of 3 numbers"
 AGAINST = {"-x": "[-1, 0, 0]", "-y": "[0, -1, 0]", "-z": "[0, 0, -1]"}
-"""Axes that have no word, and how they are given."""
+"""Axes for which there is no word, and how to give them."""
 
 
 def _along(axis: Any) -> Any:
-    """Return an axis as it was given, unless it is one against a word."""
+    """Return an axis as it was given; raise an error for the opposite of a word, such as -x."""
     if isinstance(axis, str) and axis in AGAINST:
         context = {
             "message": "is not one of the allowed words",
@@ -125,7 +125,7 @@ def _along(axis: Any) -> Any:
 
 
 def shortened(length: float) -> str:
-    """Return a tip alteration [m] as a case file would have it, rounded down to a micrometre."""
+    """Return a tip alteration [m] as text for a case file, rounded down to a micrometre."""
     return f'"{math.floor(1e6 * length) / 1e3:.7g} mm"'
 
 
@@ -326,7 +326,7 @@ class Gear(Element):
     """
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what does not hold of the radii and the axis."""
+        """Yield the broken rules on copies, support, rim, teeth, radii and axis."""
         if self.copies is not None:
             hint = "Their angles count from that of the centre, about its pole."
             yield Rule("goes with a centre by distance and angle", ("copies",), hint=hint)
@@ -447,7 +447,7 @@ class Gear(Element):
 
     @cached_property
     def tooth(self) -> Tooth | None:
-        """The teeth, where the gear says what they are."""
+        """The teeth; None where the gear does not describe them."""
         if self.module is None or self.teeth is None or self.type == "face":
             return None
         given = {key: getattr(self, key) for key in USUAL_TEETH}
@@ -463,14 +463,14 @@ class Gear(Element):
 
     @property
     def teeth_and_width(self) -> tuple[Tooth, float]:
-        """The teeth, and their face width [m], of a gear that says both."""
+        """The teeth and their face width [m] of a gear that gives both."""
         if self.tooth is None or self.face_width is None:
             raise ValueError("a gear without teeth or face width")
         return self.tooth, self.face_width.si
 
     @property
     def rim_depth(self) -> float | None:
-        """Thickness of an internal gear's body beyond its teeth [m], where anything tells it."""
+        """Thickness of the rim [m], given or from the outside diameter; None without either."""
         if self.rim is not None:
             return self.rim.si
         if self.tooth is None or self.outside_diameter is None:
@@ -479,9 +479,9 @@ class Gear(Element):
 
     @property
     def rim_stiffnesses(self) -> tuple[float, ...]:
-        """Stiffness of the rim against the harmonics 2, 3, … [N/m], none where it is rigid.
+        """Stiffness of the rim against the harmonics 2, 3, … [N/m]; empty where it is rigid.
 
-        Of a thin ring π E I (n² − 1)²/R³, R its middle and I its section's second moment.
+        For a thin ring π E I (n² − 1)²/R³, with R its mean radius and I its second moment of area.
         """
         if self.ovalisation is None:
             return ()
@@ -496,12 +496,12 @@ class Gear(Element):
 
     @property
     def is_carrier(self) -> bool:
-        """Whether it has no teeth."""
+        """Whether it is a carrier, which has no teeth."""
         return self.type == "carrier"
 
     @property
     def acting_radius(self) -> float:
-        """Lever arm of the tooth force [m]: the base radius, of a face gear also (L1 + L2)/2."""
+        """Lever arm of the tooth force [m]: the base radius, or (L1 + L2)/2 of a face gear."""
         if self.base_radius is not None:
             return self.base_radius.si
         if self.tooth is not None:

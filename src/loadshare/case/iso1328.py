@@ -15,12 +15,12 @@ RANGES = {
     "face width": (4.0, 1200.0, " mm"),
     "helix angle": (0.0, 45.0, " deg"),
 }
-"""For what the standard holds."""
+"""Ranges for which the standard holds."""
 
 
 @dataclass(frozen=True, slots=True)
 class FlankTolerances:
-    """Tolerances of a gear's teeth [m], as they follow, not rounded.
+    """Tolerances of a gear's teeth [m], unrounded.
 
     Attributes
     ----------
@@ -48,8 +48,8 @@ class FlankTolerances:
 def tolerances_of(gear: Gear) -> FlankTolerances | None:
     """Return the tolerances of a gear's teeth; None if no class or no teeth are given.
 
-    The formulas of section 5.3, lengths in mm and tolerances in µm for class 5; each class is
-    wider than the one before by √2.
+    The formulas are those of section 5.3, with lengths in mm and tolerances in µm, for class 5;
+    each class is wider than the one before by a factor of √2.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def tolerances_of(gear: Gear) -> FlankTolerances | None:
 
 
 def outside(gear: Gear) -> Iterator[str]:
-    """Yield for what of a gear's teeth the standard does not hold, in words."""
+    """Yield, in words, each property of a gear's teeth for which the standard does not hold."""
     tooth = gear.tooth
     if tooth is None:
         return

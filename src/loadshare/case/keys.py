@@ -1,4 +1,4 @@
-"""Key paths: where in a case something is, as a tuple of names and as dotted text."""
+"""Key paths: the place of a value in a case, as a tuple of names and as dotted text."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def look_up(data: Any, path: Path) -> Any:
         The value.
     """
     for step in path:
-        # To ask of a table of a file whether it is a mapping takes longer than to look it up.
+        # `dict` comes first: testing a file's table against Mapping takes longer than the look-up.
         if isinstance(data, dict | Mapping):
             data = data.get(step)
         elif isinstance(data, Sequence) and not isinstance(data, str) and isinstance(step, int):
@@ -105,7 +105,7 @@ def look_up(data: Any, path: Path) -> Any:
 
 
 def merge(data: dict[str, Any], over: Mapping[str, Any]) -> None:
-    """Lay keys over those of nested tables, in place; what is no table is replaced."""
+    """Merge keys into nested tables, in place; values that are not tables are replaced."""
     for key, value in over.items():
         below = data.get(key)
         if isinstance(value, Mapping) and isinstance(below, dict):
@@ -136,7 +136,7 @@ def walk(data: Mapping[str, Any], above: Path = ()) -> Iterator[Path]:
 
 
 def values_in(data: Mapping[str, Any], above: Path = ()) -> Iterator[tuple[Path, Any]]:
-    """Yield the path of every value that is no table, with the value."""
+    """Yield the path and value of everything that is not a table."""
     for key, value in data.items():
         if isinstance(value, Mapping):
             yield from values_in(value, (*above, key))
@@ -166,7 +166,7 @@ def covers(pattern: Path, path: Path) -> bool:
 
 @lru_cache(maxsize=16)
 def unmatched(patterns: tuple[str, ...], known: tuple[Path, ...]) -> list[tuple[int, bool]]:
-    """Return the numbers of patterns that cover no key, and whether each is a key path at all."""
+    """Return the indices of patterns that cover no key, and whether each is a key path at all."""
     found = []
     for number, pattern in enumerate(patterns):
         try:
@@ -180,19 +180,19 @@ def unmatched(patterns: tuple[str, ...], known: tuple[Path, ...]) -> list[tuple[
 
 
 def ends_of(name: str, gears: Iterable[str]) -> tuple[str, str] | None:
-    """Return the two gears that a name a-b tells; a gear's own name may hold dashes.
+    """Return the two gears that a name a-b stands for; names of gears may contain dashes.
 
     Parameters
     ----------
     name : str
-        Of a mesh or a shaft.
+        Name of a mesh or a shaft.
     gears : iterable of str
-        Gears that there are.
+        The existing gears.
 
     Returns
     -------
     tuple of (str, str) or None
-        None where the name does not tell two gears.
+        None if the name does not split into two gears, or not in one way only.
     """
     at = [index for index, letter in enumerate(name) if letter == "-"]
     splits = [(name[:index], name[index + 1 :]) for index in at if 0 < index < len(name) - 1]

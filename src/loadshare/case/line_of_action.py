@@ -1,4 +1,4 @@
-"""Lines of action: what meshes say of them, and what follows from where their gears are."""
+"""Lines of action, as meshes give them or as they follow from the positions of the gears."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from loadshare.case.quantity import Quantity
 from loadshare.involute import normal_backlash
 
 WRITTEN = 1e-6
-"""Part of a face by which heights may be off for want of written digits [-]."""
+"""Largest error of heights due to rounding in the file, relative to the face width [-]."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineOfAction:
-    """Where the teeth of a mesh push.
+    """The direction in which the teeth of a mesh push.
 
     Attributes
     ----------
@@ -33,13 +33,13 @@ class LineOfAction:
 
 
 def centre_distance(driver: Gear, offset: Vector) -> float:
-    """Return how far a centre is from a gear's axis [m].
+    """Return the distance of a centre from a gear's axis [m].
 
     Parameters
     ----------
     driver : Gear
     offset : tuple of float
-        The centre, seen from the gear's own [m].
+        The centre, relative to the gear's own [m].
     """
     along = dot(offset, axis_of(driver))
     return math.sqrt(max(dot(offset, offset) - along**2, 0.0))
@@ -53,9 +53,9 @@ def mesh_distance(mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, V
 def facing(
     mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
 ) -> tuple[Gear, Gear]:
-    """Return driver and driven gear, their faces cut to where these overlap.
+    """Return driver and driven gear, with both faces cut to their overlap.
 
-    The same gears where all of the narrower face does, or a gear gives no face width.
+    The gears are unchanged if the narrower face overlaps entirely, or a gear gives no face width.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def facing(
     widths = driver.face_width.si, driven.face_width.si
     offset = minus(centres[mesh.driven], centres[mesh.driver])
     common = 0.5 * sum(widths) - abs(dot(offset, axis_of(driver)))
-    # Heights are written with a few digits.
+    # Heights are rounded in the file.
     if not 0.0 < common < min(widths) * (1.0 - WRITTEN):
         return driver, driven
     cut = {"face_width": Quantity(f"{common!r} m", common)}
@@ -87,10 +87,10 @@ def tangent_distance(driver: Gear, driven: Gear) -> float:
 def line_of_action(
     mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
 ) -> LineOfAction | None:
-    """Return the line of action of a mesh: what is given, else what follows.
+    """Return the line of action of a mesh, as given or else as it follows from the centres.
 
-    cos α_wt = |r_b2 ± r_b1| / a. None where nothing tells the angle. That of a planet always
-    follows: only then do the pins take exactly the torque that sun and ring leave.
+    cos α_wt = |r_b2 ± r_b1| / a. None if the angle is neither given nor follows. For a planet it is
+    always computed: only then do the pins take exactly the torque that sun and ring leave.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def line_of_action(
 def backlash_of_teeth(
     mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
 ) -> float | None:
-    """Return the backlash that teeth leave along the line of action [m]; None if none are given.
+    """Return the backlash that the teeth leave along the line of action [m]; None without teeth.
 
     The line of action lies in the transverse plane: j_bn / cos β_b.
 
@@ -129,7 +129,7 @@ def backlash_of_teeth(
     driver, driven = gears[mesh.driver], gears[mesh.driven]
     if driver.tooth is None or driven.tooth is None:
         return None
-    # Written digits may leave teeth that touch overlapping a little.
+    # Rounding in the file may make teeth that touch overlap slightly.
     left = normal_backlash(driver.tooth, driven.tooth, mesh_distance(mesh, gears, centres))
     return max(left / math.cos(driver.tooth.base_helix_angle), 0.0)
 

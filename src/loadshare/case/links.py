@@ -1,4 +1,4 @@
-"""What joins gears or holds them: shafts, clearance splines, limit rings, bearings."""
+"""Elements that join or hold gears: shafts, clearance splines, limit rings, bearings."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Shaft(Element):
     """Angle by which the second end lags the first when unloaded [angle]."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what does not hold of stiffness and dimensions."""
+        """Yield the broken rules on stiffness and dimensions."""
         sizes = [key for key in ("diameter", "length") if getattr(self, key) is not None]
         if self.stiffness is not None:
             for key in ("diameter", "length", "bore", "shear_modulus"):
@@ -106,7 +106,7 @@ class Shaft(Element):
     def torsional_stiffness(self) -> float:
         """Torsional stiffness [N·m/rad], infinite where rigid.
 
-        What is not given is G π (d⁴ − d_i⁴)/(32 l) of the sections, in series.
+        If not given, it is that of the sections in series, each G π (d⁴ − d_i⁴)/(32 l).
         """
         if self.stiffness is not None:
             return math.inf if isinstance(self.stiffness, str) else self.stiffness.si
@@ -151,7 +151,7 @@ class Spline(Element):
     WAYS = ((("friction_force",), ("friction", "normal_force", "radius")),)
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what does not hold of the ways to give the friction."""
+        """Yield the broken rules on how the friction is given."""
         allowed = "friction_force; friction and normal_force; or friction and radius"
         ways = [{"friction_force"}, {"friction", "normal_force"}, {"friction", "radius"}]
         given = self.given("friction_force", "friction", "normal_force", "radius")
@@ -234,7 +234,7 @@ class Ring(Element):
     WAYS = ((("neighbours", "float", "clearance"), ("radius", "offset")),)
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what does not hold of the two forms."""
+        """Yield the broken rules on the two forms, drum and circle."""
         forms = "drum (neighbours, float, clearance) or circle (radius, offset)"
         names = ("neighbours", "float_", "clearance")
         drum = [name.rstrip("_") for name in names if name in self.model_fields_set]
@@ -272,7 +272,7 @@ class RollingElements(Element):
     """Angle of the line of contact to the radial plane [angle]."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what does not hold of the elements."""
+        """Yield the broken rules on the elements."""
         kinds = self.given("balls", "rollers")
         if len(kinds) != 1:
             allowed = "balls and diameter, or rollers and length"
@@ -286,7 +286,7 @@ class RollingElements(Element):
 
     @property
     def law(self) -> tuple[float, float]:
-        """K [N/m^power], and its power."""
+        """K [N/m^power] and the power of F = K δ^power."""
         count = self.balls or self.rollers or 0
         size = self.diameter or self.length
         if size is None:
@@ -323,7 +323,7 @@ class Bearing(Element):
     WAYS = (tuple((law,) for law in BEARING_LAWS),)
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what does not hold of the laws."""
+        """Yield the broken rules on the laws."""
         given = self.given(*BEARING_LAWS)
         if not given:
             yield Rule("is missing", ("stiffness",), f"one of {', '.join(BEARING_LAWS)}")
@@ -332,7 +332,7 @@ class Bearing(Element):
 
     @property
     def wall(self) -> tuple[float, float]:
-        """K [N/m^power] from the clearance on, infinite for a rigid bearing, and its power."""
+        """K [N/m^power] beyond the clearance, infinite for a rigid bearing, and the power."""
         if self.rolling is not None:
             return self.rolling.law
         if self.ball_stiffness is not None:

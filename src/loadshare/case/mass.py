@@ -1,4 +1,4 @@
-"""Mass and polar inertia of gears: what is given, else what follows from teeth and dimensions."""
+"""Mass and polar inertia of gears, as given or else from teeth and dimensions."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ STEEL = 7850.0
 
 
 def mass_of(gear: Gear) -> float | None:
-    """Return the mass of a gear [kg]; None where nothing tells it.
+    """Return the mass of a gear [kg]; None if it is not given and does not follow.
 
-    Rings of the face width: an external gear reaches from its bore to its reference circle, an
-    internal one from its reference circle to the outside of its body. Of a gear with a thin web
-    only the rim has the face width, and the web its own thickness. Teeth are as much above the
-    reference circle as they leave below it, except for the profile shift and the clearance at the
-    root; hubs, shafts and holes are not seen.
+    A gear is taken as rings of its face width: an external gear from its bore to its reference
+    circle, an internal one from its reference circle to the outside of its body. With a thin web,
+    only the rim has the face width; the web has its own thickness. Teeth above the reference circle
+    fill the spaces below it, except for profile shift and root clearance; hubs, shafts and holes
+    are neglected.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ def mass_of(gear: Gear) -> float | None:
 
 
 def inertia_of(gear: Gear) -> float | None:
-    """Return the polar moment of inertia of a gear [kg m²]; None where nothing tells it.
+    """Return the polar moment of inertia of a gear [kg m²]; None if its teeth do not give it.
 
-    That of the rings of which `mass_of` tells the mass; a given mass is spread like theirs.
+    It is that of the rings of `mass_of`; a given mass is distributed as in these.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def inertia_of(gear: Gear) -> float | None:
 
 
 def _rings(gear: Gear) -> Iterator[tuple[float, float, float]]:
-    """Mass [kg], inner and outer radius [m] of the rings that make up a gear."""
+    """Yield mass [kg], inner and outer radius [m] of the rings that make up a gear."""
     tooth = gear.tooth
     if tooth is None or gear.face_width is None:
         return

@@ -1,4 +1,4 @@
-"""What was measured on the machine: shares or torques, and how surely."""
+"""Measurements on the machine: shares or torques, and their uncertainties."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Measurement(Element):
     """Where the figures come from."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what is missing of figures and uncertainties."""
+        """Yield missing figures and uncertainties."""
         given = [key for key in COEFFICIENTS if getattr(self, key)]
         if not given and not self.torque:
             yield Rule("holds no figure", allowed=", ".join(("torque", *COEFFICIENTS)))

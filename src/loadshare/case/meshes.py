@@ -1,4 +1,4 @@
-"""Meshes and the laws by which they yield."""
+"""Meshes and their deformation laws."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Law(Element):
     for gears with other teeth."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield the positions at which the mesh would be rigid."""
+        """Yield a broken rule if the mesh would be rigid at a position."""
         b, c = values(self.b), values(self.c)
         rigid = [k for k in range(max(len(b), len(c))) if b[k % len(b)] == c[k % len(c)] == 0]
         if rigid:
@@ -112,7 +112,7 @@ class Table(Element):
     """Deflections at the driver, increasing [angle]; one list, or one list per position."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield the lists that do not increase or do not fit."""
+        """Yield the lists that begin at 0, do not increase or differ in length."""
         for path, points in (("torque",), self.torque), *self._curves():
             if points and points[0].si == 0.0:
                 yield Rule("begins at 0, which is implied", path, hint=IMPLIED)
@@ -213,7 +213,7 @@ class Mesh(Element):
     )
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what does not hold of laws, gaps and backlashes."""
+        """Yield the broken rules on laws, gaps, backlashes and the helix angle."""
         laws = self.given(*LAWS)
         if not laws:
             yield Rule("has no deformation law", allowed=f"one of {', '.join(LAWS)}")
@@ -254,17 +254,17 @@ class Mesh(Element):
 
     @property
     def law_is_computed(self) -> bool:
-        """Whether the law is not given in numbers, but by what it is computed from."""
+        """Whether the law comes from a file or a formula, not from numbers in the case."""
         return bool(self.geometry or self.law_file or isinstance(self.law, str))
 
     @property
     def has_backlash(self) -> bool:
-        """Whether there is a backlash, or one that follows from the teeth."""
+        """Whether there is a backlash above 0, or one that follows from the teeth."""
         known = (self.backlash, self.normal_backlash)
         return any(isinstance(b, str) or (b is not None and b.si > 0.0) for b in known)
 
     def per_position(self) -> Iterator[tuple[Path, object]]:
-        """Yield what may be given once or once per position, with its key."""
+        """Yield key and value of everything that may be given once or once per position."""
         yield from (((key,), getattr(self, key)) for key in ("stiffness", "gap"))
         if self.power_law is not None:
             yield from ((("law", key), getattr(self.power_law, key)) for key in "abc")

@@ -1,4 +1,4 @@
-"""The case: what a user says about a transmission, checked, with every value as it was written."""
+"""The case: a user's description of a transmission, checked, with every value as written."""
 
 from __future__ import annotations
 
@@ -69,14 +69,14 @@ class Case(Content):
         self._take(as_data({**(content or {}), **sections}, origin.file), origin, name, None)
 
     def _take(self, data: dict[str, Any], origin: Origin, name: str, before: Case | None) -> None:
-        """Read plain data, except what it shares with an earlier case, and check all of it."""
+        """Read and check plain data, except what is shared with an earlier case."""
         data, origin = with_copies(data, origin)
         draft = read_draft(data, origin, None if before is None else (before, before._data))
         problems = [*draft.problems, *check(draft, None if draft.problems else before)]
         if problems:
             raise CaseError(problems)
         given = {n: getattr(draft, n) for n in Content.model_fields if n in data}
-        # Each section was read by itself: to read all of them once more would say nothing new.
+        # Each section has been validated: validating all of them again would find nothing new.
         content = {name: fixed(section) for name, section in {**defaults(), **given}.items()}
         made = Content.model_construct(_fields_set={*given}, **content)
         for slot in ("__dict__", "__pydantic_fields_set__", "__pydantic_extra__"):
@@ -170,26 +170,26 @@ class Case(Content):
         return changed
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy, as pydantic does; what is to be changed in it, `replace` changes.
+        """Return a copy, as pydantic does; use `replace` to change something in it.
 
         Raises
         ------
         TypeError
-            If there is something: it would be checked by nobody, and written to no file.
+            If there are updates, which would be neither checked nor written to a file.
         """
         if update:
             raise TypeError("cases do not change: Case.replace makes one of other values")
         return super().model_copy(deep=deep)
 
     def differences(self, before: Case) -> Iterator[tuple[Path, Any, Any]]:
-        """Yield where the case differs from another: the key, and its value in both.
+        """Yield each key in which the case differs from an earlier one, with its value in both.
 
-        None where nothing does. Where one was made from the other by `replace`, this takes no time.
+        A value is None where the key is missing. For a case that `replace` made this takes no time.
         """
         return iter(differing(before._data, self._data))
 
     def is_assumed(self, key: str) -> bool:
-        """Tell whether an input is marked as assumed, itself or as part of what is.
+        """Tell whether an input, or a table that holds it, is marked as assumed.
 
         Parameters
         ----------
@@ -235,7 +235,7 @@ ELEMENTS = ("gears", "meshes", "shafts", "splines", "rings", "bearings", "errors
 
 
 def _view(case: Case) -> View:
-    """Tell what a case is, how it is loaded, and the first of its gears."""
+    """Return the view of a case: its title, load and gears."""
     counts = {name: len(getattr(case, name)) for name in ELEMENTS}
     facts = (
         ("title", case.title),

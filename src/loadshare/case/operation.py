@@ -92,7 +92,7 @@ class Operating(Element):
     """Thermal expansion of the housing; that of steel when left out [1/temperature]."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield what does not hold of torque, power and speed."""
+        """Yield the broken rules on torque, power, speed, input and output."""
         allowed = "torque, or power and speed"
         if self.torque is not None and self.power is not None:
             yield Rule("cannot be combined with torque: give one or the other", ("power",), allowed)

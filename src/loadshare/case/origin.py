@@ -13,7 +13,7 @@ from loadshare.input import real
 from loadshare.settings import ALLOWED
 
 CHANGES = "changes"
-"""Stands for the file of what `Case.replace` changes."""
+"""Stands in for the file of keys that `Case.replace` changed."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Origin:
     files : mapping
         File of a key and of all below it, by key path.
     outside : bool
-        Whether it may name files outside of the folder of `file`.
+        Whether the case may name files outside the folder of `file`.
     """
 
     file: str = "case"
@@ -37,17 +37,17 @@ class Origin:
     def outside_problem(self, named: FilePath, file: str, key: str, given: str) -> Problem | None:
         """Return a problem if a file named by a case must not be read, else None.
 
-        A case from elsewhere must not make its reader open other files; what its reader changes is
-        the reader's own word. Links are followed first.
+        A case from elsewhere must not make its user open other files; a file that the user names in
+        a change is allowed. Links are resolved first.
 
         Parameters
         ----------
         named : pathlib.Path
             The file.
         file : str
-            In which it is named.
+            The file that names it.
         key, given : str
-            Where, and how.
+            The key that names it, and the text given there.
         """
         if "\0" in str(named) or any(len(part) > ALLOWED.file_name for part in named.parts):
             return Problem(file, key, given, "is no name of a file", "the name of a file")
@@ -67,7 +67,7 @@ class Origin:
         Parameters
         ----------
         path : tuple of str or int
-            Its path; of a key that does not exist, the table that would hold it counts.
+            Its path; for a key that does not exist, that of the table which would hold it counts.
 
         Returns
         -------
@@ -82,7 +82,7 @@ class Origin:
     def problem(
         self, data: Mapping[str, object], path: Path, message: str, allowed: str, hint: str
     ) -> Problem:
-        """Return a problem with a key, with its file and what was given.
+        """Return a problem with a key, including its file and the value given.
 
         Parameters
         ----------
@@ -99,6 +99,6 @@ class Origin:
             The problem.
         """
         value = look_up(data, path)
-        # A whole element in a message would bury it.
+        # A whole table would bury the message.
         given = "" if isinstance(value, Mapping) else as_given(value)
         return Problem(self.of(path), dotted(path), given, message, allowed, hint)

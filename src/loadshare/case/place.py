@@ -1,4 +1,4 @@
-"""Where gears are: centres and axes as vectors."""
+"""Positions of gears: centres and axes as vectors."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Vector: TypeAlias = tuple[float, float, float]
 Placed: TypeAlias = Mapping[str, Vector]
 """Centres that are known, by gear."""
 Near: TypeAlias = Mapping[str, Gear]
-"""Gears that mesh with one, by name."""
+"""Gears that mesh with a given one, by name."""
 
 COAXIAL = 1e-6
-"""How far centres on one axis may be apart, as a part of the size of what is there [-]."""
+"""Largest distance between centres on one axis, relative to a size of the gear or mesh [-]."""
 
 _AXES: dict[str, Vector] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -45,9 +45,10 @@ def axis_of(gear: Gear) -> Vector:
 def centres_of(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> dict[str, Vector]:
     """Return the centres of gears [m].
 
-    A distance that is left out is that at which the teeth mesh without backlash: with the pole
-    itself, else with gears on the pole's axis; there the largest that external gears need, as a
-    smaller one has no place for the teeth, else the smallest that internal gears leave.
+    A distance that is left out is the one at which the teeth mesh without backlash: with the pole
+    itself, else with gears on the pole's axis. Of these, external pairs count first, and the
+    largest distance that they need, as a smaller one has no room for the teeth; else the smallest
+    of internal pairs.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def centres_of(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> dict[st
     Returns
     -------
     dict of str to tuple of float
-        The centres, by name; without those given from a gear that is not there or from themselves,
+        The centres, by name. Left out are gears whose pole does not exist or depends on themselves,
         and those whose distance is neither given nor follows.
     """
     placed: dict[str, Vector] = {}
@@ -72,7 +73,7 @@ def centres_of(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> dict[st
     while True:
         placed |= ready
         waiting = {n: g for n, g in gears.items() if n not in placed and _has_pole(g, placed)}
-        # What is given comes first: only then is it known what is on an axis.
+        # Given centres are placed first: what lies on an axis is known only then.
         for way in (_given, _from_pole, _from_axis):
             ready = {
                 name: centre
@@ -96,7 +97,7 @@ def minus(a: Vector, b: Vector) -> Vector:
 
 
 def on_axis(pole: Vector, centre: Vector, size: float) -> bool:
-    """Tell whether a centre is on the axis of a pole, along z; its gear has a size [m]."""
+    """Tell whether a centre is on the axis of a pole along z, for a gear or mesh of a size [m]."""
     return math.hypot(centre[0] - pole[0], centre[1] - pole[1]) <= COAXIAL * size
 
 
@@ -111,7 +112,7 @@ def _has_pole(gear: Gear, placed: Placed) -> bool:
 
 
 def _given(gear: Gear, _partners: Near, placed: Placed) -> Vector | None:
-    """The centre of a gear, where it is given."""
+    """Return the centre of a gear if it is given."""
     centre = gear.centre
     if not isinstance(centre, Polar):
         x, y, z = (*(part.si for part in centre), 0.0)[:3]
@@ -120,7 +121,7 @@ def _given(gear: Gear, _partners: Near, placed: Placed) -> Vector | None:
 
 
 def _from_pole(gear: Gear, partners: Near, placed: Placed) -> Vector | None:
-    """The centre of a gear that meshes with its pole."""
+    """Return the centre of a gear that meshes with its pole."""
     centre = gear.centre
     if not isinstance(centre, Polar) or centre.about is None or centre.about not in partners:
         return None
@@ -129,7 +130,7 @@ def _from_pole(gear: Gear, partners: Near, placed: Placed) -> Vector | None:
 
 
 def _from_axis(gear: Gear, partners: Near, placed: Placed) -> Vector | None:
-    """The centre of a gear that meshes with others on its pole's axis."""
+    """Return the centre of a gear that meshes with others on its pole's axis."""
     centre = gear.centre
     if not isinstance(centre, Polar) or centre.about in partners:
         return None
@@ -149,7 +150,7 @@ def _from_axis(gear: Gear, partners: Near, placed: Placed) -> Vector | None:
 
 
 def _apart(one: Gear, two: Gear) -> float | None:
-    """Distance at which two gears mesh without backlash [m], where their teeth tell it."""
+    """Return the distance at which two gears mesh without backlash [m], if their teeth give it."""
     if one.tooth is None or two.tooth is None or not (along_z(one) and along_z(two)):
         return None
     try:

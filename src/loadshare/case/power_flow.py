@@ -1,4 +1,4 @@
-"""Which way the torque runs through the meshes: along their names, or against them."""
+"""Direction of the torque through the meshes: along their names, or against them."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ Steps = list[tuple[str, str]]
 def steps(case: Sections) -> Steps:
     """Return the steps of the torque: driver to driven over meshes, either way over shafts.
 
-    In a train with planetary sets it goes either way over all meshes and pins: which member drives
-    is no matter of names, nor which way the power of a loop over several sets goes round.
+    In a train with planetary sets it goes either way over all meshes and pins: names decide neither
+    which member drives nor which way power circulates in a loop over several sets.
     """
     found = [mesh.ends for mesh in case.meshes.values()]
     both = [shaft.ends for shaft in case.shafts.values()]
@@ -29,18 +29,18 @@ def steps(case: Sections) -> Steps:
 
 
 def has_sets(gears: Mapping[str, Gear]) -> bool:
-    """Tell whether a train has planetary sets, in which the load tells the flanks."""
+    """Tell whether a train has planetary sets, where the load decides which flanks are pressed."""
     return any(gear.carrier for gear in gears.values())
 
 
 def rides_on(gears: Mapping[str, Gear], *names: str) -> str | None:
-    """Return the carrier on which one of some gears rides, if any."""
+    """Return the carrier of the first of these gears that rides on one, or None."""
     riding = (gears[name].carrier for name in names if name in gears)
     return next((carrier for carrier in riding if carrier), None)
 
 
 def on_one_shaft(gears: Iterable[str], shafts: Iterable[tuple[str, str]]) -> list[tuple[str, ...]]:
-    """Return the gears that shafts join, in their order, and each of the others by itself."""
+    """Return the groups of gears that shafts join, in the given order; others are groups of one."""
     order = {name: k for k, name in enumerate(gears)}
     together = {name: {name} for name in order}
     for one, other in shafts:
@@ -53,9 +53,9 @@ def on_one_shaft(gears: Iterable[str], shafts: Iterable[tuple[str, str]]) -> lis
 def nearest_first(
     carriers: Mapping[str, str | None], links: Iterable[tuple[str, str]], first: str
 ) -> list[str]:
-    """Return all gears, those nearer to one first, and as near by name, however they are written.
+    """Return all gears, sorted by their number of links from the first, then by name.
 
-    Over meshes and shafts, and over pins from gears to their carriers.
+    Links are meshes, shafts and the pins between gears and their carriers.
     """
     beside: dict[str, set[str]] = {name: set() for name in carriers}
     pins = [(name, carrier) for name, carrier in carriers.items() if carrier]
@@ -72,7 +72,7 @@ def nearest_first(
 
 
 def reach(sources: Iterable[str], taken: Steps, avoiding: str | None = None) -> set[str]:
-    """Return the gears that steps lead to, the sources among them, through all gears but one."""
+    """Return the gears reached by steps from the sources, which are included, avoiding one gear."""
     ahead: dict[str, list[str]] = {}
     for a, b in taken:
         ahead.setdefault(a, []).append(b)
@@ -87,12 +87,12 @@ def reach(sources: Iterable[str], taken: Steps, avoiding: str | None = None) -> 
 
 
 def backwards(taken: Steps) -> Steps:
-    """Return the same steps the other way."""
+    """Return the same steps in the opposite direction."""
     return [(b, a) for a, b in taken]
 
 
 def from_the_other_end(case: Sections) -> bool:
-    """Tell whether the input is where the meshes' names put the output; not without a load."""
+    """Tell whether the input is where the meshes' names put the output; False without a load."""
     operating = case.operating
     if operating is None:
         return False
@@ -102,10 +102,10 @@ def from_the_other_end(case: Sections) -> bool:
 
 
 def against_the_names(case: Sections) -> tuple[bool, ...]:
-    """Tell for every input torque whether it presses the flanks that the meshes' names do not.
+    """Tell for every input torque but 0 whether it presses the flanks against the meshes' names.
 
-    It does where the torque is negative (the input brakes), and where the input is at the other
-    end; both together press the usual flanks.
+    It does if the torque is negative (the input brakes) or the input is at the other end; with
+    both, the usual flanks are pressed.
     """
     turned = from_the_other_end(case)
     torques = case.operating.input_torque if case.operating else ()

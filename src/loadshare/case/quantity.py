@@ -1,4 +1,4 @@
-"""Physical values: what the user wrote, and what it is in SI."""
+"""Physical values: the user's text and its value in SI units."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 NUMBER = r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?"
 UNIT = r"(?:1\s*/|[^\s\d.,])"
-"""How a unit begins; no number goes before it but the one of a reciprocal."""
-# A number is read whole: with 1e-6, no unit begins at its exponent.
+"""Pattern of the beginning of a unit; the only number before it is the 1 of a reciprocal."""
+# A number is matched as a whole, so that no unit begins at the exponent of 1e-6.
 _QUANTITY = re.compile(rf"\s*(?>({NUMBER}|[+\-−]?(?:inf|nan)))\s*(|{UNIT}.*?)\s*", re.DOTALL)
 
 
@@ -56,7 +56,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Dimension:
-    """What a physical value of a field must measure; the annotation that makes pydantic read it.
+    """The dimension of a field's physical value; the annotation by which pydantic reads it.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Dimension:
     example : str
         A value as a user would write it.
     at_least, above : float or None
-        Lower bounds of the value in SI units, themselves allowed and not.
+        Lower bounds of the value in SI units, inclusive and exclusive.
     at_most : Quantity or None
         Upper bound.
     words : tuple of str
@@ -89,7 +89,7 @@ class Dimension:
         above: float | None = None,
         at_most: Quantity | None = None,
     ) -> Dimension:
-        """Return this dimension with bounds [lower ones in SI units]."""
+        """Return this dimension with bounds; lower ones are in SI units."""
         return replace(self, at_least=at_least, above=above, at_most=at_most)
 
     def or_words(self, *words: str) -> Dimension:
@@ -112,7 +112,7 @@ class Dimension:
         Raises
         ------
         pydantic_core.PydanticCustomError
-            If it is neither, or out of bounds; the message is for the user.
+            If it is none of these, or out of bounds; the message is for the user.
         """
         if isinstance(given, str) and given in self.words:
             return given
@@ -179,7 +179,7 @@ class Dimension:
         return f'{words}{"or " if words else ""}{self.kind} such as "{example}"'
 
     def _unknown(self, number: str, unit: str, part: str) -> PydanticCustomError:
-        """Return the problem of a unit of which a part is not known."""
+        """Return the problem of a unit with an unknown part."""
         if unit in OTHERS:
             hint = _rewritten(number, unit)
             return self._problem(f"the unit {unit} is not known", hint=hint)
@@ -228,7 +228,7 @@ _GROUPED = re.compile(
 
 
 def _slip_in(text: object) -> str:
-    """Return a sentence on what keeps a text from being a number with a unit, if it is plain."""
+    """Return a hint at why a text is not a number with a unit, if the reason is obvious."""
     if not isinstance(text, str):
         return ""
     number, _, unit = text.strip().partition(" ")
@@ -240,7 +240,7 @@ def _slip_in(text: object) -> str:
 
 
 def _rewritten(number: str, unit: str) -> str:
-    """Return a sentence on what to write for a unit that goes by another name."""
+    """Return a hint at how to write a unit that has another name here."""
     other = OTHERS[unit]
     return f"Write {other}." if ":" in other else f'Write "{number} {other}".'
 
@@ -256,21 +256,21 @@ def as_text(given: object) -> object:
     Returns
     -------
     object
-        Number and unit as text, an array as a list of them; a scalar of NumPy as Python's;
-        something else unchanged.
+        Number and unit as text, for an array as a list of texts; a NumPy scalar as a Python number;
+        anything else unchanged.
     """
     if isinstance(given, Quantity):
         return given.text
     magnitude, units = getattr(given, "magnitude", None), getattr(given, "units", None)
     if magnitude is None or units is None:
-        # To ask for NumPy's types would import it for every command.
+        # Testing for NumPy's types would import it for every command.
         is_scalar = hasattr(given, "dtype") and getattr(given, "ndim", None) == 0
         return given.item() if is_scalar else given  # type: ignore[attr-defined]
     return _texts(magnitude.tolist() if getattr(magnitude, "ndim", 0) else magnitude, f"{units:~C}")
 
 
 def _texts(magnitude: Any, unit: str) -> object:
-    """A number, or lists of them, with their unit."""
+    """Return a number, or each number in nested lists, as text with its unit."""
     if isinstance(magnitude, list):
         return [_texts(number, unit) for number in magnitude]
     return f"{float(magnitude)!r} {unit}".strip()

@@ -29,7 +29,7 @@ from loadshare.settings import ALLOWED
 
 _PLACE = re.compile(r"(.*) \(at (.*)\)", re.DOTALL)
 _NAMES = re.compile(r"\((?:'(?:\\.|[^'\\])*',? ?)+\)")
-"""A key as the parser tells it."""
+"""A key path as the TOML parser prints it in messages."""
 NO_FILE = "no such file or directory"
 _DEEP = f"is nested deeper than {ALLOWED.depth} tables and lists"
 _STEP = r"""(?:[\w-]++|"(?:\\.|[^"\\\n])*+"|'[^'\n]*+')"""
@@ -39,11 +39,11 @@ _LONG_KEY = re.compile(
     r"""|"{3}(?s:\\.|[^"\\]|"(?!""))*+(?:"{3}|\Z)|'{3}(?:[^']|'(?!''))*+(?:'{3}|\Z)"""
     rf"""|(?!{_STEP}{_NEXT}{{{ALLOWED.depth}}}){_STEP}{_NEXT}*+|(?!{_STEP})["'])*+[\w"'-]"""
 )
-"""Text up to a key of more steps than tables may nest; comments and strings hold none."""
+"""Matches text up to a key with more steps than tables may nest, past comments and strings."""
 
 
 def opened(case: Case | str | FilePath) -> Case:
-    """Return a case as it says, read from its file if a path is given."""
+    """Return a case; if a path is given, read it from its file."""
     return case if isinstance(case, Case) else load_case(case)
 
 
@@ -59,11 +59,11 @@ def load_case(
     path : str or pathlib.Path
         The file.
     allow_outside : bool
-        Whether the case may name files outside of its folder: what it extends, laws and teeth of
-        meshes. So may all cases where the environment variable ``LOADSHARE_ALLOW_OUTSIDE`` is set.
+        Whether the case may name files outside its folder: what it extends, laws and teeth of
+        meshes. All cases may if the environment variable ``LOADSHARE_ALLOW_OUTSIDE`` is set.
     changes : mapping of str to object, optional
-        New values by dotted key path, as `Case.replace` takes them. They are made before the case
-        is checked, so that they may give what the file leaves open, or correct it.
+        New values by dotted key path, as `Case.replace` takes them. They are applied before the
+        case is checked, so they may add what the file lacks, or correct it.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def load_case(
     CaseError
         With all problems of the case at once.
     TypeError
-        If it is no path.
+        If `path` is not a path.
     """
     if not isinstance(path, str | PathLike):
         kind = type(path).__name__
@@ -93,7 +93,7 @@ def load_case(
 
 
 def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -> Draft:
-    """Read what can be read of a case file, for a picture of a case that is not right yet.
+    """Read as much of a case file as possible, to draw a case that still has problems.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -
     Raises
     ------
     CaseError
-        If the file, or one that it extends, cannot be read at all, or a change does not exist.
+        If the file, or one that it extends, cannot be read at all, or a changed key does not exist.
     """
     path = FilePath(path)
     data, origin, problems = _changed(path, _origin(path), changes)
@@ -126,11 +126,11 @@ def _origin(path: FilePath, allow_outside: bool = False) -> Origin:
 def _changed(
     path: FilePath, origin: Origin, changes: Mapping[str, Any] | None
 ) -> tuple[dict[str, Any], Origin, list[Problem]]:
-    """Return the data of a file as changed, where its keys are, and problems to be outlived."""
+    """Return a file's data as changed, the origin of its keys, and non-fatal problems."""
     data, files, problems = _read(path, (), origin)
     origin = replace(origin, files=files)
     if changes:
-        # Changes name single copies.
+        # Changes may name single copies.
         data, origin = with_copies(as_data(data, str(path)), origin)
         data, origin = revise(data, origin, changes)
     return data, origin, problems
@@ -139,7 +139,7 @@ def _changed(
 def _read(
     path: FilePath, chain: tuple[FilePath, ...], origin: Origin
 ) -> tuple[dict[str, Any], dict[Path, str], list[Problem]]:
-    """Return the merged data of a file, the file of each key, and problems that can be outlived."""
+    """Return a file's merged data, the file of each key, and non-fatal problems."""
     own = read_toml(path)
     kind = own.get("kind")
     if isinstance(kind, str) and kind in KINDS:
@@ -192,7 +192,7 @@ def _remove(data: dict[str, Any], files: dict[Path, str], key: object) -> tuple[
 
 
 def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: Origin) -> FilePath:
-    """Return the file that `path` extends; `chain` is how it was reached itself."""
+    """Return the file that `path` extends; `chain` lists the files up to and including `path`."""
     given = as_given(base)
     if not isinstance(base, str):
         allowed = 'a file such as "base.toml"'
@@ -217,7 +217,7 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: 
 
 
 def read_toml(path: FilePath) -> dict[str, Any]:
-    """Return what a file itself says.
+    """Return the content of one file, without what it extends.
 
     Parameters
     ----------
@@ -255,7 +255,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
     except RecursionError:
         why = _DEEP
     except ValueError:
-        # Of TOML that is none, and of numbers with thousands of digits.
+        # Python refuses whole numbers with thousands of digits.
         why = "holds a number that cannot be read"
     else:
         if _depth(parsed) <= ALLOWED.depth:
@@ -267,9 +267,10 @@ def read_toml(path: FilePath) -> dict[str, Any]:
 
 @lru_cache(maxsize=8)
 def _parsed(text: str) -> dict[str, Any]:
-    """Return what a text of TOML says, which is not to be changed: many cases extend one file.
+    """Return the data of a TOML text; not to be changed, as it is kept for other cases.
 
-    Memory and time grow with the square of a key's steps: 100 000 of them take 20 GB.
+    Keys with too many steps are refused first: memory and time grow with the square of the steps,
+    and 100 000 of them take 20 GB.
 
     Raises
     ------
@@ -282,14 +283,14 @@ def _parsed(text: str) -> dict[str, Any]:
 
 
 def _copied(holder: Any) -> Any:
-    """Return a table or a list, and those within, as new ones."""
+    """Return a copy of a table or a list and of all tables and lists in it."""
     if isinstance(holder, dict):
         return {k: _copied(v) if isinstance(v, dict | list) else v for k, v in holder.items()}
     return [_copied(v) if isinstance(v, dict | list) else v for v in holder]
 
 
 def _depth(data: object) -> int:
-    """Tables and lists within one another; dotted headers may be longer than any call stack."""
+    """Return the nesting depth, without recursion: dotted headers may outgrow any call stack."""
     depth, layer = 0, [data]
     while layer and depth <= ALLOWED.depth:
         inner = [v for v in layer if isinstance(v, dict | list)]

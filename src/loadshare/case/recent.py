@@ -1,4 +1,4 @@
-"""What was made of the last few cases, for those who solve them again."""
+"""Objects made from the last few cases, kept in case these are solved again."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ Made = TypeVar("Made")
 
 
 class Recent(Generic[Made]):
-    """What was made of the last few cases: of a case itself, not of one that says the same."""
+    """Objects made from the last few cases, found by identity of the case, not by equality."""
 
     def __init__(self) -> None:
-        # Replaced as a whole: other threads may be looking.
+        # Replaced as a whole: other threads may be reading it.
         self._made: tuple[tuple[Case, object, Made], ...] = ()
 
     def __iter__(self) -> Iterator[Made]:
-        """What was made, the last first."""
+        """Iterate over the objects, the newest first."""
         return (made for _, _, made in self._made)
 
     def of(self, case: Case | None, what: object = None) -> Made | None:
-        """Return what was made of a case; None where it is not known.
+        """Return the object made from a case; None if it is not kept.
 
         Parameters
         ----------
         case : Case or None
         what : object
-            To distinguish it from what else was made of it.
+            Distinguishes several objects made from one case.
         """
         return next((m for c, w, m in self._made if c is case and w == what), None)
 
     def keep(self, case: Case, made: Made, what: object = None) -> Made:
-        """Keep what was made of a case, and return it."""
+        """Keep an object made from a case, and return it."""
         self._made = ((case, what, made), *self._made)[: JOB.recent]
         return made

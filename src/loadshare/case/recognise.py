@@ -1,4 +1,4 @@
-"""What a file is that was given in place of another, by its beginning and not by its name."""
+"""Recognition of files given in place of a case, by their content rather than their name."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ KINDS = {
     "geometry",
     "law": "is the law of a mesh, which names it by law_file",
 }
-"""TOML files that are no cases, by what they say of themselves."""
+"""TOML files that are not cases, by their key `kind`."""
 _STARTS = (
     (b"\x89HDF", "netCDF"),
     (b"PK\x03\x04", "REXS archive or workbook"),
@@ -48,27 +48,27 @@ _STARTS = (
 )
 _REXS = re.compile(rb'<model|"relations"')
 _HEAD = 4096
-"""Bytes at the beginning of a file by which it is known."""
+"""Number of bytes at the beginning of a file by which it is recognised."""
 _FEW = 64
-"""Bytes at the beginning of a text in which letters of other scripts are rare."""
+"""Number of bytes at the beginning of a text where letters of other scripts are rare."""
 CASE = ("operating", "gears", "meshes")
-"""Sections one of which at least every case has, or inherits."""
+"""Sections that every case has or inherits."""
 
 
 def what_is(content: bytes, name: str = "") -> str | None:
-    """Return what a file is that is no TOML, and which command takes it.
+    """Return what a file is that is not TOML, and which command takes it.
 
     Parameters
     ----------
     content : bytes
-        What it holds.
+        Its bytes.
     name : str
-        Its name, for a table, which has no beginning of its own.
+        Its name, needed for a CSV table, which has no typical beginning.
 
     Returns
     -------
     str or None
-        None for what may be TOML.
+        None if it may be TOML.
     """
     if _is_utf16(content[:_HEAD]):
         return TAKEN_BY["UTF-16"]
@@ -89,7 +89,7 @@ def what_is(content: bytes, name: str = "") -> str | None:
 
 
 def _is_utf16(head: bytes) -> bool:
-    """Whether every other byte of a text is zero: UTF-16, of which not all programs put a mark."""
+    """Return whether every other byte is zero, as in UTF-16 without a byte order mark."""
     even, odd = head[0:_FEW:2], head[1:_FEW:2]
     return bool(odd) and any(
         all(one) and not any(other) for one, other in ((even, odd), (odd, even))
@@ -104,10 +104,10 @@ def what_folder_is(folder: Path) -> str:
 
 
 def near_names(path: Path) -> str:
-    """Return a sentence that proposes a file next to one that is not there, or nothing."""
+    """Return a hint at a file in the same folder with a similar name, or an empty text."""
     try:
         files = [file for file in path.parent.iterdir() if file.suffix == path.suffix]
-        # A link that leads nowhere has the very name.
+        # A broken link has the very same name.
         names = [file.name for file in files if file.name != path.name]
     except OSError:
         return ""
@@ -115,5 +115,5 @@ def near_names(path: Path) -> str:
 
 
 def is_case(data: Mapping[str, Any]) -> bool:
-    """Tell whether TOML says, or inherits, anything that only a case does."""
+    """Tell whether TOML data are a case: they extend another, or hold all sections of `CASE`."""
     return "extends" in data or all(section in data for section in CASE)

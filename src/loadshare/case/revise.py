@@ -16,7 +16,7 @@ from loadshare.case.words import DIGITS, as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem
 
 BY_GEAR = (("operating", "external"), ("operating", "forces"))
-"""Tables whose keys are gears; a case without one has room for it."""
+"""Tables with gears as keys; a change creates them where a case has none."""
 
 
 def revise(
@@ -27,7 +27,7 @@ def revise(
     Parameters
     ----------
     data : mapping
-        A case as plain data; left as it is, and shared except for the tables that change.
+        A case as plain data; not modified, and shared with the result except for what changes.
     origin : Origin
         Where its keys are.
     changes : mapping of str to object
@@ -43,7 +43,7 @@ def revise(
     CaseError
         If a path does not exist.
     TypeError
-        If the changes are no mapping.
+        If the changes are not a mapping.
     """
     check_mapping("changes by key path", "{'operating.torque': '100 N*m'}", changes)
     changed = dict(data)
@@ -82,15 +82,15 @@ def revise(
 def still_assumed(
     patterns: Sequence[Any], before: Iterable[Path], after: Iterable[Path]
 ) -> list[int]:
-    """Return the numbers of patterns that stay when keys are removed.
+    """Return the indices of the patterns that stay when keys are removed.
 
-    One that covered nothing but what is removed goes with it; one that never covered a key is left
-    to be reported.
+    A pattern that covered only removed keys goes with them; one that never covered a key stays, to
+    be reported.
 
     Parameters
     ----------
     patterns : sequence
-        Of ``assumed``, as they were written.
+        Patterns of ``assumed``, as written.
     before, after : iterable of Path
         The keys.
     """
@@ -112,7 +112,7 @@ def still_assumed(
 
 
 def _own(data: dict[str, Any], path: Path, owned: set[int]) -> None:
-    """Put copies in place of the tables and lists above a key, except for those that are copies."""
+    """Replace the tables and lists above a key by copies, unless they are copies already."""
     holder: Any = data
     for step in path[:-1]:
         below = look_up(holder, (step,))
@@ -166,7 +166,7 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
 
 
 def differing(before: Any, after: Any, above: Path = ()) -> list[tuple[Path, Any, Any]]:
-    """Return where plain data differ: the key, and both values; None for nothing."""
+    """Return the keys in which plain data differ, with both values; None for a missing one."""
     if before == after:
         return []
     if isinstance(before, dict) and isinstance(after, dict):
@@ -181,7 +181,7 @@ def differing(before: Any, after: Any, above: Path = ()) -> list[tuple[Path, Any
 
 
 def nearest(data: Mapping[str, Any], path: Path) -> str:
-    """Return a hint at which path was intended in place of one that does not exist.
+    """Return a hint at the path that was meant by one that does not exist.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """Radial stiffness of rolling bearings from the number and size of their elements.
 
-Palmgren's deflections of steel elements between both rings, as Harris, Rolling Bearing Analysis,
-has them [N, mm]: of balls in grooves 4.36e-4 Q^(2/3) D^(-1/3), of rollers with line contact
-7.68e-5 Q^0.9 l^(-0.8), along the line of contact. The most loaded of Z elements carries
+Palmgren's deflections of steel elements between both rings, from Harris, Rolling Bearing Analysis
+[N, mm]: 4.36e-4 Q^(2/3) D^(-1/3) for balls in grooves, 7.68e-5 Q^0.9 l^(-0.8) for rollers with line
+contact, along the line of contact. The most loaded of Z elements carries
 Q = s F_r/(Z cos α), by Stribeck's load distribution without clearance.
 """
 
@@ -14,7 +14,7 @@ from typing import Literal
 BALL, ROLLER = 3.0 / 2.0, 10.0 / 9.0
 """Exponents of force over deflection."""
 STRIBECK = {"ball": 4.37, "roller": 4.08}
-"""Load of the most loaded element over the mean one, s: half of the elements carry."""
+"""Factor s of the largest element load over the mean, if half of the elements carry load."""
 
 
 def bearing_coefficient(
@@ -26,9 +26,9 @@ def bearing_coefficient(
 ) -> float:
     """Return K of a bearing's law F = K δⁿ, δ the radial displacement of its ring.
 
-    That of deep-groove and angular-contact ball bearings, n = 3/2, or of cylindrical and tapered
-    roller bearings, n = 10/9. Where a bearing has clearance, fewer elements carry than without:
-    with the usual s = 5 for that, K is 13 % smaller for balls and 18 % for rollers.
+    It holds for deep-groove and angular-contact ball bearings, n = 3/2, and for cylindrical and
+    tapered roller bearings, n = 10/9. In a bearing with clearance fewer elements carry load: with
+    the usual s = 5 for this case, K is 13 % smaller for balls and 18 % for rollers.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def bearing_coefficient(
     elements : int
         Number of balls or rollers, of all rows.
     diameter : float
-        Of a ball [m]; that of rollers does not count.
+        Diameter of a ball [m]; not used for rollers.
     length : float, optional
         Effective length of a roller [m].
     contact_angle : float

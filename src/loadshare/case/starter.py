@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 Kind = Literal["split-path", "four-branch", "star", "planetary", "two-stage-planetary"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
-"""Kinds of transmissions, a file each in `starters/`."""
+"""Kinds of transmissions, each with a file in `starters/`."""
 
 
 def starter_case(name: str, kind: Kind = "split-path") -> str:
@@ -23,7 +23,7 @@ def starter_case(name: str, kind: Kind = "split-path") -> str:
     Returns
     -------
     str
-        TOML; that of the split-path drive shows, commented out, what else there is.
+        TOML; the split-path case also shows, commented out, what else a case may contain.
     """
     folder = files("loadshare.case").joinpath("starters")
     text = folder.joinpath(f"{kind}.toml").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Studies of a case and how inputs scatter in them, as a case file may hold them."""
+"""Studies in a case file, and how inputs scatter in them."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Spread(Element):
     """Rayleigh: scale σ, the most frequent value [unit of the input]; the mean is 1.2533 σ."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield numbers that the distribution lacks, or does not know."""
+        """Yield numbers that the distribution needs and lacks, or does not take."""
         needed = NUMBERS[self.distribution]
         given = self.given("mean", "deviation", "low", "high", "scale")
         allowed = "distribution", *needed
@@ -94,7 +94,7 @@ KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     ),
 }
 OWN = tuple(dict.fromkeys(key for some in KEYS.values() for keys in some for key in keys))
-"""The keys that only some kinds of study know."""
+"""The keys that only some kinds of study take."""
 Level = Annotated[float, Strict(), Field(gt=0, lt=1)]
 
 
@@ -159,7 +159,7 @@ class Study(Element):
     """Positions to solve, from 1 [-]; all when left out."""
 
     def rules(self) -> Iterator[Rule]:
-        """Yield keys that the kind lacks, or does not know."""
+        """Yield keys that the kind of study needs and lacks, or does not take."""
         needed, possible = KEYS[self.kind]
         given = [key for key in OWN if key in self.model_fields_set]
         allowed = *needed, *possible, "positions"
@@ -169,7 +169,7 @@ class Study(Element):
 def _fitting(
     element: Element, kind: str, needed: Iterable[str], given: Iterable[str], allowed: Sequence[str]
 ) -> Iterator[Rule]:
-    """Yield keys that an element of some kind needs and lacks, and those that it does not know."""
+    """Yield keys that an element of some kind needs and lacks, and those that it does not take."""
     for key in needed:
         if getattr(element, key) is None:
             yield Rule("is missing", (key,), hint=f"A {kind} needs it.")

@@ -1,4 +1,4 @@
-"""Tables of cases and results: what they hold by name, never changed."""
+"""Immutable tables, in which cases and results hold their parts by name."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ Item = TypeVar("Item")
 
 
 class Table(dict[str, Item]):
-    """A table that refuses to be changed: what is known of its case would no longer be true."""
+    """A table that cannot be changed, so that what is known of its case stays true."""
 
     def _refuse(self, *_: object, **__: object) -> NoReturn:
         raise TypeError("cases and results do not change: Case.replace makes one of other values")

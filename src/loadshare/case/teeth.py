@@ -10,10 +10,10 @@ from loadshare.case.gears import Gear
 from loadshare.case.meshes import Mesh
 
 TEETH_TOLERANCE = 1e-2
-"""How far given tooth counts may miss the ratio of the base radii, as a part of it [-].
+"""Largest deviation of given tooth counts from the ratio of the base radii, relative to it [-].
 
-Radii that are assumed or rounded miss whole tooth counts by less; a tooth too many on a gear of
-fewer than 100 teeth by more."""
+Assumed or rounded radii deviate by less; a tooth too many on a gear of fewer than 100 teeth
+deviates by more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,18 +36,18 @@ class Misfit:
 def tooth_counts(
     gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]
 ) -> tuple[dict[str, float], tuple[Misfit, ...]]:
-    """Return the teeth of every gear that meshes, over any meshes, with one whose teeth are given.
+    """Return the tooth counts of all gears that meshes connect to a gear whose count is given.
 
     Parameters
     ----------
     gears : mapping of str to Gear
     meshes : mapping of str to Mesh
-        Those of carriers, and of gears that are not there, are left out.
+        Meshes of carriers, and of gears that do not exist, are ignored.
 
     Returns
     -------
     dict of gear to float
-        Given counts as they are; what follows need not be whole, as radii may be rounded [-].
+        Given counts are unchanged; computed ones need not be whole, as radii may be rounded [-].
     tuple of Misfit
     """
     given = {name: gear.teeth for name, gear in gears.items() if not gear.is_carrier}

@@ -1,4 +1,4 @@
-"""pydantic's findings in our own words."""
+"""Translation of pydantic's findings into our own words."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from loadshare.settings import ALLOWED
 
 Read = TypeVar("Read", bound=Element)
 
-# What each kind of finding is called; the braces are filled from pydantic's context.
+# What each kind of finding asks for; the braces are filled from pydantic's context.
 WANTED = {
     "string_type": "a text",
     "int_type": "a whole number",
@@ -53,16 +53,16 @@ SYMBOLS = {
     "P": "power",
     "k": "stiffness",
 }
-"""What formulas and other programs call the keys of a case."""
+"""Names that formulas and other programs use for keys of a case."""
 TEETH = ("teeth", "module", "face_width", "profile_shift", "addendum", "dedendum", "tip_relief")
-"""Keys that one may expect of a mesh, and that belong elsewhere."""
+"""Keys that users may expect in a mesh, but that belong elsewhere."""
 OF_TEETH = (
     'Teeth belong to the gears, or in a pair file that the mesh names: geometry = "pair.toml".'
 )
 
 
 def hint_at(key: object, model: type[Element] | None, known: Iterable[str]) -> str:
-    """Return a sentence on a key that is not known where it is.
+    """Return a hint for a key that is unknown where it was given.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def hint_at(key: object, model: type[Element] | None, known: Iterable[str]) -> s
     Returns
     -------
     str
-        Which key was intended, or where in a case it belongs; empty if it is like none.
+        Which key was meant, or where in a case it belongs; empty if it resembles none.
     """
     from loadshare.case.content import Content
 
@@ -110,7 +110,7 @@ def hint_at(key: object, model: type[Element] | None, known: Iterable[str]) -> s
 SINGLE = ("operating", "march")
 """Sections that are one table."""
 ASKING = ("study", "measured")
-"""Sections that say nothing about the machine."""
+"""Sections that do not describe the machine."""
 
 
 def translate(error: ValidationError, model: type[Element]) -> list[Rule]:
@@ -128,7 +128,7 @@ def translate(error: ValidationError, model: type[Element]) -> list[Rule]:
     list of Rule
         The same, for the user.
     """
-    # No element knows how many there are of its kind; each looks at all others.
+    # The number of findings has no limit, and each is compared with all others.
     found = error.errors(include_url=False)[: ALLOWED.problems]
     return [_rule(one, model) for one in found if not _follows(one, found)]
 
@@ -146,7 +146,7 @@ def validated(model: type[Read], data: Mapping[str, Any], origin: Origin) -> Rea
     Raises
     ------
     CaseError
-        With all that is wrong.
+        With all problems.
     """
     try:
         return model.model_validate(data)
@@ -157,10 +157,10 @@ def validated(model: type[Read], data: Mapping[str, Any], origin: Origin) -> Rea
 
 
 def _follows(one: ErrorDetails, found: list[ErrorDetails]) -> bool:
-    """Whether a finding only follows from others.
+    """Return whether a finding is only a consequence of others.
 
-    A list is too short for an entry that is wrong, and a default that follows other keys cannot be
-    made while one of them is.
+    A list with a wrong entry also counts as too short, and a default that depends on other keys is
+    not made if one of them is wrong.
     """
     if one["type"] == "default_factory_not_called":
         return True
@@ -204,13 +204,13 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
 
 
 def _fields(model: type[Element], path: Path) -> dict[str | int, FieldInfo]:
-    """Fields, by their keys, of the table that a path leads to; none where it does not exist."""
+    """Return the fields, by key, of the table at a path; empty if there is no such table."""
     table = _table(model, path)
     return _by_key(table) if table else {}
 
 
 def _table(model: type[Element], path: Path) -> type[Element] | None:
-    """Kind of the table that a path leads to; None where it leads nowhere."""
+    """Return the type of the table at a path; None if there is no such table."""
     found: type[Element] | None = model
     for step in path:
         fields = _by_key(found) if found else {}

@@ -1,8 +1,8 @@
-"""Planetary sets whose surroundings differ from direction to direction.
+"""Detection of planetary sets whose surroundings differ with direction.
 
-A set is seen from its carrier, and the housing turns backwards about it. What holds the set's other
-members looks the same all the way round if it is the same in all directions, and if no member moves
-in two such views at once.
+A set is seen in the frame of its carrier, in which the housing turns backwards. The supports of its
+other members look the same at every angle if each is the same in all directions, and if no member
+is seen in two such frames at once.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from loadshare.case.power_flow import rides_on
 
 
 def is_uneven(case: Sections) -> bool:
-    """Tell whether a set turns whose surroundings do not look the same all the way round.
+    """Tell whether a set turns in surroundings that differ with direction.
 
-    It follows from which keys are given, not from their numbers, so that samples agree on it.
+    This depends on which keys are given, not on their values, so that all samples agree.
     """
     operating = case.operating
     turns = case.march is not None or (operating is not None and operating.rotation == "teeth")
@@ -22,7 +22,7 @@ def is_uneven(case: Sections) -> bool:
 
 
 def _differs(case: Sections, name: str, seen: set[str | None]) -> bool:
-    """Whether what holds a gear has directions, or the gear moves in two views at once."""
+    """Return whether a gear's support has directions, or the gear moves in two frames at once."""
     gear = case.gears[name]
     if isinstance(gear.support, tuple):
         return True
@@ -39,7 +39,7 @@ def _differs(case: Sections, name: str, seen: set[str | None]) -> bool:
 
 
 def _views(case: Sections) -> dict[str, set[str | None]]:
-    """Carriers from which the gears that ride on none are seen, None for the housing."""
+    """Return the carriers from which gears that ride on none are seen; None is the housing."""
     found: dict[str, set[str | None]] = {
         name: {name} for name, gear in case.gears.items() if gear.is_carrier
     }

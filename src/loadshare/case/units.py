@@ -47,7 +47,7 @@ horsepower = 745.6998715822702 * watt = hp
 
 _WORD = re.compile(r"[^\W\d_]+")
 
-# What a did-you-mean may propose: the spellings that engineers use.
+# Spellings that a did-you-mean may propose: those that engineers use.
 COMMON = (
     *("m", "mm", "um", "µm", "micron", "nm", "cm", "in", "ft", "g", "kg", "s", "ms", "min", "h"),
     *("rad", "mrad", "urad", "deg", "arcmin", "arcsec", "rev", "rpm", "Hz"),
@@ -71,7 +71,7 @@ OTHERS = {
     "bar": "MPa: 1 bar is 0.1 MPa",
     "psi": "lbf/in^2",
 }
-"""What engineers write for units that go by another name here."""
+"""Common spellings of units that have another name here, and that name."""
 
 # The SI unit in which each kind of quantity is kept, by the name that messages use.
 KINDS = {
@@ -113,7 +113,7 @@ FACTORS: dict[str, dict[str, float]] = {
         )
     },
 }
-"""What the registry says of the commonest spellings, by SI unit: starting it takes as long as a
+"""Factors of the registry for the commonest spellings, by SI unit: starting it takes as long as a
 solve."""
 _SI = {unit: si for si, known in FACTORS.items() for unit in known}
 
@@ -122,11 +122,11 @@ _POWER = re.compile(
     r"(?<=[^\W\d]|[)°])\s*\*\*\s*\(?\s*([-+]?\d{1,9}(?:\.\d{1,9})?)"
     r"(?![\w.])\s*(?:/\s*([1-9]\d{0,2})\s*\))?"
 )
-"""A unit, or several in brackets, to a power: a number, or a fraction in brackets."""
+"""A power of a unit, or of several in brackets: a number, or a fraction in brackets."""
 
 
 _NO_SIGN = re.compile(r"[^\w\s\u200b°·⋅⁻*/^()+\-.,%]")
-"""What stands in no unit; the reader of units would end there, or skip it, without a word."""
+"""Characters that occur in no unit; pint would silently stop at them, or skip them."""
 
 
 @cache
@@ -147,7 +147,7 @@ def registry() -> pint.UnitRegistry[float]:
 
 @lru_cache(maxsize=1024)
 def si_factor(unit: str, target: str) -> float | None:
-    """Return by what a number in `unit` is multiplied to be in `target`.
+    """Return the factor that converts a number in `unit` to `target`.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def si_factor(unit: str, target: str) -> float | None:
     Raises
     ------
     ValueError
-        For a text that is no unit; the argument is the part that is not known.
+        If the text is not a unit; the exception's argument is the unknown part.
     """
     if unit in _SI and target in FACTORS:
         return FACTORS[target].get(unit)
@@ -197,12 +197,12 @@ def kind_of(unit: str) -> str | None:
 
 
 def beyond_unit(unit: str) -> str:
-    """Return the end of a text, from the first sign that stands in no unit; or nothing.
+    """Return a text from its first character that occurs in no unit; empty if there is none.
 
     Parameters
     ----------
     unit : str
-        What follows a number.
+        The text after a number.
     """
     found = _NO_SIGN.search(unit)
     return unit[found.start() :] if found else ""
@@ -214,7 +214,7 @@ def written_apart(unit: str, target: str) -> str | None:
     Parameters
     ----------
     unit : str
-        A text that is no unit.
+        A text that is not a unit.
     target : str
         The SI unit of what it must measure.
     """
@@ -237,7 +237,7 @@ def _parse(unit: str) -> pint.Quantity[float]:
 
     text = unit.replace("·", "*").replace("⋅", "*").replace("^", "**")
     text = f"1{text}" if text.startswith("/") else text
-    # A power of a power, or of a large number, would take for ever.
+    # A power of a power, or a power with a large exponent, would take for ever.
     powers = [abs(float(up) / float(down or 1.0)) for up, down in _POWER.findall(text)]
     if (
         len(unit) > ALLOWED.unit
@@ -251,7 +251,7 @@ def _parse(unit: str) -> pint.Quantity[float]:
     except pint.UndefinedUnitError as error:
         names = error.unit_names
         raise ValueError(names if isinstance(names, str) else names[0]) from None
-    except Exception as error:  # the parser raises whatever its tokenizer meets
+    except Exception as error:  # the parser passes on any error of its tokenizer
         raise ValueError(unit) from error
     # A number is no unit, and "5 mm" after another number is a slip of the pen.
     try:
@@ -259,7 +259,7 @@ def _parse(unit: str) -> pint.Quantity[float]:
             not isinstance(parsed, registry().Quantity) or parsed.magnitude != 1 or parsed.unitless
         )
     except ArithmeticError:
-        wrong = True  # Powers of powers may lead beyond all numbers.
+        wrong = True  # Powers of powers may overflow.
     if wrong:
         raise ValueError(unit)
     return parsed

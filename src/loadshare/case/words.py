@@ -1,4 +1,4 @@
-"""How problems are worded: near misses, lists of choices, what the user gave."""
+"""Wording of problems: near misses, lists of choices, the value given."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from loadshare.settings import ALLOWED
 
 LONGEST = 72
 BITS = 4 * LONGEST
-"""Of a whole number that is shown in decimals."""
+"""Largest size of a whole number that is shown in decimals [bit]."""
 SHOWN = 24
-"""Choices that are listed; more would bury the message."""
+"""Number of choices that are listed; more would bury the message."""
 DIGITS = re.compile(r"\d+")
 
 
 def did_you_mean(word: object, known: Iterable[str]) -> str:
     """Return a sentence that proposes the nearest known word, or those of which it is a part.
 
-    Nothing is proposed that is not near: names that differ in numbers only are different names.
+    Only near words are proposed: names that differ in numbers only are different names.
 
     Parameters
     ----------
@@ -52,11 +52,11 @@ def did_you_mean(word: object, known: Iterable[str]) -> str:
 
 
 MOST = 4
-"""Words that are proposed together."""
+"""Largest number of words proposed together."""
 
 
 def _is_slip(word: str, option: str) -> bool:
-    """Whether two words differ as by a slip: not in digits alone, and not in a third of them."""
+    """Return whether two words differ as by a slip: not in digits alone, by a third at most."""
     if DIGITS.sub("", word) == DIGITS.sub("", option):
         return False
     blocks = SequenceMatcher(None, word, option).get_matching_blocks()
@@ -65,7 +65,7 @@ def _is_slip(word: str, option: str) -> bool:
 
 
 def _is_part(word: str, option: str) -> bool:
-    """Whether one of two words consists of whole words of the other, as radius of base_radius."""
+    """Return whether a word consists of whole words of the other, as radius in base_radius."""
     short, long = sorted((word, option), key=len)
     return len(short) > 2 and f"_{short}_" in f"_{long}_"
 
@@ -118,6 +118,6 @@ def _toml(value: Any) -> str:
     if isinstance(value, str | bool):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, int) and value.bit_length() > BITS:
-        # Python writes no numbers of thousands of digits; the last of them do not matter here.
+        # Python refuses to print thousands of digits; the last of them do not matter here.
         return hex(value >> max(value.bit_length() - BITS, 0))
     return str(value)

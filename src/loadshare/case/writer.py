@@ -34,7 +34,7 @@ def toml_text(data: Mapping[str, Any]) -> str:
         elif name in ("operating", "march"):
             document.add(name, _table(value))
         elif not all(isinstance(element, Mapping) for element in value.values()):
-            # What holds no elements is no section; whoever reads the case says so.
+            # Without elements it is no valid section, which is reported when the case is read.
             document.add(name, _item(value))
         elif value:
             section = tomlkit.table(is_super_table=True)

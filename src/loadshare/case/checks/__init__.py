@@ -1,4 +1,4 @@
-"""Checks across the elements of a case, each one rule, all of them run before any is reported."""
+"""Checks across the elements of a case: one function per rule, all run before any is reported."""
 
 from __future__ import annotations
 
@@ -68,8 +68,8 @@ CHECKS: Mapping[Rule, tuple[str, ...]] = {
     floats.check_idle_inputs: ("gears", "meshes"),
     names.check_assumed_patterns: (),
 }
-"""Sections whose physical values matter to each rule. At names, words and counts, and at what is
-given, all rules look."""
+"""All rules, each with the sections whose physical values it uses. Names, words, counts, and which
+keys are given may matter to every rule."""
 
 
 def check(draft: Draft, before: Content | None = None) -> Iterator[Problem]:
@@ -95,7 +95,7 @@ def check(draft: Draft, before: Content | None = None) -> Iterator[Problem]:
 
 
 def _concerned(draft: Draft, before: Content) -> Collection[Rule]:
-    """Rules that may find something in a draft other than in a case before."""
+    """Return the rules whose findings in a draft may differ from those in an earlier case."""
     changed = set()
     for name in Content.model_fields:
         now, then = getattr(draft, name), getattr(before, name)

@@ -1,4 +1,4 @@
-"""Planets must fit their carriers, and what the housing holds must not have to turn."""
+"""Checks that planets fit their carriers, and that nothing held by the housing has to turn."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from loadshare.case.words import choices
 from loadshare.errors import Problem
 
 SAME = 1e-9
-"""Difference of clockings that is round-off, as a part of their sum."""
+"""Difference of clockings that counts as round-off, relative to their sum."""
 
 
 def check_carriers(draft: Draft) -> Iterator[Problem]:
-    """Yield carriers that are none, and planets that cannot ride on theirs."""
+    """Yield gears named as carriers that are none, and planets that cannot ride on theirs."""
     centres = draft.centres()
     for name, gear in draft.gears.items():
-        # A gear may be named "", which is reported elsewhere: no carrier is no name.
+        # A gear may be named "", which is reported elsewhere; only None means no carrier.
         carrier = None if gear.carrier is None else draft.gears.get(gear.carrier)
         if carrier is None:
             continue
@@ -41,7 +41,7 @@ def check_carriers(draft: Draft) -> Iterator[Problem]:
 
 
 def check_planet_shafts(draft: Draft) -> Iterator[Problem]:
-    """Yield shafts that join a planet to what does not go round with it."""
+    """Yield shafts that join a planet to a gear that does not ride on the same carrier."""
     for name, shaft in draft.shafts.items():
         riding = {end: draft.gears[end].carrier for end in shaft.ends if end in draft.gears}
         carriers = [draft.gears.get(carrier) for carrier in riding.values() if carrier]
@@ -54,7 +54,7 @@ def check_planet_shafts(draft: Draft) -> Iterator[Problem]:
 
 
 def check_planet_meshes(draft: Draft) -> Iterator[Problem]:
-    """Yield meshes of carriers, and partners that a planet cannot mesh with as it goes round."""
+    """Yield meshes of carriers, and partners that a revolving planet cannot mesh with."""
     centres = draft.centres()
     for name, mesh in draft.meshes.items():
         ends = [draft.gears.get(mesh.driver), draft.gears.get(mesh.driven)]
@@ -81,10 +81,11 @@ def check_planet_meshes(draft: Draft) -> Iterator[Problem]:
 
 
 def check_names_of_planet_meshes(draft: Draft) -> Iterator[Problem]:
-    """Yield meshes with backlash that name their planet first where others of a gear name it last.
+    """Yield meshes with backlash that name their planet first where others name it last.
 
-    Backlash is behind the flank with which the gear named first drives. Of planets named this way
-    and that, some would begin in touch and some with all of their backlash.
+    Backlash is behind the flank with which the gear named first drives. If meshes of one central
+    gear named their planets in both orders, some would begin in contact and some with all their
+    backlash.
     """
     named: dict[tuple[str, str], dict[bool, str]] = {}
     for name, mesh in draft.meshes.items():
@@ -129,7 +130,7 @@ def check_held(draft: Draft) -> Iterator[Problem]:
 
 
 def check_twisted_shafts(draft: Draft) -> Iterator[Problem]:
-    """Yield elastic shafts of which no end can turn without the other."""
+    """Yield elastic shafts whose ends cannot turn relative to each other."""
     if draft.operating is None:
         return
     fixed = {name for name, gear in draft.gears.items() if gear.held} | {draft.operating.output}
@@ -149,7 +150,7 @@ def check_twisted_shafts(draft: Draft) -> Iterator[Problem]:
 
 
 def check_clockings(draft: Draft) -> Iterator[Problem]:
-    """Yield rigid shafts that other rigid shafts between their ends contradict."""
+    """Yield rigid shafts whose clocking contradicts other rigid shafts between their ends."""
     rigid = {name: s for name, s in draft.shafts.items() if s.stiffness == "rigid"}
     lags: dict[str, float] = {}
     size = SAME * math.fsum(abs(shaft.clocking.si) for shaft in rigid.values())
@@ -174,7 +175,7 @@ def check_clockings(draft: Draft) -> Iterator[Problem]:
 
 
 def check_planet_errors(draft: Draft) -> Iterator[Problem]:
-    """Yield pin errors of gears that sit on no pin, and drums about what goes round."""
+    """Yield pin errors of gears that are no planets, and drums that involve planets."""
     for name, errors in draft.errors.items():
         gear = draft.gears.get(name)
         if errors.pin is not None and gear is not None and gear.carrier is None:

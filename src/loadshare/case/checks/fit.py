@@ -1,4 +1,4 @@
-"""Gears that mesh must be able to: where they are, and what their teeth are."""
+"""Checks that gears in mesh fit each other: their positions and their teeth."""
 
 from __future__ import annotations
 
@@ -22,14 +22,15 @@ from loadshare.involute import (
 )
 
 TOLERANCE = 1e-3
-"""How far base radii may miss the centre distance, as a part of it [-]."""
+"""Largest mismatch between base radii and centre distance, relative to the latter [-]."""
 
-# Two directions are the same, or square, within what three written decimals leave open [-].
+# Directions are parallel or square to within what three decimals in the file can express [-].
 SQUARE = 1e-6
 TEETH_ALIKE = 1e-6
-"""How far modules and angles of teeth that mesh may be apart, as a part of them [-]."""
+"""Largest difference between teeth that mesh: relative in module and pressure angle [-], absolute
+in the helix angle [rad]."""
 OVERLAP = 1e-3
-"""By how much teeth may overlap for want of written digits, in modules [-]."""
+"""Largest overlap of teeth that is put down to rounding in the file, in modules [-]."""
 
 
 def check_tooth_kinds(draft: Draft) -> Iterator[Problem]:
@@ -51,7 +52,7 @@ def check_racks(draft: Draft) -> Iterator[Problem]:
 
 
 def check_fit(draft: Draft) -> Iterator[Problem]:
-    """Yield pairs whose axes, base radii and pressure angle do not fit where they are."""
+    """Yield pairs whose axes, base radii or pressure angle do not fit their centres."""
     centres = draft.centres()
     for name, mesh, driver, driven in _pairs(draft):
         kinds = {driver.type, driven.type}
@@ -91,7 +92,7 @@ def _parallel_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterat
     if driver.tooth is not None and driven.tooth is not None and not unlike:
         teeth = driver.tooth, driven.tooth
         found += _too_near(draft, name, *teeth, distance)
-        # A law by formula tells it itself.
+        # A law by formula reports this itself.
         if not found and not isinstance(mesh.law, str):
             found += _too_far(draft, name, *teeth, distance)
     yield from found
@@ -103,7 +104,7 @@ def _too_near(
     """Yield teeth that have no room for one another at a centre distance [m]."""
     where = f"at the centre distance {mm(distance)} the teeth"
     if base_distance(one, two) >= distance:
-        # Given base radii, which may differ a little, can leave a line of action all the same.
+        # Given base radii, which may differ slightly, can still leave a line of action.
         what = f"{where} have no line of action"
         yield draft.problem(("meshes", name), what, hint=_without_backlash(one, two))
         return
@@ -114,7 +115,7 @@ def _too_near(
 
 
 def _too_far(draft: Draft, name: str, one: Tooth, two: Tooth, distance: float) -> Iterator[Problem]:
-    """Yield teeth whose tips do not get to each other's flanks at a centre distance [m]."""
+    """Yield teeth whose tips do not reach each other's flanks at a centre distance [m]."""
     ratio = contact_ratio(one, two, distance)
     if ratio <= 0.0:
         what = (
@@ -148,9 +149,9 @@ def _faces_meet(
 
 
 def _unlike(driver: Gear, driven: Gear) -> tuple[str, str] | None:
-    """What makes the racks of two gears different, and a hint; None if they are one rack.
+    """Return how the racks of two gears differ, and a hint; None if they do not.
 
-    Gears of which one does not tell its teeth, or that could not mesh with any, are left out.
+    Also None if one of them does not give its teeth, or if no teeth could mesh there.
     """
     one, two = driver.tooth, driven.tooth
     if one is None or two is None or not parallel(driver, driven):
@@ -174,7 +175,7 @@ def _unlike(driver: Gear, driven: Gear) -> tuple[str, str] | None:
 def toothed_pairs(
     draft: Draft,
 ) -> Iterator[tuple[str, tuple[str, str], tuple[Tooth, Tooth], float]]:
-    """Yield meshes whose gears both tell their teeth, with ends, teeth and centre distance [m].
+    """Yield meshes whose gears both give their teeth, with ends, teeth and centre distance [m].
 
     Gears that could not mesh at any distance are left out, as that is reported already.
     """
@@ -217,7 +218,7 @@ def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[P
 def _compare(
     draft: Draft, name: str, mesh: Mesh, where: str, radius: float, distance: float, what: str
 ) -> Iterator[Problem]:
-    """Yield a problem where a distance, seen along the line of action, is not the radius."""
+    """Yield a problem if the distance times the cosine of the pressure angle is not the radius."""
     if mesh.pressure_angle is None:
         return
     reach = distance * math.cos(mesh.pressure_angle.si)
@@ -233,7 +234,7 @@ def _compare(
 
 
 def check_formula_laws(draft: Draft) -> Iterator[Problem]:
-    """Yield what a mesh law by formula needs of the gears and does not have."""
+    """Yield keys of the gears that a mesh law by formula needs and that are missing."""
     for name, mesh, driver, driven in _pairs(draft):
         if not isinstance(mesh.law, str):
             continue
@@ -261,7 +262,7 @@ def check_backlash_of_teeth(draft: Draft) -> Iterator[Problem]:
 
 
 def check_tolerance_classes(draft: Draft) -> Iterator[Problem]:
-    """Yield gears of a tolerance class for which its standard does not hold."""
+    """Yield gears with a tolerance class to which its standard does not apply."""
     for name, gear in draft.gears.items():
         if gear.tolerance_class is not None:
             for what in outside(gear):
@@ -284,7 +285,7 @@ def parallel(one: Gear, other: Gear) -> bool:
 
 
 def mm(length: float) -> str:
-    """Return a length in mm, as messages tell it."""
+    """Return a length in mm, as messages show it."""
     return f"{1e3 * length:.6g} mm"
 
 

@@ -1,4 +1,4 @@
-"""Splines and limit rings must have something to hold, and no input may be idle."""
+"""Checks that splines, rings and bearings can act, and that no input is idle."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from loadshare.errors import Problem
 
 
 def check_support(draft: Draft) -> Iterator[Problem]:
-    """Yield what lets gears float that cannot move."""
+    """Yield splines, rings and bearings of gears that cannot move."""
     for section in FLOATS:
         for name in draft.names(section):
             gear = draft.gears.get(name)
@@ -31,7 +31,7 @@ def check_spline_law(draft: Draft) -> Iterator[Problem]:
     for name, spline in draft.splines.items():
         bound, stiffness = spline.fixed_bound, spline.bending_stiffness.si
         stick = None if spline.stick_limit is None else spline.stick_limit.si
-        # F_m / K_w, written with a few digits, must not fail for its last one.
+        # A stick limit F_m / K_w that was rounded in the file must not fail for its last digit.
         if bound is not None and stick is not None and stiffness * stick > bound * (1 + 1e-6):
             message = (
                 f"the force would drop where slip begins: K_w S1 = {stiffness:g} N/m × {stick:g} m"
@@ -45,7 +45,7 @@ def check_spline_law(draft: Draft) -> Iterator[Problem]:
 
 
 def check_ring_neighbours(draft: Draft) -> Iterator[Problem]:
-    """Yield rings whose neighbours are not two others with parallel axes."""
+    """Yield rings whose neighbours are not two other gears with parallel, separate axes."""
     for name, ring in draft.rings.items():
         if ring.neighbours is None:
             continue
@@ -84,7 +84,7 @@ def _on_one_axis(draft: Draft, names: tuple[str, ...]) -> Iterator[tuple[str, st
 
 
 def check_float_backlashes(draft: Draft) -> Iterator[Problem]:
-    """Yield float ranges that are to follow from backlashes which are not given."""
+    """Yield float ranges that are to follow from backlashes that are not given."""
     for name, ring in draft.rings.items():
         if not isinstance(ring.float_, Backlashes):
             continue
@@ -97,7 +97,7 @@ def check_float_backlashes(draft: Draft) -> Iterator[Problem]:
 
 
 def check_idle_inputs(draft: Draft) -> Iterator[Problem]:
-    """Yield what was given and has no effect because something else is missing."""
+    """Yield keys that have no effect, because another is missing or the ring is a circle."""
     for name, mesh in draft.meshes.items():
         helical = mesh.helix_angle is not None and mesh.helix_angle.si
         if helical and not mesh.given("backlash", "normal_backlash"):

@@ -1,4 +1,4 @@
-"""The torque must get from the input to the output, through every mesh."""
+"""Checks that the torque gets from the input to the output, and through every mesh."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def check_taken_part(draft: Draft) -> Iterator[Problem]:
 
 
 def check_output_reached(draft: Draft) -> Iterator[Problem]:
-    """Yield the output where no path of meshes and shafts leads to it."""
+    """Yield the output if no path of meshes and shafts leads to it."""
     if not _known(draft) or draft.operating is None:
         return
     reached = reach([draft.operating.input], _steps(draft))
@@ -61,7 +61,7 @@ def check_loaded_meshes(draft: Draft) -> Iterator[Problem]:
     if not _known(draft) or draft.operating is None or any(check_output_reached(draft)):
         return
     taken = _steps(draft)
-    # What the housing holds gives and takes as much torque as need be.
+    # Gears that the housing holds can supply or take any torque.
     external = [*draft.operating.external, *(n for n, g in draft.gears.items() if g.held)]
     ahead = reach([draft.operating.input, *external], taken)
     behind = reach([draft.operating.output, *external], backwards(taken))
@@ -81,10 +81,10 @@ def check_loaded_meshes(draft: Draft) -> Iterator[Problem]:
 def _leading_back(
     draft: Draft, ends: Mapping[str, tuple[str, str]], taken: Steps, external: Collection[str]
 ) -> Iterator[str]:
-    """Yield meshes with one flank that lead torque back to where it has come from.
+    """Yield meshes with one flank that would lead torque back to where it has come from.
 
     Torque reaches their first gear only through their last one, or leaves the last one only through
-    the first. In a ring of meshes that can be: one branch of it is named from the output on.
+    the first. This happens in a ring of meshes if one of its branches is named from the output on.
     """
     operating = draft.operating
     if operating is None or has_sets(draft.gears) or not _goes_round(draft):
@@ -102,7 +102,7 @@ def _leading_back(
 
 
 def _goes_round(draft: Draft) -> bool:
-    """Tell whether meshes, driver to driven, lead back to a gear or to another on its shaft."""
+    """Tell whether meshes, driver to driven, lead back to the same gear or to one on its shaft."""
     joined = on_one_shaft(draft.gears, [shaft.ends for shaft in draft.shafts.values()])
     group = {gear: together for together in joined for gear in together}
     follows: dict[tuple[str, ...], set[tuple[str, ...]]] = {}
@@ -116,10 +116,11 @@ def _goes_round(draft: Draft) -> bool:
 
 
 def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:
-    """Yield meshes whose backlash must tell when the flank that takes the torque is reached.
+    """Yield meshes that need a backlash because torque presses their other flank.
 
     Torque that runs against a mesh's name presses its coast flank. A mesh without a backlash has
-    one flank only, and its play is not known: then all or none of them must be given.
+    one flank only, and its play is unknown. So if some torque runs against the names, every mesh
+    needs a backlash, unless all torques do and no mesh has one.
     """
     if not _known(draft) or draft.operating is None:
         return
@@ -136,7 +137,7 @@ def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:
 
 
 def _known(draft: Draft) -> bool:
-    """Tell whether the paths can be followed at all; what hinders it is reported elsewhere."""
+    """Tell whether the paths can be followed at all; what prevents it is reported elsewhere."""
     if draft.operating is None or not draft.sound("gears", "meshes", "shafts"):
         return False
     named = {draft.operating.input, draft.operating.output, *draft.operating.external}
@@ -144,11 +145,11 @@ def _known(draft: Draft) -> bool:
 
 
 def _steps(draft: Draft) -> Steps:
-    """The steps of the torque from the input on, along the names of the meshes or against them."""
+    """Return the torque's steps from the input on, along the names of the meshes or against."""
     taken = draft.once("steps", lambda: steps(draft))
     return backwards(taken) if _turned(draft) else taken
 
 
 def _turned(draft: Draft) -> bool:
-    """Whether the input is where the meshes' names put the output."""
+    """Return whether the input is where the meshes' names put the output."""
     return draft.once("turned", lambda: from_the_other_end(draft))

@@ -1,4 +1,4 @@
-"""The teeth that a mesh law was computed from, so that it is not taken for that of others."""
+"""Check that a mesh law is not used for teeth other than those it was computed from."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from loadshare.case.quantity import Quantity
 from loadshare.errors import Problem
 
 WITHOUT_STIFFNESS = {"thickness_allowance", "tolerance_class", "density", "ovalisation"}
-"""Keys of teeth that no law follows from."""
+"""Keys of teeth that no law depends on."""
 OF_LAWS = (
     *("type", "teeth", "module", "base_radius", "inner_radius", "outer_radius"),
     *(key for key in OF_TEETH if key not in WITHOUT_STIFFNESS),
 )
-"""Keys of a gear that its mesh laws follow from."""
+"""Keys of a gear that its mesh laws depend on."""
 
 
 def teeth_digest(
     mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector], *, written: bool = False
 ) -> str:
-    """Return a digest of the teeth of a mesh and of where they meet.
+    """Return a digest of the teeth of a mesh and of their distances.
 
     Parameters
     ----------
@@ -34,12 +34,12 @@ def teeth_digest(
     centres : mapping of str to tuple of float
         Centres of both gears [m].
     written : bool
-        Whether what is written out counts, even where it might be left out: laws were so marked.
+        Whether a default that is written out counts as given, as in the digests of older laws.
     """
     pair = gears[mesh.driver], gears[mesh.driven]
     offset = minus(centres[mesh.driven], centres[mesh.driver])
     lengths = centre_distance(pair[0], offset), abs(dot(offset, axis_of(pair[0])))
-    # To the picometre: centres that are turned or moved as a whole differ by round-off.
+    # Rounded to a picometre: turning or moving all centres changes distances by round-off.
     content = [f"{length:.12f}" for length in lengths]
     content += [f"{_value(gear, key, written)!r}" for gear in pair for key in OF_LAWS]
     return hashlib.sha256("\n".join(content).encode()).hexdigest()[:16]
@@ -65,5 +65,5 @@ def _value(gear: Gear, key: str, written: bool) -> object:
     given = getattr(gear, key)
     value = given.si if isinstance(given, Quantity) else given
     usual = None if written or gear.tooth is None else USUAL_TEETH.get(key)
-    # To write out what teeth have anyway changes no tooth.
+    # Writing out a default does not change the teeth.
     return None if value == usual else value

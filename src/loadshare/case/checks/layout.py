@@ -1,4 +1,4 @@
-"""Where gears are: what must be given of it, and teeth that need room."""
+"""Checks on the positions of gears: what must be given, and the room that teeth need."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from loadshare.errors import Problem
 from loadshare.involute import base_distance, normal_backlash, root_clearance, tip_limit, tips_pass
 
 APART = 0.1
-"""How far axes may be apart that a shaft joins, as a part of the smaller base radius [-]."""
+"""Largest distance between axes that a shaft joins, relative to the smaller base radius [-]."""
 WRITTEN = 1e-2
-"""By how much tips may be too high for want of written digits, in modules [-]."""
+"""Largest excess of tips that is put down to rounding in the file, in modules [-]."""
 
 
 def check_distances(draft: Draft) -> Iterator[Problem]:
-    """Yield distances from a pole that are neither given nor follow from teeth."""
+    """Yield gears whose distance from a pole is neither given nor follows from teeth."""
     if not draft.sound("gears", "meshes"):
         return
     centres = draft.centres()
@@ -96,7 +96,7 @@ def check_tips(draft: Draft) -> Iterator[Problem]:
 
 
 def _room(gear: Tooth, other: Tooth, distance: float) -> float:
-    """Tip radius of the other gear that a gear leaves room for [m]: at most, if it is external."""
+    """Return the other gear's limiting tip radius [m]: the largest if external, else the least."""
     touches = other.tip + other.kind * root_clearance(gear, other, distance)
     if gear.internal:
         return touches
@@ -113,13 +113,13 @@ def _too_high(draft: Draft, mesh: str, one: str, two: str, other: Tooth, room: f
 
 
 def _lowered(draft: Draft, gear: str, tooth: Tooth, tip: float) -> str:
-    """Say by which alteration the tip of a gear comes to a radius [m]."""
+    """Say which alteration brings the tip of a gear to a radius [m]."""
     lower = tooth.addendum_to(tip) - (draft.gears[gear].addendum or 1.0)
     return f"gears.{gear}.tip_alteration = {shortened(lower * tooth.module)} would do."
 
 
 def _passing(pinion: Tooth, ring: Tooth, distance: float) -> float:
-    """The least tip radius of an internal gear that its pinion's tips pass [m]."""
+    """Return the least tip radius of an internal gear that its pinion's tips pass [m]."""
     low, high = ring.tip, distance + pinion.tip
     while high - low > 1e-9 * high:
         middle = 0.5 * (low + high)
@@ -129,9 +129,9 @@ def _passing(pinion: Tooth, ring: Tooth, distance: float) -> float:
 
 
 def check_shafts(draft: Draft) -> Iterator[Problem]:
-    """Yield shafts between parallel axes that are far apart: a wrong name, most likely.
+    """Yield shafts between parallel axes that are far apart: most likely a wrong name.
 
-    Of gears that do not tell their teeth, the centres may be no more than a drawing.
+    Gears that do not give their teeth are skipped: their centres may be merely schematic.
     """
     centres = draft.centres()
     for name, shaft in draft.shafts.items():
@@ -164,7 +164,7 @@ class _Clash:
 
 
 def check_neighbours(draft: Draft) -> Iterator[Problem]:
-    """Yield gears that mesh with the same one and stand in each other's way next to it."""
+    """Yield gears that mesh with the same gear and overlap each other."""
     centres = draft.centres()
     meshing = {frozenset(mesh.ends) for mesh in draft.meshes.values()}
     shafts = {frozenset(shaft.ends) for shaft in draft.shafts.values()}
@@ -184,7 +184,7 @@ def check_neighbours(draft: Draft) -> Iterator[Problem]:
 
 
 def _clash(draft: Draft, one: str, two: str, centres: Mapping[str, Vector]) -> _Clash | None:
-    """Whether two gears overlap in one plane: where places along the axis differ, by face width."""
+    """Return how two gears overlap, or None; where places along the axis differ, by face width."""
     here, there = draft.gears[one], draft.gears[two]
     if here.tooth is None or there.tooth is None or "internal" in (here.type, there.type):
         return None

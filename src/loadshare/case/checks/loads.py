@@ -1,4 +1,4 @@
-"""Loads from outside and warmth: what gravity needs, and which gears grow."""
+"""Checks on gravity, which needs masses, and on temperatures, for cylindrical gears only."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from loadshare.errors import Problem
 
 
 def check_masses(draft: Draft) -> Iterator[Problem]:
-    """Gravity pulls at every gear."""
+    """Yield gears whose mass gravity needs and that have none."""
     if draft.operating is None or draft.operating.gravity is None:
         return
     for name, gear in draft.gears.items():
@@ -24,7 +24,10 @@ def check_masses(draft: Draft) -> Iterator[Problem]:
 
 
 def check_temperatures(draft: Draft) -> Iterator[Problem]:
-    """Growth is counted at the pitch points of cylindrical gears."""
+    """Yield temperatures in trains with face gears.
+
+    Thermal growth is counted at the pitch points of cylindrical gears.
+    """
     warm: list[Path] = [
         ("gears", name, "temperature") for name, g in draft.gears.items() if g.temperature
     ]

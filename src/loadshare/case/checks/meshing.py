@@ -1,4 +1,4 @@
-"""What changes over the mesh cycle, or as gears turn, must be given for all of it."""
+"""Checks that what changes over the mesh cycle, or as gears turn, is given throughout."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _acting_radius(draft: Draft, found: Misfit) -> str:
 
 
 def check_turning(draft: Draft) -> Iterator[Problem]:
-    """Yield eccentricities of a mesh cycle over which nothing determines how far gears turn."""
+    """Yield eccentricities if nothing determines how far gears turn over the mesh cycle."""
     operating = draft.operating
     if operating is None or not draft.sound("gears"):
         return
@@ -92,7 +92,7 @@ def turning_is_given(operating: Operating, march: March | None, gears: Mapping[s
 
 
 def check_march_teeth(draft: Draft) -> Iterator[Problem]:
-    """Yield meshes of a march whose law changes over a cycle that nothing tells."""
+    """Yield meshes of a march whose law varies over their cycle if nothing gives their position."""
     if draft.march is None or not draft.sound("gears", "meshes"):
         return
     counts, _ = tooth_counts(draft.gears, draft.meshes)

@@ -1,4 +1,4 @@
-"""What a case names must be there, and what it groups must be whole."""
+"""Checks that what a case names exists, and that its groups are complete."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def _copies(name: str, gears: list[str]) -> list[str]:
 
 
 def _unequal(draft: Draft, path: Path, gears: list[str]) -> str:
-    """Say that a mesh or shaft joins gears of which there are not as many copies of each."""
+    """Say that a mesh or shaft joins gears with different numbers of copies."""
     name = str(path[1])
     of = {"meshes": draft.meshes.get(name), "shafts": draft.shafts.get(name)}.get(str(path[0]))
     ends = of.ends if of is not None else ()
@@ -70,7 +70,7 @@ def check_mesh_names(draft: Draft) -> Iterator[Problem]:
 
 
 def check_about_circles(draft: Draft) -> Iterator[Problem]:
-    """Yield centres that are given, over others, from themselves."""
+    """Yield centres whose chain of poles leads back to themselves."""
     about = {
         name: gear.centre.about
         for name, gear in draft.gears.items()
@@ -111,7 +111,7 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
     for section, keys in ENDS.items():
         valid = getattr(draft, section)
         for name in draft.names(section):
-            # A name that tells no gears was reported already.
+            # A name that gives no two gears was reported already.
             ends = () if name in valid else ends_of(name, gears) or ()
             for number, key in enumerate(keys):
                 path: Path = (section, name, key)
@@ -127,7 +127,7 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
                     by_name = ends if len(keys) == 1 else ends[number : number + 1]
                     yield from ((path[:-1], gear) for gear in by_name)
     for section in (*FLOATS, "errors"):
-        # A name that is none was reported already.
+        # A blank name was reported already.
         yield from (((section, name), name) for name in draft.names(section) if name.strip())
     yield from _texts(draft, "rings", "neighbours")
     yield from _texts_at(draft, ("operating", "input"))
@@ -164,7 +164,7 @@ def _texts_at(draft: Draft, path: Path) -> Iterator[tuple[Path, str]]:
 
 
 def check_stage_groups(draft: Draft) -> Iterator[Problem]:
-    """Yield what a stage names twice, or in series, and groups that do not split the stage."""
+    """Yield meshes that a stage names twice or in series, and groups that do not partition it."""
     for name, stage in draft.stages.items():
         path = ("stages", name)
         yield from _in_series(draft, path, stage.meshes)
@@ -185,7 +185,7 @@ def check_stage_groups(draft: Draft) -> Iterator[Problem]:
 
 
 def _in_series(draft: Draft, path: Path, meshes: Iterable[str]) -> Iterator[Problem]:
-    """Yield a gear that meshes of a stage name on both sides: their torques are not alike."""
+    """Yield a gear that meshes of a stage name on both sides: their torques are not comparable."""
     ends = {name: draft.meshes[name].ends for name in meshes if name in draft.meshes}
     first = {pair[0]: name for name, pair in ends.items()}
     second = {pair[1]: name for name, pair in ends.items()}
@@ -218,7 +218,7 @@ def check_measured_names(draft: Draft) -> Iterator[Problem]:
 def check_measured_positions(draft: Draft) -> Iterator[Problem]:
     """Yield measurements at positions that the case does not have."""
     if draft.operating is None or (draft.march is None and draft.operating.cycle == "common"):
-        # How many positions there are follows from the speeds.
+        # The number of positions follows from the speeds.
         return
     count = draft.operating.positions if draft.march is None else draft.march.steps
     for name, measurement in draft.measured.items():
