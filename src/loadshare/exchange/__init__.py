@@ -1,1 +1,1 @@
-"""Machines from and for other programs."""
+"""Exchange of machines with other programs."""

@@ -30,7 +30,7 @@ class Imported:
         The case file, headed by what was assumed and left out.
     taken, assumed, left_out : tuple of str
     places : mapping of key path to str
-        Where keys were found, where messages are to name that.
+        Where keys were found, if messages are to name it.
     """
 
     data: Data
@@ -46,12 +46,12 @@ class Imported:
         Parameters
         ----------
         file : str
-            To be named in messages.
+            File to name in messages.
 
         Raises
         ------
         CaseError
-            If what the file says makes no case that can be used.
+            If the content does not make a valid case.
         """
         return Case(self.data, origin=Origin(file, self.places))
 

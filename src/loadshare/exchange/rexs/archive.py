@@ -1,4 +1,4 @@
-"""Archives of REXS files: what is inside, and a copy with another text of it."""
+"""Archives of REXS files: unpacking, and repacking with another text."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ DAMAGED = (
     EOFError,
     ValueError,
 )
-"""What reading an archive raises that is damaged, or packed in a way that Python does not know."""
+"""Exceptions raised by an archive that is damaged or packed by a method unknown to Python."""
 ENDINGS = (".rexs", ".rexsj")
 ENCRYPTED = 1
 """Flag of a file in an archive."""
 START = b"PK\x03\x04"
-"""Of an archive."""
+"""First bytes of an archive."""
 
 
 def unpacked(path: Path, content: bytes) -> bytes:
-    """Return the one REXS file of an archive, or the content of what is none.
+    """Return the one REXS file of an archive; return any other content unchanged.
 
     Raises
     ------
@@ -48,9 +48,9 @@ def unpacked(path: Path, content: bytes) -> bytes:
 
 
 def repacked(path: Path, content: bytes, text: str) -> bytes:
-    """Return what `content` is with another text for its REXS file: an archive, or the text.
+    """Return `content` with another text for its REXS file: an archive, or the text alone.
 
-    Everything else in the archive stays, with names and dates.
+    Everything else in an archive stays, with names and dates.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def repacked(path: Path, content: bytes, text: str) -> bytes:
     Unreadable
         If what it holds is too large.
     """
-    # Half a letter, which XML cannot hold, is written as JSON has it.
+    # A lone surrogate, which XML cannot hold, is written as in JSON.
     packed = text.encode(errors="backslashreplace")
     if content[:4] != START:
         return packed
@@ -70,7 +70,8 @@ def repacked(path: Path, content: bytes, text: str) -> bytes:
             raise _too_large()
         for info in archive.infolist():
             inside = packed if info is unit else _read(path, archive, info)
-            # What it says of sizes and places is that of the old archive.
+            # Copied, because writing changes its sizes and offsets, which belong to the old
+            # archive.
             made.writestr(copy(info), inside)
         made.comment = archive.comment
     return held.getvalue()

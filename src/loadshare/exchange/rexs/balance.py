@@ -1,4 +1,4 @@
-"""Whether torques and speeds of a REXS unit fit one another, and the case that has them."""
+"""Consistency of the torques and speeds of a REXS unit, and the case with its further torques."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from loadshare.train.geometry import geometry_of
 RPM = 30.0 / math.pi
 """Revolutions per minute of one radian per second."""
 ALIKE = 1e-2
-"""How far a given torque may be from what balances all others and need no word, as a part of the
-larger one: files give few digits, and losses [-]."""
+"""Difference up to which a given torque or speed agrees with the others and is not reported,
+relative to the larger value: files give few digits, and losses [-]."""
 
 
 def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: list[str]) -> Data:
-    """Return a case with the torques on neither input nor output.
+    """Return a case with the torques added that act on neither input nor output.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: 
         The case without them.
     flow : Flow
     assumed, left_out : list of str
-        Take what is to be said of torques and speeds.
+        Receive the remarks on torques and speeds.
     """
     speeds = _speeds(of, flow)
     unknown = f"{flow.first}: no speed is given, it runs in the sense of its torque"
@@ -40,7 +40,7 @@ def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: 
         assumed += [] if flow.speed else [unknown]
         return data
     try:
-        # Senses of rotation do not depend on the signs.
+        # Senses of rotation do not depend on the signs of torques.
         geometry = geometry_of(Case(_loaded(data, flow.others)))
     except CaseError:
         assumed += [] if flow.speed else [unknown]
@@ -68,7 +68,7 @@ def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: 
 
 
 def _loaded(data: Data, torques: Mapping[str, float]) -> Data:
-    """A case with further torques [N·m]."""
+    """Return a case with further torques [N·m]."""
     if not torques:
         return data
     external = {name: torque_of(torque) for name, torque in torques.items()}
@@ -78,9 +78,9 @@ def _loaded(data: Data, torques: Mapping[str, float]) -> Data:
 def _turning(
     flow: Flow, speeds: dict[tuple[str, str], float], gears: Mapping[str, Gear]
 ) -> tuple[float, str] | None:
-    """Speed of the input in the sense in which the case has it [rad/s], and from where it is.
+    """Return the input's speed [rad/s], positive in the case's running sense, and a remark on it.
 
-    It follows from that of the first other shaft; None where none is given.
+    It follows from the speed of the first other shaft that gives one; None if there is none.
     """
     for (shaft, name), given in speeds.items():
         if rate := gears[name].ratio * gears[name].sense:
@@ -95,16 +95,16 @@ def _turning(
 
 
 def _reversed(data: Data, flow: Flow) -> tuple[Data, Flow]:
-    """Return a case, and its input, that run the other way under the same torque."""
+    """Return a case and its flow, running the other way under the same torque."""
     back = "clockwise" if flow.running == "counter-clockwise" else "counter-clockwise"
     operating = data["operating"] | {"running": back, "torque": torque_of(-flow.torque)}
     return {**data, "operating": operating}, replace(flow, running=back, torque=-flow.torque)
 
 
 def _speeds(of: Gearing, flow: Flow) -> dict[tuple[str, str], float]:
-    """Speeds about the axes of bodies [rad/s] beside the input's, by shaft and body.
+    """Return the given speeds about the axes of bodies [rad/s], by shaft and body.
 
-    Not of planets, of which files may give the speed on their pins.
+    The input is left out, and so are planets, whose speed files may give relative to the pin.
     """
     planets = {of.names[planet] for planet in of.carrier_of}
     found: dict[tuple[str, str], float] = {}
@@ -119,7 +119,7 @@ def _speeds(of: Gearing, flow: Flow) -> dict[tuple[str, str], float]:
 def _other_speeds(
     flow: Flow, speeds: dict[tuple[str, str], float], gears: Mapping[str, Gear]
 ) -> list[str]:
-    """Say which shafts are given another speed than follows from the input's and the teeth."""
+    """Say which shafts have a speed other than follows from the input's speed and the teeth."""
     found: list[str] = []
     if not flow.speed:
         return found
@@ -135,7 +135,7 @@ def _other_speeds(
 
 
 def _contradiction(flow: Flow, last: Gear, power: float) -> list[str]:
-    """Say if the output gives another torque than what balances a power, over the input's speed."""
+    """Say if the output's torque does not balance a power, given per input speed [N·m]."""
     if not last.ratio:
         return []
     needed, given = -power / abs(last.ratio), flow.output * last.running

@@ -1,4 +1,4 @@
-"""What of a REXS model cannot be used, and what is not used."""
+"""Which parts of a REXS model cannot be used, and which are not used."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from loadshare.exchange.rexs.routes import applied_loads
 ON_AXIS = 1e-6
 """How far from an axis what sits on it may be unreported [m]."""
 OVERLOOKED = ("normal_backlash", "runout", "angular_misalignment")
-"""Words in the names of attributes that would matter to load sharing."""
+"""Words in the names of attributes that matter to load sharing but are not imported."""
 
 
 def unread_values(path: Path, of: Gearing) -> list[Problem]:
-    """Return a problem for every value that a case needs and that is none; alike ones together."""
+    """Return a problem for every needed value that could not be read; equal ones are merged."""
     found: dict[tuple[str, str, str], list[tuple[Component, Unread]]] = {}
     for component in of.model.components.values():
         if component.type in READ:
@@ -44,7 +44,7 @@ def unread_values(path: Path, of: Gearing) -> list[Problem]:
 
 
 def unplaced(of: Gearing) -> list[str]:
-    """Return what of couplings and loads sits at the start of its shaft for want of a place."""
+    """Return remarks on couplings and loads put at the start of their shaft for lack of a place."""
     parts = [
         (coupling, shaft, side, other.id not in of.casing)
         for coupling, inner, outer in of.coupled
@@ -75,7 +75,7 @@ def beside_axes(of: Gearing) -> list[str]:
 
 
 def contradictions(path: Path, of: Gearing) -> list[Problem]:
-    """Return problems: gears on several shafts, parts of teeth, negative modules."""
+    """Return problems: gears on several shafts, fractions of teeth, negative modules."""
     problems = []
     for gear in of.gears:
         where = f"{gear.type} {gear.id}"
@@ -98,7 +98,7 @@ def contradictions(path: Path, of: Gearing) -> list[Problem]:
 
 
 def unknown_gears(path: Path, of: Gearing) -> list[Problem]:
-    """Return a problem for every coupling that does not say whether it is engaged in the gear."""
+    """Return a problem for every coupling that does not say if the unit's gear engages it."""
     problems = []
     for coupling in of.model.of_type(*COUPLINGS):
         given = coupling.attributes.get("is_engaged")
@@ -113,7 +113,7 @@ def unknown_gears(path: Path, of: Gearing) -> list[Problem]:
 
 
 def unused(of: Gearing, used: set[str]) -> list[str]:
-    """Return what of stages, bearings, couplings and loads is not in the case.
+    """Return remarks on stages, bearings, couplings and loads that are not in the case.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def unused(of: Gearing, used: set[str]) -> list[str]:
 
 
 def _overlooked(of: Gearing) -> list[str]:
-    """Attributes that matter to load sharing and that a case from REXS does not have."""
+    """Return attributes that matter to load sharing but are not imported, with their numbers."""
     kinds = Counter(
         (name, component.type)
         for component in of.model.of_type(*GEARS, *BEARINGS, "cylindrical_stage")
@@ -170,7 +170,7 @@ def _overlooked(of: Gearing) -> list[str]:
 
 
 def _ties_across(of: Gearing, coupling: Component, sides: list[Component]) -> bool:
-    """Whether a coupling of torque ties two shafts across the axis, or a carrier softly."""
+    """Return whether a coupling also holds two shafts across the axis, or a carrier elastically."""
     if all(of.on_shaft(side) for side in sides):
         return radial(coupling) > 0.0
     carrier = any(side.id in of.carrier_shafts for side in sides)
@@ -179,7 +179,7 @@ def _ties_across(of: Gearing, coupling: Component, sides: list[Component]) -> bo
 
 
 def _why_unused(of: Gearing, part: Component, sides: list[Component]) -> str:
-    """Why a bearing or coupling is in no case."""
+    """Return why a bearing or coupling is not in the case."""
     if not sides:
         return "it joins nothing"
     if not any(side.type == "shaft" for side in sides):

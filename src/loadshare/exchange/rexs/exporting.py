@@ -1,4 +1,4 @@
-"""What was found, written back into a copy of the REXS file from which the case was imported."""
+"""Export of a result into a copy of the REXS file from which its case was imported."""
 
 from __future__ import annotations
 
@@ -35,30 +35,30 @@ MOVED = "custom_loadshare_displacement"
 
 
 def export_rexs(result: Result, unit: str | Path) -> str:
-    """Return a REXS file with what was found, all else as it was.
+    """Return a REXS file with the results added and everything else unchanged.
 
-    It is in the components, or, if the file has load cases, in the first of these, of which the
-    loads are. Of every cylindrical stage the mesh load factor K_γ, the largest force of its mesh
-    over the mean of its stage in the case, if it is in one, else none; the stiffness over the
-    positions, force over compression along the line of action; normal force and transmission error
-    over the positions. If several meshes share one stage, it has the largest K_γ alone. Of every
-    bearing of a shaft, and every seat of a pin, the force on both its sides, of every gear and
-    carrier displacement and force on what holds it, each at the position at which it is largest:
-    of planets as seen from their carrier, in its directions at the first position, else as the
-    housing sees it. What has no name in REXS has one that begins with ``custom_loadshare``.
+    They are written to the components or, if the file has load cases, to the first of these, from
+    which the loads are. A cylindrical stage gets the mesh load factor K_γ (the largest force of its
+    mesh over the mean of its stage in the case; none if it is in no stage) and, over the positions,
+    stiffness (force over compression along the line of action), normal force and transmission
+    error. If several meshes share one stage, it gets only the largest K_γ. Bearings of shafts and
+    seats of pins get the force on both sides, gears and carriers their displacement and their force
+    on what holds them, each at the position where it is largest: for planets as seen from their
+    carrier, in its directions at the first position, for others as seen from the housing. Names of
+    quantities that REXS does not have begin with ``custom_loadshare``.
 
     Parameters
     ----------
     result : Result
-        Of a case with the gears that `import_rexs` names.
+        Result of a case with the names of gears that `import_rexs` gives.
     unit : str or pathlib.Path
-        The REXS file, XML, JSON or an archive of either; it is read only. Of an archive, the text
-        of the file inside is returned.
+        The REXS file, XML, JSON or an archive of either; it is not changed. For an archive, the
+        text of the file inside is returned.
 
     Raises
     ------
     CaseError
-        If the file cannot be read, or has gears or meshes that the case has not.
+        If the file cannot be read, or has gears or meshes that the case lacks.
     """
     unit = Path(unit)
     gearing = Gearing(read_model(unit))
@@ -72,7 +72,7 @@ def export_rexs(result: Result, unit: str | Path) -> str:
 
 
 def in_form_of(unit: str | Path, text: str) -> bytes:
-    """Return a REXS text as the unit holds its own: packed, if it is an archive, with all else.
+    """Return a REXS text in the form of its unit: if that is an archive, packed with all else.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def in_form_of(unit: str | Path, text: str) -> bytes:
 
 
 def _check_all_there(unit: Path, gearing: Gearing, result: Result) -> None:
-    """Refuse a case that lacks gears or meshes of the file: bearings would bear too little."""
+    """Refuse a case that lacks gears or meshes of the file: bearing forces would be too small."""
     names, meshes, what = gearing.names, _by_gears(result), "gears must be named as the import"
     pairs = [(names[one.id], names[other.id]) for _, one, other in gearing.stages]
     if not any(frozenset(pair) in meshes for pair in pairs):
@@ -105,13 +105,13 @@ def _check_all_there(unit: Path, gearing: Gearing, result: Result) -> None:
 
 
 def _by_gears(result: Result) -> dict[frozenset[str], str]:
-    """Names of meshes by their gears."""
+    """Return the names of meshes by their gears."""
     meshes = result.positions[0].train.meshes
     return {frozenset((mesh.driver, mesh.driven)): name for name, mesh in meshes.items()}
 
 
 def _of_meshes(result: Result, gearing: Gearing) -> Values:
-    """Return what is written for stages; of one with several meshes the largest factor alone."""
+    """Return the values of stages; for one with several meshes the largest factor alone."""
     made: Values = {}
     positions, meshes = result.positions, _by_gears(result)
     several = Counter(stage.id for stage, *_ in gearing.stages)
@@ -127,13 +127,13 @@ def _of_meshes(result: Result, gearing: Gearing) -> Values:
                 ERROR: ([1e6 * p.elastic.mesh_transmission_error[name] for p in positions], "mum"),
             }
     for id_, known in factors.items():
-        # One that was found before, of other forces, is taken away.
+        # An earlier factor, which belongs to other forces, is removed.
         made[id_][FACTOR] = (max(known), "none") if known else None
     return made
 
 
 def _load_factors(result: Result, mesh: str) -> Iterator[float]:
-    """K_γ of a mesh at the positions where its stage carries."""
+    """Yield K_γ of a mesh at the positions where its stage carries load."""
     train = result.positions[0].train
     for stage in (s for s in train.stages if mesh in s.meshes):
         for p in result.positions:
@@ -142,19 +142,19 @@ def _load_factors(result: Result, mesh: str) -> Iterator[float]:
 
 
 def _bodies(gearing: Gearing) -> Iterator[tuple[Component, str]]:
-    """Gears and carriers of the file, with their names."""
+    """Yield the gears and carriers of the file, with their names."""
     for body in (*gearing.gears, *gearing.carriers):
         yield body, gearing.names[body.id]
 
 
 def _pushed(result: Result, name: str) -> Array:
-    """Force of a body on what holds it at every position, (positions, 3) [N]."""
+    """Return the force of a body on what holds it at every position, (positions, 3) [N]."""
     forces = np.array([p.loads.bearings[name] for p in result.positions])
     return _in_housing(result, name, forces @ np.array(result.frames[name]))
 
 
 def _in_housing(result: Result, name: str, seen: Array) -> Array:
-    """Vectors of a body at every position as the housing sees them; of a planet, as its carrier."""
+    """Return a body's vectors at every position as seen from the housing, or a planet's carrier."""
     train = result.positions[0].train
     gear = train.gears[name]
     turned = [train.frame_angle(name, train.rotations(p.position)) for p in result.positions]
@@ -162,12 +162,12 @@ def _in_housing(result: Result, name: str, seen: Array) -> Array:
 
 
 def _largest(vectors: Array) -> Array:
-    """The longest of some vectors."""
+    """Return the longest of some vectors."""
     return np.asarray(vectors[np.argmax((vectors**2).sum(axis=1))])
 
 
 def _of_bodies(result: Result, gearing: Gearing) -> Values:
-    """What is written for gears and carriers: x, y, z."""
+    """Return the values of gears and carriers: x, y, z."""
     made: Values = {}
     for body, name in _bodies(gearing):
         found = np.array([p.claim.displacement[name] for p in result.positions])
@@ -180,9 +180,9 @@ def _of_bodies(result: Result, gearing: Gearing) -> Values:
 
 
 def _of_bearings(result: Result, gearing: Gearing) -> Values:
-    """Forces on both sides of every bearing, in its own directions v and w.
+    """Return the forces on both sides of every bearing, in its own directions v and w.
 
-    Each takes its part of what the bodies on its shaft push, as the import has taken them.
+    Each takes its part of the forces of the bodies on its shaft, as in the import.
     """
     pushed: dict[str, Array] = {}
     across: dict[str, Array] = {}
@@ -204,9 +204,9 @@ def _of_bearings(result: Result, gearing: Gearing) -> Values:
 
 
 def _stiffness(result: Result, name: str) -> list[float]:
-    """Force over compression of a mesh at every position [N/mm]; 0 where it carries nothing.
+    """Return force over compression of a mesh at every position [N/mm]; 0 where it is unloaded.
 
-    Where a mesh jams, that of the flank which carries more.
+    Where a mesh jams, it is that of the flank with the larger force.
     """
     values = []
     for position in result.positions:
@@ -221,9 +221,9 @@ def _stiffness(result: Result, name: str) -> list[float]:
 
 Value = tuple[float | list[float], str]
 Values = dict[str, dict[str, Value | None]]
-"""Values and units by attribute, by id of the component; None of what is to be there no more."""
+"""Values and units by attribute, by id of the component; None for an attribute to be removed."""
 ABOUT = ("id", "type", "name")
-"""What a load case repeats of a component."""
+"""Keys of a component that a load case repeats."""
 
 
 def into_xml(root: ElementTree.Element, found: Values) -> str:
@@ -252,7 +252,7 @@ def into_xml(root: ElementTree.Element, found: Values) -> str:
 def _all_in_case(
     case: ElementTree.Element, whole: list[ElementTree.Element], found: Values
 ) -> list[ElementTree.Element]:
-    """Components of a load case, with those added for which something was found."""
+    """Return the components of a load case, adding those for which there are results."""
     inside = list(case.iter("component"))
     known = {component.get("id", "") for component in inside}
     for component in whole:

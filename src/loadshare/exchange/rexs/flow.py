@@ -1,4 +1,4 @@
-"""Where the torque enters a REXS unit, and where it leaves it."""
+"""Input and output of a REXS unit: where the torque enters, and where it leaves."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ class Flow:
     others : dict of str to float
         Torques on other bodies, about their axes [N·m].
     left_out : list of str
-        Loads without a torque that are on neither.
+        Remarks on loads without a torque that are on neither input nor output.
     speed : float
-        Of the input about its axis [rad/s]; 0 where the file gives none.
+        Speed of the input about its axis [rad/s]; 0 where the file gives none.
     """
 
     first: str
@@ -51,7 +51,7 @@ def flow_of(of: Gearing, assumed: list[str], lacks: Lacks) -> Flow | None:
     """Return input and output of a unit; None where `lacks` reports what is missing."""
     loads = [applied for applied in applied_loads(of) if may_turn(applied.load)]
     driving = [applied for applied in loads if _torque(applied.load)]
-    # What takes power is the input only where nothing else can be.
+    # A load that takes power is the input only if no other can be.
     driving.sort(key=lambda each: (not each.load.holds("defines_torque"), -np.sign(_power(each))))
     if not driving:
         lacks("", "has no external_load with a torque_around_u_axis on a shaft with gears")
@@ -99,15 +99,16 @@ def _torque(load: Component) -> float:
 
 
 def _power(applied: Applied) -> float:
-    """Power that a load puts in [W]; 0 where the speed of its shaft is not given."""
+    """Return the power that a load puts in [W]; 0 where the speed of its shaft is not given."""
     speed = applied.shaft.number("rotational_speed") or applied.end.number("rotational_speed")
     return _torque(applied.load) * (speed or 0.0)
 
 
 def _as_output(applied: Applied) -> tuple[int, float]:
-    """How unlikely a load is the output's.
+    """Return a sort key of loads, lowest for the one most likely to be at the output.
 
-    One of which all is open is, a mere force is not; of several torques, what takes most power.
+    Loads without a torque come first, except mere forces, which come last; torques come in between,
+    starting with the one that takes most power.
     """
     load = applied.load
     if _torque(load):
@@ -117,7 +118,7 @@ def _as_output(applied: Applied) -> tuple[int, float]:
 
 
 def _are_one(of: Gearing, one: Applied, other: Applied) -> bool:
-    """Whether two loads are on one shaft, or on one carrier."""
+    """Return whether two loads are on one shaft, or on one carrier."""
     carrier = of.carrier_shafts.get(one.end.id)
     return one.end is other.end or (
         carrier is not None and of.carrier_shafts.get(other.end.id) is carrier

@@ -1,4 +1,4 @@
-"""What belongs to what in a REXS model: gears to shafts, planets to carriers, loads to bodies."""
+"""Assignments in a REXS model: gears to shafts, planets to carriers, couplings to parts."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Stage = tuple[Component, Component, Component]
 def loose_stages(
     stages: list[Stage], shaft_of: Mapping[str, Component], held: set[str], opened: set[str]
 ) -> list[Stage]:
-    """Return the meshes of gears that turn loose on open couplings; they carry nothing.
+    """Return the meshes of gears that turn loose on open couplings; they carry no load.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def loose_stages(
     shaft_of : mapping of str to Component
         Shaft of every gear, by id.
     held : set of str
-        Ids of shafts and gears on which something else than meshes exerts torque.
+        Ids of shafts and gears on which something other than meshes exerts torque.
     opened : set of str
         Ids of the shafts at open couplings.
     """
@@ -65,12 +65,12 @@ def loose_stages(
 
 
 def _both(stage: Stage) -> frozenset[str]:
-    """Ids of both gears of a stage."""
+    """Return the ids of both gears of a stage."""
     return frozenset(gear.id for gear in stage[1:])
 
 
 class Joint(NamedTuple):
-    """A bearing or coupling, and the side of it on which a shaft is: "inner" or "outer"."""
+    """A bearing or coupling, a shaft on one side ("inner" or "outer"), and what is on the other."""
 
     part: Component
     side: str
@@ -91,7 +91,7 @@ class Gearing:
 
     @cached_property
     def places(self) -> Places:
-        """Where components are."""
+        """Places of components."""
         return Places(self.model)
 
     @cached_property
@@ -124,13 +124,13 @@ class Gearing:
 
     @property
     def repeated(self) -> list[tuple[Stage, Stage]]:
-        """Stages of gears that mesh already, each with the first stage of these."""
+        """Stages of two gears that mesh already, each with the first stage of the same gears."""
         first, further = self._by_gears
         return [(stage, first[_both(stage)]) for stage in further]
 
     @cached_property
     def _by_gears(self) -> tuple[dict[frozenset[str], Stage], list[Stage]]:
-        """The first stage of every two gears, by their ids, and all further ones."""
+        """The first stage of each pair of gears, by their ids, and all further ones."""
         first: dict[frozenset[str], Stage] = {}
         further: list[Stage] = []
         for stage, one, other in self.model.related("stage", "stage", "gear_1", "gear_2"):
@@ -177,7 +177,7 @@ class Gearing:
         }
 
     def _on_carriers(self, relation: str) -> dict[str, Component]:
-        """Carrier of every shaft that a relation gives to a planetary stage, by id of the shaft."""
+        """Return the carriers of shafts that a relation gives to planetary stages, by shaft id."""
         of_stage = self._carriers_of_stages
         related = self.model.related(relation, "planetary_stage", "shaft")
         return {shaft.id: of_stage[stage.id] for stage, shaft in related if stage.id in of_stage}
@@ -196,7 +196,8 @@ class Gearing:
     def pins(self) -> set[str]:
         """Ids of the shafts on which planets sit: as the file says, or by their bearings.
 
-        What is part of a carrier and bears several planets is a shaft of the carrier.
+        A shaft that is part of a carrier and bears several planets is no pin, but the carrier's
+        shaft.
         """
         found = {s.id for _, s in self.model.related("planet_pin", "planetary_stage", "shaft")}
         riders = {self.shaft_of[planet].id for planet in self.carrier_of}
@@ -226,19 +227,19 @@ class Gearing:
         return {id_: c for id_, c in found.items() if id_ not in self.pins and c in self.carriers}
 
     def parts_of(self, carrier: Component) -> set[str]:
-        """Ids of a carrier, of its shafts and of side plates, which are parts of carriers."""
+        """Return the ids of a carrier, its shafts and all side plates, which belong to carriers."""
         shafts = {id_ for id_, whole in self.carrier_shafts.items() if whole is carrier}
         return {carrier.id, *shafts, *(plate.id for plate in self.model.of_type("side_plate"))}
 
     @cached_property
     def casing(self) -> set[str]:
-        """Ids of what stands still."""
+        """Ids of components that stand still."""
         return {c.id for c in self.model.of_type(*FIXED)}
 
     # Places ---------------------------------------------------------------------------------------
 
     def on_shaft(self, shaft: Component) -> list[tuple[float, str]]:
-        """Places along a shaft [m] and names of its gears; of a carrier's shaft the carrier."""
+        """Return the gears on a shaft, and its carrier if any: places along it [m] and names."""
         return self._bodies.get(shaft.id, [])
 
     @cached_property
@@ -255,12 +256,12 @@ class Gearing:
         return {id_: sorted(bodies) for id_, bodies in found.items()}
 
     def along(self, gear: Component) -> float:
-        """Middle of a gear along its shaft [m]."""
+        """Return the place of a gear's middle along its shaft [m]."""
         shaft = self.shaft_of.get(gear.id)
         return (self.places.along(gear, shaft) if shaft is not None else None) or 0.0
 
     def joint(self, shaft: Component) -> tuple[float, Component | None]:
-        """Where a carrier's shaft takes its torque [m], and the coupling there, if any.
+        """Return where along a carrier's shaft its torque acts [m], and the coupling there, if any.
 
         Without a coupling to a side plate it is the place along the shaft nearest to the planets.
         """
@@ -283,18 +284,18 @@ class Gearing:
         return (min(max(at, min(ends)), max(ends)) if ends else at), None
 
     def sections(self, shaft: Component) -> list[Component]:
-        """Sections of a shaft."""
+        """Return the sections of a shaft."""
         parts = (part for whole, part in self.model.parts if whole is shaft)
         return [part for part in parts if part.type == "shaft_section"]
 
     def nearest(self, shaft: Component, part: Component, side: str = "") -> tuple[str, float]:
-        """The body on a shaft that is nearest to a part of it, and how far away it is [m]."""
+        """Return the body on a shaft nearest to a part, and how far ahead of it the part is [m]."""
         at = self.places.along(part, shaft, side) or 0.0
         place, name = min(self.on_shaft(shaft), key=lambda body: abs(body[0] - at))
         return name, at - place
 
     def middle(self, body: Component) -> Vector | None:
-        """The middle of a gear, or of the planets of a carrier [m]."""
+        """Return the middle of a gear, or of the planets of a carrier [m]."""
         if body in self.carriers:
             planets = [g for g in self.gears if self.carrier_of.get(g.id) is body]
             found = [place for g in planets if (place := self.middle(g)) is not None]
@@ -308,22 +309,22 @@ class Gearing:
         return place
 
     def axis(self, body: Component) -> Vector:
-        """Direction of a body's axis: its shaft's if that gives one; x if nothing does.
+        """Return the direction of a body's axis: its shaft's if that gives one; x if nothing does.
 
-        Speeds and torques are about axes of shafts, and so are places along them.
+        The shaft comes first, as speeds, torques and places along it refer to its axis.
         """
         planets = [self.model.components[g] for g, c in self.carrier_of.items() if c is body]
         return self.places.axis(*self.shafts_of(body), body, *planets)
 
     def sense(self, shaft: Component, name: str) -> float:
-        """1 if a shaft's axis points as that of a body on it, -1 if against it."""
+        """Return 1 if a shaft's axis points as that of a body on it, -1 if it is opposite."""
         body = next(b for b in (*self.gears, *self.carriers) if self.names[b.id] == name)
         return math.copysign(1.0, dot(self.places.axis(shaft, body), self.axis(body)))
 
     def ahead(self, part: Component, shaft: Component, side: str, body: Component) -> float | None:
-        """How far a part of a shaft lies ahead of the middle of a body, along its axis [m].
+        """Return how far a part of a shaft lies ahead of the middle of a body, along its axis [m].
 
-        None where the file does not give enough for that.
+        None if the file does not give enough data for that.
         """
         along = self.places.along(part, shaft, side)
         if along is None:
@@ -334,20 +335,20 @@ class Gearing:
         return None if there is None or here is None else ahead(there, here, self.axis(body))
 
     def shafts_of(self, body: Component) -> list[Component]:
-        """Shaft of a gear, or the shafts of a carrier."""
+        """Return the shaft of a gear, or the shafts of a carrier."""
         if body.id in self.shaft_of:
             return [self.shaft_of[body.id]]
         return [self.model.components[s] for s, c in self.carrier_shafts.items() if c is body]
 
     def flanks(self, gear: Component) -> list[Component]:
-        """Flanks of a gear."""
+        """Return the flanks of a gear."""
         related = self.model.related("flank", "gear", "left", "right")
         return [flank for owner, *both in related if owner is gear for flank in both]
 
-    # Couplings and loads --------------------------------------------------------------------------
+    # Couplings ------------------------------------------------------------------------------------
 
     def joined(self, *types: str) -> list[tuple[Component, Component, Component]]:
-        """Bearings or couplings, and the inner and outer part of each."""
+        """Return the bearings or couplings of some types, with the inner and outer part of each."""
         related = self.model.related("side", "assembly", "inner_part", "outer_part")
         return [(part, inner, outer) for part, inner, outer in related if part.type in types]
 
@@ -366,7 +367,7 @@ class Gearing:
         return found
 
     def is_engaged(self, coupling: Component) -> bool:
-        """Whether a coupling is engaged in the gear in which the unit is."""
+        """Return whether a coupling is engaged in the unit's current gear."""
         given = coupling.attributes.get("is_engaged")
         if isinstance(given, tuple):
             number = self.shift if len(given) > 1 else 1
@@ -375,12 +376,12 @@ class Gearing:
 
     @cached_property
     def shifts(self) -> int:
-        """For how many gears, as in gear shifting, couplings say whether they are engaged."""
+        """Number of gears, in the sense of gear shifting, for which couplings give their state."""
         given = [c.attributes.get("is_engaged") for c in self.model.of_type(*COUPLINGS)]
         return max((len(each) for each in given if isinstance(each, tuple)), default=1)
 
     @cached_property
     def shift(self) -> int:
-        """The gear in which the unit is, from 1."""
+        """The unit's current gear, in the sense of gear shifting, from 1."""
         given = [unit.number("gear_shift_index") for unit in self.model.of_type("gear_unit")]
         return next((round(number) for number in given if number is not None), 1)

@@ -1,4 +1,4 @@
-"""What holds a body across its axis: the bearings of its shaft, seen from its place on it."""
+"""Support of a body across its axis by the bearings of its shaft, reduced to its place there."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from loadshare.exchange.rexs.gearing import Gearing, Joint
 from loadshare.exchange.rexs.model import BEARINGS, Component
 
 STIFF = 1e15
-"""Stiffness from which on a spring counts as rigid [N/m]."""
+"""Stiffness from which a spring counts as rigid [N/m]."""
 NEAR = 1e-9
-"""Distance up to which places are one [m]."""
+"""Distance up to which places count as one [m]."""
 
 
 def beam(stiffness: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return what of a unit force at 0 each spring takes, and how far the beam yields there.
+    """Return the part of a force at 0 that each spring takes, and the beam's compliance there.
 
     Parameters
     ----------
     stiffness : ndarray (n,)
-        Of the springs [N/m].
+        Stiffness of the springs [N/m].
     places : ndarray (n,)
-        Where they are along the beam [m].
+        Their places along the beam [m].
 
     Returns
     -------
@@ -38,9 +38,9 @@ def beam(stiffness: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, float]:
 
     Notes
     -----
-    With √k (1, u) = Q R and y = R⁻ᵀ (1, 0)ᵀ they are √k Q y and yᵀ y. S = Rᵀ R itself would lose a
-    spring that is softer than another by the precision of numbers; with the stiff rows first, R
-    does not.
+    With √k (1, u) = Q R and y = R⁻ᵀ (1, 0)ᵀ they are √k Q y and yᵀ y. Forming S = Rᵀ R would lose a
+    spring that is softer than another by the machine precision; R, with the stiff rows first, does
+    not.
     """
     arms, here = _arms(places)
     stiff_first = np.argsort(-stiffness, kind="stable")
@@ -54,18 +54,18 @@ def beam(stiffness: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 def _arms(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(1, u) of the springs and of the place 0, in units of suitable size."""
+    """Return (1, u) of the springs and of the place 0, in suitable units."""
     size = float(np.ptp(places))
     if is_one(places):
         return np.ones((len(places), 1)), np.ones(1)
-    # About the middle of the springs, in units of their distance: better numbers.
+    # About the middle of the springs and in units of their distance, for better conditioning.
     middle = float(places.mean())
     arms = np.column_stack([np.ones(len(places)), (places - middle) / size])
     return arms, np.array([1.0, -middle / size])
 
 
 def is_one(places: ArrayLike) -> bool:
-    """Whether springs are all at one place: then the beam only moves and does not tilt."""
+    """Return whether springs are all at one place: then the beam only moves and does not tilt."""
     return float(np.ptp(places)) < NEAR
 
 
@@ -76,7 +76,7 @@ CLEARANCES = (
     "radial_clearance",
     "radial_backlash",
 )
-"""Radial clearance of a bearing as versions name it; that in operation counts most."""
+"""Names of a bearing's radial clearance in all versions; that in operation takes precedence."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class Link:
     ----------
     part : Component
     side : str
-        The side of it on which the shaft is: "inner" or "outer".
+        Its side on which the shaft is: "inner" or "outer".
     shaft : Component
     stiffness : float
         Across the axis [N/m]; `STIFF` if rigid.
@@ -104,16 +104,16 @@ class Link:
 
 @dataclass(frozen=True)
 class Holding:
-    """What holds a body.
+    """The support of a body.
 
     Attributes
     ----------
     support : dict
-        Of a gear of a case.
+        Keys of the gear in the case.
     clearance : dict
         Its bearing with clearance, if any.
     offset : tuple of float
-        By which its bearings are out of place (3,) [m].
+        Offset of the body due to misaligned bearings (3,) [m].
     parts : frozenset of str
         Ids of the bearings and couplings that hold it.
     """
@@ -125,11 +125,11 @@ class Holding:
 
 
 def holding_of(of: Gearing, body: Component, assumed: list[str]) -> Holding:
-    """Return what holds a body.
+    """Return the support of a body.
 
-    Its shaft is a rigid beam on its bearings, and so is the pin on which a planet sits on its
-    seats: both yield to the force on the body, which goes through both.
-    Other bodies on the same shaft are not seen.
+    Its shaft is a rigid beam on its bearings, and the pin of a planet is one on its seats. The
+    force on the body goes through both, so their compliances add up. Other bodies on the same shaft
+    are neglected.
     """
     links, seats = _links(of, body, assumed)
     name, nowhere = of.names[body.id], (0.0, 0.0, 0.0)
@@ -157,7 +157,7 @@ def holding_of(of: Gearing, body: Component, assumed: list[str]) -> Holding:
 
 
 def _clearance(links: list[Link], assumed: list[str]) -> float:
-    """Mean radial clearance of bearings [m]; of those with preload none."""
+    """Return the mean radial clearance of bearings [m]; it is 0 for those with preload."""
     gaps = []
     for part in (link.part for link in links if link.part.type in BEARINGS):
         given = part.number(*CLEARANCES) or 0.0
@@ -170,25 +170,25 @@ def _clearance(links: list[Link], assumed: list[str]) -> float:
 
 
 def borne_by(of: Gearing, body: Component) -> list[tuple[Link, float]]:
-    """Return the bearings that hold a body, as `holding_of` has it.
+    """Return the bearings that hold a body, as in `holding_of`, and their parts of its force.
 
     Returns
     -------
     list of (Link, float)
-        What holds its shaft, and the part of the body's force that it takes; all parts add up to
-        one. So do those of the seats of its pin.
+        Links that hold its shaft, each with the part of the body's force that it takes; the parts
+        add up to one. So do those of the seats of its pin.
     """
     links, seats = _links(of, body, [])
     return [*_shared(links), *_shared(seats)]
 
 
 def _shared(links: list[Link]) -> list[tuple[Link, float]]:
-    """Links, and the part of a force at the body that each takes."""
+    """Return links with the part of a force at the body that each takes."""
     return list(zip(links, _beam(links)[0].tolist(), strict=True)) if links else []
 
 
 def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link], list[Link]]:
-    """What holds a body's shafts, and what holds the pin if they turn on one."""
+    """Return the links that hold a body's shafts, and those that hold the pin they turn on."""
     fixed = of.casing
     if body.id in of.carrier_of:
         fixed = fixed | of.parts_of(of.carrier_of[body.id])
@@ -221,7 +221,7 @@ def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link]
     ends = [*firm, *(seat for _, seats in pinned for seat in seats)]
     if body.id in of.carrier_of and any(joint.other.id in of.casing for joint in ends):
         assumed.append(f"{name}: what holds it in the casing counts as on its carrier")
-    # One pin yields in series; beside other supports that would need the tilting of both shafts.
+    # A single pin yields in series; beside other supports, the tilting of both shafts would count.
     seats = pinned[0][1] if pinned else []
     if firm or len({joint.other.id for joint, _ in pinned}) > 1:
         if any(radial(seat.part) < STIFF for _, seats in pinned for seat in seats):
@@ -232,7 +232,7 @@ def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link]
 
 
 def _joints(of: Gearing, shafts: list[Component]) -> list[Joint]:
-    """Bearings and couplings that join some shafts to anything else and can hold it there."""
+    """Return joints between some shafts and anything else that have a radial stiffness."""
     return [
         joint
         for shaft in shafts
@@ -242,7 +242,7 @@ def _joints(of: Gearing, shafts: list[Component]) -> list[Joint]:
 
 
 def _placed(of: Gearing, body: Component, joints: list[Joint], assumed: list[str]) -> list[Link]:
-    """Joints as springs along the axis of a body."""
+    """Return joints as springs along the axis of a body."""
     places = [of.ahead(joint.part, joint.shaft, joint.side, body) for joint in joints]
     unknown = len(joints) > 1 and None in places
     if unknown:
@@ -269,7 +269,7 @@ def _placed(of: Gearing, body: Component, joints: list[Joint], assumed: list[str
 
 
 def radial(part: Component) -> float:
-    """Stiffness of a bearing or coupling across its axis [N/m]; 0 if it holds nothing there."""
+    """Return the stiffness of a bearing or coupling across its axis [N/m]; 0 if it has none."""
     given = part.number("radial_stiffness")
     if part.attributes.get("radial_force_absorption") is False:
         return 0.0
@@ -284,18 +284,19 @@ def _beam(links: list[Link]) -> tuple[np.ndarray, float]:
 
 
 def _yields(links: list[Link]) -> float:
-    """Compliance of a body on what holds it [m/N]; 0 where all is rigid."""
+    """Return the compliance of a body on its links [m/N]; 0 if all are rigid."""
     if min(link.stiffness for link in links) >= STIFF:
         return 0.0
     return _beam(links)[1]
 
 
 def _offset(of: Gearing, borne: list[tuple[Link, float]]) -> tuple[float, float, float]:
-    """By how much bearings that are out of place move a body without load (3,) [m].
+    """Return how far misaligned bearings move a body without load (3,) [m].
 
     A bearing's misalignment is the offset of its outer ring where that is mounted: a shaft inside
-    moves along, a shaft outside moves the other way. As the shaft is rigid, each bearing moves the
-    body by the part of the body's force that it would take; so does each seat of its pin.
+    moves with it, a shaft outside moves the other way. As the shaft is rigid, each bearing moves
+    the body by its offset times the part of the body's force that it takes; so does each seat of
+    the pin.
     """
     total = np.zeros(3)
     for link, part in borne:

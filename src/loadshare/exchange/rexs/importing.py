@@ -1,4 +1,4 @@
-"""A case from a REXS model: what was taken, what was assumed, what was left out."""
+"""Import of a case from a REXS model, with what was taken, assumed and left out."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def import_rexs(path: str | Path) -> Imported:
 
 @dataclass
 class _Importer:
-    """A model on its way to a case."""
+    """Conversion of a model to a case."""
 
     path: Path
     of: Gearing
@@ -86,7 +86,7 @@ class _Importer:
         gears |= {self.of.names[c.id]: self._carrier(c) for c in self.of.carriers}
         flow = flow_of(self.of, self.assumed, self._lacks)
         if self.problems:
-            # What is missing may be what these relations were to say.
+            # These relations, which name unknown components, may be why data are missing.
             also = [Problem(str(self.path), "", "", note) for note in self.of.model.pointless]
             raise CaseError([*self.problems, *also])
         assert flow is not None
@@ -178,7 +178,7 @@ class _Importer:
         return made
 
     def _first_of(self, gear: Component, given: list[Component], *names: str) -> float | None:
-        """First of some numbers of a gear and its flanks; that others differ is reported."""
+        """Return the first of some numbers of a gear and its flanks; report others that differ."""
         first = first_number(given, *names)
         values = [value for part in given if (value := part.number(*names)) is not None]
         if any(abs(value - values[0]) > 1e-9 for value in values):
@@ -210,7 +210,7 @@ class _Importer:
 
     @cached_property
     def holding(self) -> dict[str, Holding]:
-        """What holds every gear and carrier, by id."""
+        """Support of every gear and carrier, by id."""
         return {
             body.id: holding_of(self.of, body, self.assumed)
             for body in (*self.of.gears, *self.of.carriers)
@@ -218,7 +218,7 @@ class _Importer:
 
     @cached_property
     def links(self) -> Links:
-        """What joins bodies around their axes."""
+        """Torsional links between bodies."""
         return links_of(self.of, self.assumed)
 
     def _bearings(self) -> Data:

@@ -1,4 +1,4 @@
-"""What joins bodies around their axes: shafts that twist, and couplings."""
+"""Torsional links between bodies: shafts that twist, and couplings."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from loadshare.exchange.rexs.routes import Route, nearest_to, opposite, routes_f
 from loadshare.exchange.rexs.shafts import twist_between
 
 RIGID = 1e15
-"""Torsional stiffness from which on a link counts as rigid [N·m/rad]."""
+"""Torsional stiffness from which a link counts as rigid [N·m/rad]."""
 
 
 @dataclass(frozen=True)
 class Links:
-    """What joins bodies around their axes.
+    """Torsional links between bodies, and to the casing.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Links:
     held : list of str
         Names of the bodies that a coupling, or their place in the casing, holds.
     used : set of str
-        Ids of the couplings that are in these.
+        Ids of the couplings that these contain.
     """
 
     shafts: dict[str, dict[str, Any]] = field(default_factory=dict)
@@ -36,7 +36,7 @@ class Links:
 
 
 def links_of(of: Gearing, assumed: list[str]) -> Links:
-    """Return what joins the bodies of a unit around their axes."""
+    """Return the torsional links between the bodies of a unit."""
     links = Links()
     for shaft in of.model.of_type("shaft"):
         _add_neighbours(links, of, shaft, assumed)
@@ -67,7 +67,7 @@ def _add_neighbours(links: Links, of: Gearing, shaft: Component, assumed: list[s
 
 
 def _routes(of: Gearing) -> list[Route]:
-    """Ways between bodies through couplings, and from bodies to the casing, each once."""
+    """Return the routes between bodies through couplings, and to the casing, each once."""
     found: dict[frozenset[str], Route] = {}
     for coupling, *both in of.coupled:
         for shaft in both:
@@ -78,7 +78,7 @@ def _routes(of: Gearing) -> list[Route]:
 
 
 def _add_route(links: Links, of: Gearing, route: Route, assumed: list[str]) -> None:
-    """Add what twists between the bodies at both ends of a way through couplings."""
+    """Add the torsion between the bodies at both ends of a route through couplings."""
     first, last = route[0], route[-1]
     one, to_one = of.nearest(first.shaft, first.part, first.side)
     other, to_other = nearest_to(of, route)
@@ -97,7 +97,7 @@ def _add_route(links: Links, of: Gearing, route: Route, assumed: list[str]) -> N
 
 
 def _between(of: Gearing, one: Joint, other: Joint, assumed: list[str]) -> float:
-    """What a shaft without gears twists between two couplings [rad/(N·m)]."""
+    """Return the twist of a shaft without gears between two couplings [rad/(N·m)]."""
     shaft = other.shaft
     places = (
         of.places.along(one.part, shaft, opposite(one.side)),
@@ -114,7 +114,7 @@ def _between(of: Gearing, one: Joint, other: Joint, assumed: list[str]) -> float
 
 
 def _seat(of: Gearing, shaft: Component, name: str, assumed: list[str]) -> float:
-    """How far the coupling twists by which a body sits on a shaft, if it is its carrier."""
+    """Return the twist of the coupling between a carrier and its shaft; 0 for other bodies."""
     carrier = of.carrier_shafts.get(shaft.id)
     if carrier is None or of.names[carrier.id] != name:
         return 0.0
@@ -129,9 +129,9 @@ def _way(
     coupling: Component,
     assumed: list[str],
 ) -> float:
-    """What a shaft twists from its body nearest to a coupling to the coupling [rad/(N·m)].
+    """Return the twist of a shaft between a coupling and the body nearest to it [rad/(N·m)].
 
-    Between two bodies it is nothing, as there the coupling counts as at the nearest.
+    It is 0 if the coupling is between two bodies: it then counts as being at the nearest one.
     """
     name, way = nearest
     bodies = of.on_shaft(shaft)
@@ -148,7 +148,7 @@ def _way(
 def _twist(
     of: Gearing, shaft: Component, between: tuple[float, float], what: str, assumed: list[str]
 ) -> float:
-    """What a shaft twists between two places along it [rad/(N·m)]."""
+    """Return the twist of a shaft between two places along it [rad/(N·m)]."""
     twist = twist_between(of, shaft, *between)
     if twist.assumed:
         assumed.append(f"{what}: {twist.assumed}")
@@ -156,7 +156,7 @@ def _twist(
 
 
 def _compliance(coupling: Component, assumed: list[str]) -> float:
-    """How far a coupling twists [rad/(N·m)]; not at all if its stiffness is not given."""
+    """Return the twist of a coupling [rad/(N·m)]; 0 if its stiffness is not given."""
     stiffness = coupling.number("rotational_stiffness")
     if stiffness is None and coupling.type != "rigid_connection":
         assumed.append(f"{coupling.title()}: no torsional stiffness is given, it is rigid")

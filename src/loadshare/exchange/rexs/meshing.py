@@ -15,16 +15,16 @@ from loadshare.exchange.rexs.places import dot
 from loadshare.exchange.rexs.shafts import material_of
 
 LIKE_STEEL = 0.05
-"""Part by which a modulus of elasticity may differ from that of steel unreported."""
+"""Relative difference between a modulus of elasticity and that of steel that is not reported."""
 ALIKE = 1e-3
-"""Part by which widths, or distances, may differ unreported."""
+"""Relative difference of widths, or distances, that is not reported."""
 
 
 def meshes_of(of: Gearing, first: str, links: Links, assumed: list[str]) -> Data:
-    """Return the meshes, the driver first as the torque comes from the input.
+    """Return the meshes, named driver first as the torque comes from the input.
 
-    Where both gears are equally far from the input, a central gear counts as before a planet, so
-    that all its meshes have one sense.
+    Where both gears are equally far from the input, a central gear comes before a planet, so that
+    all its meshes have one sense.
     """
     reached = _reached(of, first, links)
     made: Data = {}
@@ -43,9 +43,9 @@ def meshes_of(of: Gearing, first: str, links: Links, assumed: list[str]) -> Data
 
 
 def stages_of(of: Gearing, meshes: Data) -> Data:
-    """Where a gear drives, or is driven by, several others: there the load is shared.
+    """Return the stages: the meshes of each gear that drives, or is driven by, several others.
 
-    Not at a planet: what sun and ring take from it follows from their numbers of teeth.
+    Planets have none: what sun and ring take from one follows from their numbers of teeth.
     """
     planets = {of.names[planet] for planet in of.carrier_of}
     made: Data = {}
@@ -59,16 +59,16 @@ def stages_of(of: Gearing, meshes: Data) -> Data:
 
 
 def first_number(components: list[Component], *names: str) -> float | None:
-    """Return the first of some numbers that one of some components gives."""
+    """Return the first of some numbers, from the first of some components that gives any."""
     found = (component.number(*names) for component in components)
     return next((value for value in found if value is not None), None)
 
 
 def _reached(of: Gearing, first: str, links: Links) -> dict[str, int]:
-    """Steps from the input to every body, as seen from carriers.
+    """Return the number of steps from the input to every body, as seen from carriers.
 
-    There the torque of a carrier comes from, or goes to, the held gear of its set: a driven
-    carrier turns its planets on it. Nothing goes from one held gear to another.
+    Seen from there, the torque of a carrier comes from, or goes to, the held gear of its set: a
+    driven carrier turns its planets on it. No step goes from one held gear to another.
     """
     names = of.names
     pairs = [(names[a.id], names[b.id]) for _, a, b in of.stages]
@@ -104,14 +104,14 @@ def _law(of: Gearing, stage: Component, driver: Component, driven: Component) ->
 
 
 def _narrower(one: Component, other: Component) -> float:
-    """Width of the narrower of two faces [m]; 0 where a file does not give both."""
+    """Return the width of the narrower of two faces [m]; 0 where a file does not give both."""
     return min(one.number("face_width") or 0.0, other.number("face_width") or 0.0)
 
 
 def _width_assumed(
     name: str, law: Data, stage: Component, driver: Component, driven: Component
 ) -> list[str]:
-    """What is assumed of the width on which a mesh carries."""
+    """Return what is assumed about the width over which a mesh carries load."""
     given, narrower = stage.number("common_face_width"), _narrower(driver, driven)
     if "stiffness" in law and not given:
         return [f"mesh {name}: carries on all of the narrower face, {1e3 * narrower:g} mm"]
@@ -126,7 +126,7 @@ def _width_assumed(
 def _distance_assumed(
     of: Gearing, name: str, stage: Component, driver: Component, driven: Component
 ) -> list[str]:
-    """Say if a stage gives another distance than the places of its gears."""
+    """Say if a stage gives a centre distance other than that of the places of its gears."""
     given, places = stage.number("center_distance"), (of.middle(driver), of.middle(driven))
     if given is None or None in places:
         return []
@@ -141,7 +141,7 @@ def _distance_assumed(
 
 
 def _not_of_steel(of: Gearing) -> list[str]:
-    """Gears of which the law "iso", which is for steel, does not know the material."""
+    """Return remarks on gears that are not of steel, for which the law "iso" is."""
     found = []
     for gear in of.gears:
         material = material_of(of.model, gear)
@@ -154,7 +154,7 @@ def _not_of_steel(of: Gearing) -> list[str]:
 
 
 def _base_radius(gear: Component, angle: float) -> float | None:
-    """Base radius [m] from teeth."""
+    """Return the base radius that follows from a gear's teeth [m]."""
     teeth, module = gear.number("number_of_teeth"), gear.number("normal_module")
     helix = gear.number("helix_angle_reference_diameter") or 0.0
     if not teeth or not module or abs(helix) >= 0.5 * math.pi:

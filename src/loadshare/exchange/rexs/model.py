@@ -11,7 +11,7 @@ from loadshare.settings import ALLOWED
 
 @dataclass(frozen=True)
 class Unread:
-    """A value that a case needs as a number, and that is none.
+    """A value that a case needs as a number but that cannot be read as one.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Component:
     attributes: Mapping[str, Value]
 
     def number(self, *names: str) -> float | None:
-        """First of some attributes that is a number of a size that a case may have."""
+        """Return the first of some attributes that is a number of a size allowed in a case."""
         for name in names:
             value = self.attributes.get(name)
             if isinstance(value, float) and abs(value) <= ALLOWED.largest:
@@ -57,24 +57,24 @@ class Component:
         return None
 
     def vector(self, name: str) -> tuple[float, float, float] | None:
-        """An attribute of three numbers of a size that a case may have."""
+        """Return an attribute of three numbers, if each is of a size allowed in a case."""
         value = self.attributes.get(name)
         if isinstance(value, tuple) and len(value) == 3:
             return value if all(abs(v) <= ALLOWED.largest for v in value) else None
         return None
 
     def holds(self, name: str) -> bool:
-        """Whether an attribute is true."""
+        """Return whether an attribute is true."""
         return self.attributes.get(name) in (True, "true")
 
     def title(self) -> str:
-        """Type, id and name, for messages."""
+        """Return type, id and name, for messages."""
         return " ".join(filter(None, (self.type, self.id, f"({self.name})" if self.name else "")))
 
 
 @dataclass(frozen=True)
 class Relation:
-    """A relation: the components by their roles."""
+    """A relation: ids of components by their roles."""
 
     type: str
     roles: Mapping[str, str]
@@ -92,7 +92,7 @@ class Model:
     notes : tuple of str
         What was assumed in reading it.
     pointless : tuple of str
-        Which relations were left out because they name components that the file does not have.
+        Remarks on relations that are left out because they name components that are not there.
     """
 
     version: str
@@ -102,11 +102,11 @@ class Model:
     pointless: tuple[str, ...] = field(default=())
 
     def of_type(self, *types: str) -> list[Component]:
-        """Components of some types."""
+        """Return the components of some types."""
         return [c for c in self.components.values() if c.type in types]
 
     def related(self, kind: str, *roles: str) -> Iterator[tuple[Component, ...]]:
-        """Components of all relations of a kind, in the order of some roles."""
+        """Yield the components of every relation of a kind, in the order of some roles."""
         for relation in self._by_kind.get(kind, ()):
             ids = [relation.roles.get(role, "") for role in roles]
             if all(id_ in self.components for id_ in ids):
@@ -158,14 +158,14 @@ READ = {
     "cylindrical_gear_flank",
     "material",
 }
-"""Types of components of which something is read, or that hold nothing by themselves."""
+"""Types of components that are read, or that have no content of their own."""
 
 
 def may_turn(load: Component) -> bool:
-    """Whether a component is a load that may exert torque."""
+    """Return whether a component is a load that may exert torque."""
     return load.type == "external_load" and load.attributes.get("transmits_torque") is not False
 
 
 def transmits(coupling: Component) -> bool:
-    """Whether a coupling transmits torque: not with a torsional stiffness of zero."""
+    """Return whether a coupling transmits torque: not with a torsional stiffness of zero."""
     return coupling.number("rotational_stiffness") != 0.0

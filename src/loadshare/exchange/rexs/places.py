@@ -1,4 +1,4 @@
-"""Where the components of a REXS model are, along their shafts and in the unit."""
+"""Places of the components of a REXS model, along their shafts and in the unit."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from loadshare.case.place import Vector, minus
 from loadshare.exchange.rexs.model import GEARS, Component, Model
 
 LONG = 6
-"""References to the place of another component that follow one another."""
+"""Largest number of references, each from one place to that of another component."""
 FIRST = ("1", "1.0", "1.0.0")
-"""Versions that give where a gear begins along its shaft, not its middle."""
+"""Versions that give the beginning of a gear along its shaft, not its middle."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Places:
     model: Model
 
     def of(self, body: Component, depth: int = 0) -> Vector | None:
-        """Where a component is [m], its reference's place added if that is another's."""
+        """Return the place of a component [m]; that of the component it refers to is added."""
         here, other = body.vector("support_vector"), self._reference(body)
         if here is None or other is None:
             return here
@@ -38,7 +38,7 @@ class Places:
         return (start[0] + here[0], start[1] + here[1], start[2] + here[2])
 
     def is_referred(self, body: Component) -> bool:
-        """Whether a component's position is given relative to another component than the unit."""
+        """Return whether a component's position is relative to a component other than the unit."""
         return self._reference(body) is not None
 
     def _reference(self, body: Component) -> Component | None:
@@ -48,7 +48,7 @@ class Places:
         return None if other is None or other is body or other.type == "gear_unit" else other
 
     def along(self, part: Component, shaft: Component, side: str = "") -> float | None:
-        """Where the middle of a part sits along a shaft [m], from the start of the shaft.
+        """Return the place of a part's middle along a shaft [m], from the start of the shaft.
 
         Parameters
         ----------
@@ -61,8 +61,9 @@ class Places:
         Returns
         -------
         float or None
-            From the places of both in the unit, which mean the same in all versions, where both
-            are given; else from the coordinate along the shaft. None without either.
+            From the places of both in the unit, which mean the same in all versions, if both are
+            given, unless one is relative to another component and there is a coordinate along the
+            shaft; else from that coordinate. None without either.
         """
         here, start = self.of(part), self.of(shaft)
         name = f"u_coordinate_on_shaft_{side}_side" if side else "u_coordinate_on_shaft"
@@ -75,7 +76,7 @@ class Places:
         return coordinate
 
     def off_axis(self, part: Component, shaft: Component) -> float:
-        """How far a part lies from the axis of a shaft [m]; 0 where a place is not given."""
+        """Return the distance of a part from the axis of a shaft [m]; 0 if a place is not given."""
         here, start = self.of(part), self.of(shaft)
         if here is None or start is None:
             return 0.0
@@ -83,7 +84,7 @@ class Places:
         return math.dist(apart, tuple(dot(apart, axis) * a for a in axis))
 
     def on_axis(self, shaft: Component, along: float) -> Vector | None:
-        """A place along a shaft, in the unit [m]; None if the place of the shaft is not given."""
+        """Return a place along a shaft, in the unit [m]; None if the shaft's place is not given."""
         start = self.of(shaft)
         if start is None:
             return None
@@ -91,21 +92,21 @@ class Places:
         return (x, y, z)
 
     def axis(self, *bodies: Component | None) -> Vector:
-        """Direction u, of length 1, of the first component that gives one; x if none does."""
+        """Return the unit direction u of the first component that gives one; x if none does."""
         for body in bodies:
             axis = body.vector("u_axis_vector") if body is not None else None
             if axis is not None and any(axis):
-                # Of a direction the unit says nothing.
+                # The unit of measurement of a direction means nothing.
                 size = math.hypot(*axis)
                 return (axis[0] / size, axis[1] / size, axis[2] / size)
         return (1.0, 0.0, 0.0)
 
     def are_parallel(self, one: Component, other: Component) -> bool:
-        """Whether two components have parallel axes; so do those of which one gives none."""
+        """Return whether two components have parallel axes; also True if one gives none."""
         return abs(dot(self.axis(one, other), self.axis(other, one))) > 1.0 - 1e-9
 
     def across(self, *bodies: Component) -> tuple[np.ndarray, np.ndarray]:
-        """Directions v and w, of length 1 and square to u, of the first that gives w.
+        """Return the directions v and w, of length 1 and square to u, of the first that gives w.
 
         Without any, w is z, or x where u is nearer to z.
         """
@@ -120,10 +121,10 @@ class Places:
 
 
 def dot(one: Vector, other: Vector) -> float:
-    """Scalar product of two vectors."""
+    """Return the scalar product of two vectors."""
     return sum(a * b for a, b in zip(one, other, strict=True))
 
 
 def ahead(there: Vector, here: Vector, axis: Vector) -> float:
-    """How far a place lies ahead of another along an axis [m]."""
+    """Return how far a place lies ahead of another along an axis [m]."""
     return dot(minus(there, here), axis)

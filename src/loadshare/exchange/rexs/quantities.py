@@ -1,4 +1,4 @@
-"""What attributes measure, and how REXS files spell the units of their numbers."""
+"""Quantities of REXS attributes, and how files spell their units."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ STANDARD = {
 """Units as the standard spells them: what they measure, and their SI value."""
 
 ROUND_OFF = 1e-15
-"""What a product or two change of a number, as a part of it."""
+"""Relative change of a number by one or two multiplications."""
 
 TURNS = ("1/min", "min^-1", "min-1", "U/min")
 """Other spellings of revolutions per minute."""
@@ -106,17 +106,17 @@ def in_si(name: str, value: Value, unit: str) -> Value | None:
     Parameters
     ----------
     name : str
-        Of the attribute.
+        Name of the attribute.
     value : float, bool, str or tuple
-        As the file has it.
+        As given in the file.
     unit : str
 
     Returns
     -------
     Value or None
-        `Unread` for a quantity of `QUANTITIES` that is no number in a unit of its kind; None where
-        the file gives the attribute but no value for it. Other attributes in a unit that the
-        standard does not use are texts.
+        `Unread` for a quantity of `QUANTITIES` that is not a number in a unit of its kind; None if
+        the file gives the attribute but no value. Other attributes in a unit that the standard does
+        not use are texts.
     """
     target = QUANTITIES.get(name)
     if target is None:
@@ -154,7 +154,7 @@ def _scaled(value: Value, factor: float | None, unit: str) -> Value:
 
 @lru_cache(maxsize=1024)
 def factor_of(unit: str, target: str) -> float | None:
-    """SI value of a unit; None if it is unknown or measures something else than `target`."""
+    """Return the SI value of a unit; None if it is unknown or does not measure `target`."""
     if unit in NO_UNIT:
         return 1.0 if target == PURE else None
     if unit in STANDARD:
@@ -171,13 +171,13 @@ def factor_of(unit: str, target: str) -> float | None:
 
 
 def _usual(target: str) -> str:
-    """Units of the standard for a kind of quantity."""
+    """Return the standard's units for a kind of quantity."""
     if target == PURE:
         return "no unit"
     return ", ".join(unit for unit, (measured, _) in STANDARD.items() if measured == target)
 
 
 def torque_of(value: float) -> str:
-    """Return a torque as a case has it: all its digits, without the round-off of a unit."""
+    """Return a torque as text for a case: all its digits, without round-off of its unit."""
     short = f"{value:.12g}"
     return f"{short if math.isclose(float(short), value, rel_tol=ROUND_OFF) else repr(value)} N*m"

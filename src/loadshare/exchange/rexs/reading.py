@@ -23,7 +23,7 @@ from loadshare.input import read_file
 from loadshare.settings import ALLOWED
 
 CODES = {"float64": "d", "float32": "f"}
-"""Arrays as bytes, by the code in the file."""
+"""Formats of arrays as bytes, by the code in the file."""
 
 OTHERS = {
     ".toml": "is a case already; `loadshare run` solves it",
@@ -31,7 +31,7 @@ OTHERS = {
     ".csv": "is one table; give the folder that holds all tables of a case",
     **dict.fromkeys((".xlsm", ".xls", ".xlsb", ".ods"), "is a workbook; save it as .xlsx"),
 }
-"""Files that are no gear unit, by their endings."""
+"""What files are that are not gear units, by their endings."""
 
 FIRST_NAMES = {
     "side_1": "inner_part",
@@ -42,7 +42,7 @@ FIRST_NAMES = {
 """Roles and attributes of couplings in version 1.0, and their later names."""
 
 VERSIONS = re.compile(r"(1(\.[0-7])?|2(\.0)?)(\.0)?")
-"""Of REXS, that are known."""
+"""Known versions of REXS."""
 
 
 def read_model(path: Path) -> Model:
@@ -51,7 +51,7 @@ def read_model(path: Path) -> Model:
     Raises
     ------
     CaseError
-        If it cannot be read or is no REXS.
+        If it cannot be read or is not REXS.
     """
     with reading(path):
         content = read_file(path, ALLOWED.other_bytes)
@@ -95,9 +95,9 @@ def _from_xml(content: bytes) -> Mapping[str, Any]:
 
 
 def parsed(content: bytes, comments: bool = False) -> ElementTree.Element:
-    """Parse XML that declares no document type: entities are a way to make much of little.
+    """Parse XML; refuse a document type, whose entities could expand a small file to a huge one.
 
-    Names keep their prefixes, whatever namespaces these are of. Comments are kept on request.
+    Names keep their prefixes, whatever their namespaces. Comments are kept on request.
     """
     builder = ElementTree.TreeBuilder(insert_comments=comments)
     parser = expat.ParserCreate()
@@ -150,7 +150,7 @@ def _as_json(element: ElementTree.Element) -> dict[str, Any]:
 
 
 def _relation(given: Mapping[str, Any]) -> Relation:
-    """Return a relation, couplings as later versions name them."""
+    """Return a relation; couplings of version 1.0 are named as in later versions."""
     kind = str(given.get("type", ""))
     roles = {str(ref.get("role", "")): str(ref.get("id", "")) for ref in tables(given.get("refs"))}
     if kind == "coupling" and "side_1" in roles:
@@ -211,7 +211,7 @@ def _from_json(content: bytes) -> Mapping[str, Any]:
 
 
 def tables(given: Any) -> list[dict[str, Any]]:
-    """Return the tables of a list; nothing of what is no list."""
+    """Return the tables in a list; none for anything that is not a list."""
     return [t for t in given if isinstance(t, dict)] if isinstance(given, list) else []
 
 
@@ -240,7 +240,7 @@ def _value(given: Any) -> Value:
 
 
 def _model_of(given: Mapping[str, Any]) -> Model:
-    """Return a model with what its first load case says of components laid over them."""
+    """Return a model in which attributes of the first load case override those of components."""
     version = str(given.get("version", ""))
     relations = list(map(_relation, tables(given.get("relations"))))
     spectrum = given.get("load_spectrum")

@@ -1,4 +1,4 @@
-"""Ways of torque through couplings and shafts without gears."""
+"""Routes of torque through couplings and shafts without gears."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Route = tuple[Joint, ...]
 class Applied(NamedTuple):
     """A load, the shaft on which it is, and the body that takes it.
 
-    `route` leads from the shaft to that of the body, if it has none itself.
+    `route` leads from the shaft to that of the body, if the shaft itself has no body.
     """
 
     load: Component
@@ -29,10 +29,10 @@ class Applied(NamedTuple):
 
 
 def routes_from(of: Gearing, shaft: Component) -> list[Route]:
-    """Return the ways from a shaft to the next ones with gears or carriers, and to the casing.
+    """Return the routes from a shaft to the next ones with gears or carriers, and to the casing.
 
-    None leads through a shaft at which three couplings meet: between pairs of these the torque has
-    no single stiffness.
+    No route leads through a shaft at which three couplings meet: there is no single stiffness for
+    the torque between pairs of these.
     """
     found: list[Route] = []
     open_: list[Route] = [(joint,) for joint in _couplings(of, shaft)]
@@ -53,7 +53,7 @@ def opposite(side: str) -> str:
 
 
 def nearest_to(of: Gearing, route: Route) -> tuple[str, float]:
-    """Return the body nearest to the end of a route, and how far away it is [m]."""
+    """Return the body nearest to the end of a route, and how far ahead of it that is [m]."""
     last = route[-1]
     return of.nearest(last.other, last.part, opposite(last.side))
 
@@ -74,7 +74,7 @@ def applied_loads(of: Gearing) -> list[Applied]:
 
 
 def _couplings(of: Gearing, shaft: Component) -> list[Joint]:
-    """Couplings of a shaft that transmit torque."""
+    """Return the couplings of a shaft that transmit torque."""
     return [
         joint
         for joint in of.joints.get(shaft.id, [])

@@ -14,7 +14,7 @@ POISSON = 0.3
 PARTS = 16
 """Parts into which a section is cut, for sections that taper."""
 SLACK = 1e-6
-"""Up to this, sections neither overlap nor leave a gap [m]."""
+"""Overlap or gap of sections that counts as none [m]."""
 
 
 class Twist(NamedTuple):
@@ -27,8 +27,8 @@ class Twist(NamedTuple):
 def twist_between(of: Gearing, shaft: Component, start: float, stop: float) -> Twist:
     """Return how far a shaft twists between two places along it [m].
 
-    ∫ du / (G I_p) with I_p = π (D⁴ − d⁴)/32. It is rigid where sections do not cover the way, or
-    where they overlap: then they do not say which of them is the shaft.
+    ∫ du / (G I_p) with I_p = π (D⁴ − d⁴)/32. The shaft is rigid if its sections do not cover the
+    way, or if they overlap, because it is then unclear which of them is the shaft.
     """
     reached, yields, notes = start, 0.0, set[str]()
     for at, length, section in _in_order(of, shaft):
@@ -56,7 +56,7 @@ def twist_between(of: Gearing, shaft: Component, start: float, stop: float) -> T
 
 
 def _in_order(of: Gearing, shaft: Component) -> list[tuple[float, float, Component]]:
-    """Sections of a shaft from its start: where each begins, its length [m]."""
+    """Return the sections of a shaft in order, each with its beginning and length [m]."""
     found = [
         (at, length, section)
         for section in of.sections(shaft)
@@ -67,7 +67,7 @@ def _in_order(of: Gearing, shaft: Component) -> list[tuple[float, float, Compone
 
 
 def _diameters(section: Component, side: str, notes: set[str]) -> tuple[float, float]:
-    """Diameters of a section at its ends [m]; that one is not given is noted."""
+    """Return the diameters of a section at its ends [m]; note if one is not given."""
     begin, end = (section.number(f"{side}_diameter_{which}") for which in ("begin", "end"))
     if begin is None and end is None:
         if side == "inner":
@@ -84,7 +84,7 @@ def _between(ends: tuple[float, float], part: float) -> float:
 
 
 def _shear_modulus(model: Model, section: Component, shaft: Component) -> tuple[float, str]:
-    """Shear modulus of a section [Pa], and what was assumed for it."""
+    """Return the shear modulus of a section [Pa], and what was assumed for it."""
     material = material_of(model, section) or material_of(model, shaft)
     if material is None:
         return STEEL, "steel, G = 79.3 GPa, no material is given"

@@ -1,4 +1,4 @@
-"""Tables of a spreadsheet: a case in, from CSV or a workbook; case and result out, likewise."""
+"""Spreadsheets, as CSV files or workbooks: import of cases, export of cases and results."""
 
 from loadshare.exchange.spreadsheet.exporting import (
     export_frames,

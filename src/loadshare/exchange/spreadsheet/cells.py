@@ -1,4 +1,4 @@
-"""Cells: what a key takes decides how the text of a cell is read, and what a value is written as.
+"""Cells: what a key takes decides how the text of a cell is read and a value is written.
 
 ``;`` separates the entries of a list, ``|`` the lists of a list. A unit in the head of a
 column belongs to every number below it.
@@ -26,7 +26,7 @@ HEAD = re.compile(r"(.*?)\s*\[((?:1\s*/|[^\d\[\]])[^\[\]]*)\]\s*", re.DOTALL)
 NO_UNIT = "-"
 """How heads say that the numbers below have no unit."""
 LONG = 40
-"""Letters of a number."""
+"""Largest number of characters of a number."""
 
 
 @cache
@@ -47,7 +47,7 @@ def _options(schema: Schema) -> Iterator[Schema]:
 
 
 def taken(path: Path) -> list[Schema]:
-    """Return the forms that the value of a key may have; none of a key that is not known."""
+    """Return the forms that the value of a key may have; none for an unknown key."""
     options: list[Schema] = [_schema()]
     for step in path:
         below = []
@@ -67,7 +67,7 @@ def head_of(text: str, above: Path) -> tuple[Path, str]:
     Raises
     ------
     ValueError
-        If it names none.
+        If it names no key.
     """
     found = HEAD.fullmatch(text)
     name, unit = (found[1], found[2].strip()) if found else (text, "")
@@ -125,7 +125,7 @@ def text_of(value: Any) -> str:
 
 
 def with_common_unit(values: Sequence[Any]) -> tuple[str, list[Any]]:
-    """Return the one unit of all quantities among some values, and the values without it."""
+    """Return the unit that all values share, and the values without it; else no unit."""
     units = {unit for value in values for unit in _units(value)}
     if len(units) != 1 or units & {"", NO_UNIT}:
         return "", list(values)

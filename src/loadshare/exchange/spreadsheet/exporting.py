@@ -1,4 +1,4 @@
-"""A case and what was found of it, as tables of a spreadsheet: in a workbook, or in a folder."""
+"""Export of a case and its result as tables of a spreadsheet, in a workbook or a folder."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from loadshare.results import Result
 
 LONGEST = 32767
-"""Characters of a text in a cell of a workbook."""
+"""Largest number of characters in a cell of a workbook."""
 
 
 def export_tables(result: Result) -> dict[str, str]:
     """Return the tables of a case and of its result as CSV, by name.
 
-    Those of the case are read by `import_tables` as the same case; the names of the others begin
-    with ``result_``.
+    `import_tables` reads those of the case as the same case; the names of the others begin with
+    ``result_``.
 
     Parameters
     ----------
@@ -46,7 +46,8 @@ def export_tables(result: Result) -> dict[str, str]:
     Raises
     ------
     CaseError
-        If a name or text of the case cannot be put in a cell, as one with a semicolon in a list.
+        If a name or text of the case does not fit in a cell, such as one with a semicolon in a
+        list.
     """
     return {name: csv_of(frame) for name, frame in export_frames(result).items()}
 
@@ -65,14 +66,14 @@ def workbook_of(tables: Mapping[str, pd.DataFrame]) -> bytes:
     Parameters
     ----------
     tables : mapping of str to pandas.DataFrame
-        As `export_frames` has them.
+        As `export_frames` returns them.
 
     Raises
     ------
     CaseError
-        If a text is longer than a cell holds, or has characters that none holds.
+        If a text is too long for a cell, or has characters that no cell can hold.
     ImportError
-        Without openpyxl.
+        If openpyxl is not installed.
     """
     from openpyxl import Workbook
     from openpyxl.cell import WriteOnlyCell
@@ -87,7 +88,8 @@ def workbook_of(tables: Mapping[str, pd.DataFrame]) -> bytes:
             cells = [WriteOnlyCell(sheet, _cell(value)) for value in row]
             for cell in cells:
                 if isinstance(cell.value, str):
-                    # A text that begins like a formula is none, "nan" no error, 1_1 no number.
+                    # Stays a text even if it looks like a formula, an error (nan) or a number
+                    # (1_1).
                     cell.data_type = "s"
             sheet.append(cells)
     content = BytesIO()
@@ -96,7 +98,7 @@ def workbook_of(tables: Mapping[str, pd.DataFrame]) -> bytes:
 
 
 def _rows(table: pd.DataFrame) -> Iterator[Sequence[Any]]:
-    """The heads of a table, then its rows."""
+    """Return the heads of a table, then its rows."""
     return chain([list(table.columns)], table.itertuples(index=False, name=None))
 
 
@@ -111,7 +113,7 @@ def _check_fit(sheet: str, row: Sequence[Any]) -> None:
 
 
 def _cell(value: Any) -> str | float | None:
-    """Return what a cell of a workbook holds, which knows no infinity and nothing missing."""
+    """Return the content of a workbook's cell; infinity becomes a text, a missing value None."""
     value = value.item() if hasattr(value, "item") else value
     if value is pd.NA or value is None or value != value:
         return None
@@ -159,7 +161,7 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
     Raises
     ------
     CaseError
-        If they would not be read as they are.
+        If they would be read back as something else.
     """
     given = [value for value in values if value is not None]
     unit, shown = with_common_unit(given)
@@ -169,11 +171,11 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
     read, read_unit = head_of(head, above)
     options = taken(read)
     for value, cell in zip(values, cells, strict=True):
-        # An empty text is as good as none.
+        # An empty text counts as none.
         if value not in (None, "") and (
             (read, read_unit) != ((*above, *path), unit)
             or value_of(cell, unit, options) != value
-            # Half a line end, which CSV takes for a whole one.
+            # A lone carriage return, which CSV takes for a line end.
             or "\r" in cell.replace("\r\n", "")
         ):
             what = "cannot stand in a cell as it is"
@@ -190,20 +192,20 @@ def _texts(heads: list[str], rows: list[list[str]]) -> pd.DataFrame:
 
 
 NEEDED = "operating"
-"""Sheet without which no folder is a case."""
+"""Sheet without which a folder is no case."""
 
 
 def write_tables(folder: FilePath, tables: Mapping[str, pd.DataFrame]) -> None:
     """Write tables as the CSV files of a folder, and remove those of an earlier answer.
 
-    Other files of the folder stay. An interruption leaves the tables that were there, or the new
-    ones, or a folder that is refused as a case.
+    Other files of the folder stay. An interruption leaves the old tables, the new ones, or a folder
+    that is refused as a case.
 
     Parameters
     ----------
     folder : Path
     tables : mapping of str to pandas.DataFrame
-        As `export_frames` has them.
+        As `export_frames` returns them.
 
     Raises
     ------

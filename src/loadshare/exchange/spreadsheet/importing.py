@@ -20,11 +20,11 @@ from loadshare.output import FORMULA
 from loadshare.settings import ALLOWED
 
 ABOUT = "case"
-"""Sheet of what a file says besides its tables, such as its title."""
+"""Sheet of the keys outside all tables, such as the title."""
 ALONE = ("operating", "march")
 """Sections that are one element."""
 FILES = ("law_file", "geometry")
-"""Keys that name files, which are next to the case file."""
+"""Keys that name files, relative to the case file."""
 
 
 def sheet_names() -> list[str]:
@@ -40,9 +40,9 @@ def is_spreadsheet(path: FilePath) -> bool:
 def import_tables(path: str | FilePath) -> Imported:
     """Import a case from a folder of CSV files, or a workbook.
 
-    Every sheet is a section of the case file: tables by name, whose head is ``name`` and keys, and
-    for the operating point, the march and what is outside of all tables (sheet ``case``) the
-    columns ``key`` and ``value``.
+    Every sheet is a section of the case file. Sheets of named elements have ``name`` and keys in
+    their head. The operating point, the march and the keys outside all tables (sheet ``case``) have
+    the columns ``key`` and ``value``.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def import_tables(path: str | FilePath) -> Imported:
 
 @dataclass
 class _Reader:
-    """Sheets on their way to a case."""
+    """Conversion of sheets to a case."""
 
     data: Data = field(default_factory=dict)
     places: dict[Path, str] = field(default_factory=dict)
@@ -176,7 +176,7 @@ class _Reader:
             return None
 
     def _put(self, place: str, path: Path, unit: str, text: str) -> None:
-        """Put a value in its place."""
+        """Store a value under its key."""
         value: Any = value_of(text, unit, taken(path))
         here = self.data
         for number, step in enumerate(path[:-1], start=1):

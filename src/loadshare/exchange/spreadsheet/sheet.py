@@ -1,4 +1,4 @@
-"""A sheet as rows of texts, wherever it was read."""
+"""A sheet as rows of texts, from a CSV file or a workbook."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class Sheet:
         return any(cell.strip() for row in self.rows for cell in row)
 
     def at(self, row: int, column: int) -> str:
-        """Where a cell is, in the words of a spreadsheet; row and column counted from 0."""
+        """Return where a cell is, as a spreadsheet counts; `row` and `column` count from 0."""
         return cell_of(self.place, row, column)
 
 
 def cell_of(place: str, row: int, column: int) -> str:
-    """Where a cell of a sheet is, in the words of a spreadsheet; both counted from 0."""
+    """Return where a cell is, as a spreadsheet counts; `row` and `column` count from 0."""
     letters, rest = "", column + 1
     while rest:
         rest, letter = divmod(rest - 1, 26)

@@ -19,7 +19,7 @@ from loadshare.settings import ALLOWED
 
 ENDING = ".xlsx"
 NOT_CALCULATED = re.compile(rb"""\sfullCalcOnLoad\s*=\s*["'](?:1|true)["']""")
-"""What programs that write formulas and calculate none ask of the one that opens the workbook."""
+"""Request to calculate on opening, from programs that write formulas but no values."""
 NOT_SAVED = (
     "is a formula whose value was not saved",
     "Open the workbook in a spreadsheet program and save it, or write the value.",
@@ -55,20 +55,20 @@ def sheets_of_workbook(path: Path) -> list[Sheet]:
             return [_sheet(path, sheet, calculated) for sheet in book.worksheets]
         except (OSError, Unreadable):
             raise
-        except Exception as error:  # noqa: BLE001 -- whatever openpyxl raises of what is damaged
+        except Exception as error:  # noqa: BLE001 -- whatever openpyxl raises for a damaged file
             refuse(path, f"is a damaged workbook ({type(error).__name__})")
 
 
 def _check_whole(found: list[str], named: list[str]) -> None:
-    """Refuse a workbook that lacks sheets which it names: openpyxl passes over them."""
+    """Refuse a workbook that lacks sheets which it names: openpyxl silently skips them."""
     if lost := [name for name in named if name not in found]:
         raise Unreadable(f"is a damaged workbook: it lacks its sheet {lost[0]!r}")
 
 
 def _content(path: Path) -> tuple[BytesIO, bool, list[str]]:
-    """What a workbook holds, whether values of its formulas are calculated, and names of sheets.
+    """Return a workbook's bytes, whether its formulas have been calculated, and its sheet names.
 
-    It must not unpack into very much more.
+    A workbook that unpacks into far more than its own size is refused.
     """
     content = BytesIO(read_file(path, ALLOWED.other_bytes))
     from openpyxl.xml.functions import fromstring
@@ -86,7 +86,7 @@ def _sheet(path: Path, sheet: Any, calculated: bool) -> Sheet:
     name, place = sheet.title.strip().lower(), f"{path}: sheet {sheet.title}"
     if name.startswith(FOUND):
         return Sheet(name, place, [])
-    # The size that a file states may be one that its writer did not keep up to date.
+    # The size stated in a file may be out of date.
     sheet.reset_dimensions()
     rows: list[list[str]] = []
     dates: list[tuple[int, int]] = []
@@ -129,7 +129,7 @@ class _Notes:
 
     @classmethod
     def read(cls, source: IO[bytes], calculated: bool) -> _Notes:
-        """Read them from the XML of a sheet, which openpyxl shows with values or without."""
+        """Read them from the XML of a sheet: openpyxl shows either values or formulas."""
         from openpyxl.utils.cell import coordinate_to_tuple
         from openpyxl.xml.constants import SHEET_MAIN_NS
         from openpyxl.xml.functions import iterparse
@@ -147,7 +147,7 @@ class _Notes:
                         column = coordinate_to_tuple(cell.get("r"))[1]
                     if cell.find(f"{namespace}f") is None:
                         continue
-                    # The value of a formula may be a text without letters.
+                    # The value of a formula may be an empty text.
                     saved = cell.findtext(f"{namespace}v") or cell.get("t") == "str"
                     if not (calculated and saved):
                         notes.formulas.append((row, column))
@@ -156,13 +156,13 @@ class _Notes:
 
 
 def _told(place: str, cells: list[tuple[int, int]], words: tuple[str, str]) -> Iterator[Problem]:
-    """Yield a problem of some cells, in the same words for all."""
+    """Yield a problem for each of some cells, in the same words."""
     for row, column in cells[: ALLOWED.problems]:
         yield Problem(cell_of(place, row - 1, column - 1), "", "", words[0], hint=words[1])
 
 
 def _merged(place: str, rows: list[list[str]], ranges: list[str]) -> Iterator[Problem]:
-    """Give every row of merged cells their value; yield those that lie across columns.
+    """Give every row of merged cells their value; yield a problem for those across columns.
 
     A head that is merged with cells below it stays one head.
     """
