@@ -1,4 +1,4 @@
-"""A setting solved: every figure as text, as report and screen say it, and shapes to draw."""
+"""Answers to a page's settings: figures as texts, as in report and console, and shapes to draw."""
 
 from __future__ import annotations
 
@@ -39,19 +39,19 @@ def setting_of(inputs: Inputs, given: Setting) -> Case:
     Raises
     ------
     CaseError
-        If it cannot be used.
+        If it is not a valid case.
     """
     changes = inputs.changes(given)
     return inputs.case.replace(changes) if changes else inputs.case
 
 
 def invalid(error: CaseError) -> Plain:
-    """Return the messages on a setting that makes no case."""
+    """Return the messages on a setting that is not a valid case."""
     return {"status": INVALID, "messages": [str(problem) for problem in error.problems]}
 
 
 def answer_of(inputs: Inputs, given: Setting, position: int) -> Plain:
-    """Solve a setting, at all positions where they are few, else at the one that is shown.
+    """Solve a setting, at all positions if they are few, else at the one that is shown.
 
     Parameters
     ----------
@@ -59,21 +59,21 @@ def answer_of(inputs: Inputs, given: Setting, position: int) -> Plain:
     given : mapping of str to object
         Inputs that differ from the case.
     position : int
-        1-based, of which pictures are drawn; the last one where there are fewer.
+        Position that is drawn, from 1; the last one if there are fewer.
 
     Raises
     ------
     CaseError
-        If the setting makes no case.
+        If the setting is not a valid case.
     """
     return _answer(inputs, given, position, EXPLORE.together)[0]
 
 
 def whole_of(inputs: Inputs, given: Setting, position: int) -> Plain:
-    """Return the same answer at all positions, and how far it is to be trusted.
+    """Return the same answer at all positions, and how far it can be trusted.
 
-    This is what takes too long to follow a slider. It holds all that `answer_of` returns, so that
-    a page shows it in place of that.
+    This takes too long to follow a slider. It holds all that `answer_of` returns, so that a page
+    can show it instead.
     """
     found, result = _answer(inputs, given, position, ALLOWED.positions)
     if result is None:
@@ -92,7 +92,7 @@ def whole_of(inputs: Inputs, given: Setting, position: int) -> Plain:
 def _answer(
     inputs: Inputs, given: Setting, position: int, together: int
 ) -> tuple[Plain, Result | None]:
-    """Return the answer at up to so many positions, beyond them at one, and its result."""
+    """Return an answer and its result: at all positions if at most `together`, else at one."""
     case = setting_of(inputs, given)
     train = prepared(case)[1].train
     position = min(position, train.count)
@@ -125,18 +125,18 @@ def _answer(
 
 
 def _numbers(inputs: Inputs, given: Setting) -> Iterator[tuple[str, float]]:
-    """Yield the numbers of a setting in the units of the case, in which sliders count."""
+    """Yield the numbers of a setting in the units of the case, which sliders use."""
     for key, value in given.items():
         read = read_value(value)
         if read is None:
             continue
-        # What a plain number means, such as a per cent, a slider cannot show.
+        # A slider cannot show a value that its unit does not measure, such as a plain number.
         with suppress(ValueError):
             yield key, float(f"{read.in_unit(inputs.every[key].unit).number:.12g}")
 
 
 def _solved(case: Case, positions: list[int] | None) -> tuple[Result | None, list[str]]:
-    """Return what is certified, and why the rest is not."""
+    """Return the certified result, and why the rest was refused."""
     try:
         return solve(case, positions=positions), []
     except Refused as refusal:
@@ -144,7 +144,7 @@ def _solved(case: Case, positions: list[int] | None) -> tuple[Result | None, lis
 
 
 def _bound_text(result: Result, solved: int) -> str:
-    """How good an answer is, in a sentence: what was proved when it was judged."""
+    """Return a sentence on how good an answer is: the bound proved when it was judged."""
     done, count = len(result.positions), result.positions[0].train.count
     where = f"{done} of {count} positions" if count > 1 else "the answer"
     later = "" if solved == count else " so far, all when nothing moves"
@@ -185,7 +185,7 @@ def _bars(result: Result, shown: Position | None) -> Iterator[Plain]:
 
 
 def states(shown: Position) -> Table:
-    """Which contacts carry at a position: flanks, boundaries of floats, splines."""
+    """Return the contact states at a position: flanks, boundaries of floats, splines."""
     rows = list(_states(shown))
     title = f"Contact states at position {shown.position}"
     return table(title, rows, ("element", "state"), ("force",), {"force": "force [N]"})
@@ -217,7 +217,7 @@ def _states(shown: Position) -> Iterator[Record]:
 
 
 def case_of(inputs: Inputs) -> Plain:
-    """Return what a page must know of its case before anything is changed."""
+    """Return what a page must know about its case before anything is changed."""
     case = inputs.case
     train = prepared(case)[1].train
     return {
@@ -235,7 +235,7 @@ def case_of(inputs: Inputs) -> Plain:
 
 
 def tied(inputs: Inputs) -> list[tuple[str, tuple[str, ...]]]:
-    """Return names with a star, and the inputs that take the same value under each."""
+    """Return names with a star, each with the inputs that take the same value under it."""
     found: dict[str, int] = {}
     for key in inputs.every:
         section, _, rest = key.partition(".")
@@ -265,6 +265,6 @@ def angles(case: Case) -> list[float] | None:
 
 
 def spreads(case: Case) -> dict[str, Plain]:
-    """Return the tolerance studies of a case: their inputs and settings, as the file has them."""
+    """Return the tolerance studies of a case: their inputs and settings, as given in the file."""
     data = case.to_dict().get("study", {})
     return {name: one for name, one in data.items() if one.get("kind") == "tolerance"}

@@ -1,4 +1,4 @@
-"""Worker processes, each lent to one request at a time, and killed when that is broken off."""
+"""Worker processes, each lent to one request at a time, and killed when that is cancelled."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Crew:
     Parameters
     ----------
     count : int
-        Processes.
+        Number of processes.
     """
 
     def __init__(self, count: int) -> None:
@@ -31,24 +31,23 @@ class Crew:
         self.turn = asyncio.Semaphore(count)
 
     async def done(self, request: Request, work: Callable[[Item], Found], item: Item) -> Found:
-        """Return what a worker finds, as long as somebody waits for it.
+        """Return the answer of a worker, as long as somebody waits for it.
 
         Parameters
         ----------
         request : Request
-            Its body read; when who sent it goes away, the worker is killed.
+            A request whose body has been read; if its sender disconnects, the worker is killed.
         work : callable
         item : object
 
         Raises
         ------
         RequestError
-            If too many wait already, or nobody does any more.
+            If too many are waiting already, or the sender has disconnected.
         """
         if self.waiting >= self.count * EXPLORE.waiting:
             raise RequestError(503, "too many studies are waiting; try again in a while")
-        # A task of its own: whoever waits may be cancelled, and the worker is put in order all
-        # the same.
+        # A task of its own: the worker is put back in order even if who waits is cancelled.
         lent = asyncio.create_task(self._lent(request, work, item))
         lent.add_done_callback(_looked_at)
         return await asyncio.shield(lent)
@@ -77,29 +76,29 @@ class Crew:
             await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
             finished = found.done()
             if not finished:
-                # Not cancelled: its process is killed, and that is its answer.
+                # Not cancelled: it ends by itself when its process is killed.
                 found.add_done_callback(_looked_at)
                 raise RequestError(499, "nobody waits for this any more")
             return found.result()
         finally:
             if not finished:
-                # At work for nobody, or never started.
+                # Working for nobody, or never started.
                 await asyncio.to_thread(worker.end)
             self.free.append(worker)
 
     def end(self) -> None:
-        """Kill all of them."""
+        """Kill all workers."""
         for worker in self.free:
             worker.end()
 
 
 def _looked_at(done: asyncio.Future[Any]) -> None:
-    """Take an exception that nobody waits for any more."""
+    """Retrieve an exception that nobody waits for any more."""
     if not done.cancelled():
         done.exception()
 
 
 async def _gone(request: Request) -> None:
-    """Return when who asked has gone away."""
+    """Return when the sender of a request has disconnected."""
     while (await request.receive())["type"] != "http.disconnect":
         pass

@@ -1,4 +1,4 @@
-"""A setting as a case file that extends the case it was made of."""
+"""Settings as case files that extend the original case."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) ->
     Parameters
     ----------
     inputs : Inputs
-        Of the case, with what the command line has changed of the file.
+        Inputs of the case, with the changes that the command line has made to the file.
     given : mapping of str to object
         Inputs that a page has changed.
     file : Path or None
-        Of the case; without one, the text stands alone.
+        File of the case; without one, the text extends none.
 
     Raises
     ------
     CaseError
-        If the setting makes no case.
+        If the setting is not a valid case.
     """
     changed = inputs.case.replace(inputs.changes(given))
-    # Some faults of a case are found where its train is built.
+    # Some faults of a case are found only when its train is built.
     prepared(changed)
     name = f"{inputs.case.name or 'case'}_explored.toml"
     if file is None:
@@ -49,7 +49,7 @@ def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) ->
 
 
 def _apart(base: Mapping[str, Any], changed: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Return what tables have to say besides those they extend; None where keys are gone."""
+    """Return what tables add to or change in those they extend; None if keys are gone."""
     if set(base) - set(changed):
         return None
     found: dict[str, Any] = {}

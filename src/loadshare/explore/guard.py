@@ -1,4 +1,4 @@
-"""Who may ask, and what a browser may do with the answers.
+"""Access control: who may send requests, and what a browser may do with the answers.
 
 A server on this machine can be reached by any page that its user opens: by its address, or by a
 name that somebody points at this machine. So a request must name the server as it was started
@@ -27,7 +27,7 @@ HEADERS = {
     "Cache-Control": "no-store",
 }
 LOCAL = ("localhost", "127.0.0.1", "[::1]")
-"""Names of this machine for itself."""
+"""Names by which this machine calls itself."""
 
 
 def hosts_of(host: str, port: int, names: Iterable[str] = ()) -> frozenset[str]:
@@ -39,7 +39,7 @@ def hosts_of(host: str, port: int, names: Iterable[str] = ()) -> frozenset[str]:
         Address that the server listens at.
     port : int
     names : iterable of str
-        Further names by which it is reached, with a port where that is another.
+        Further names by which the server is reached, with a port if that differs.
     """
     own = f"[{host}]" if ":" in host else host
     own_names = {*LOCAL, own} - {"0.0.0.0", "[::]"}
@@ -50,7 +50,7 @@ def hosts_of(host: str, port: int, names: Iterable[str] = ()) -> frozenset[str]:
 
 
 class Guard:
-    """Refuses requests of others, and sends the policy with every answer.
+    """Refuses requests from elsewhere, and sends the policy with every answer.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a page may change of a case: its numbers, and the errors of all gears by size and direction.
+"""What a page may change in a case: its numbers, and errors of gears by size and direction.
 
 No key on the list names a file, so no path can come from a page.
 """
@@ -26,20 +26,20 @@ from loadshare.train import build_train
 from loadshare.train.gear import Vector
 
 PAGE = "page"
-"""Named in messages in place of the file, for what a page asks for."""
+"""Stands in for the file in messages about what a page asks for."""
 VECTORS = {
     "installation": ("amount", "direction"),
     "eccentricity": ("amount", "direction", "phase"),
 }
 """Errors by size and direction, and the parts of each."""
 ANGLES = ("direction", "phase")
-"""Last steps of keys that go round: they have a dial."""
+"""Last steps of keys that are angles over a whole turn: they have a dial."""
 ZERO = {"m": 1e-4, "N": 1e3, "N*m": 100.0, "rad": 1e-2, "K": 50.0}
-"""Reach of a slider whose input is zero [SI], by the unit; one of its own unit for all others."""
+"""Reach of a slider whose input is zero [SI], by unit; 1 in the input's own unit for others."""
 FITTING = ("m", "rad", "")
-"""SI units of what makes gears fit."""
+"""SI units of the quantities that make gears fit."""
 COARSE = 1e-3
-"""Lengths from here on are of the geometry, which has to fit: their sliders reach a little way."""
+"""Lengths from here on are geometry, which has to fit: their sliders have a small reach [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,19 +51,19 @@ class Input:
     key : str
         Dotted key path.
     text : str or float or int
-        As the case has it; of an error that it does not have, what has no effect.
+        As given in the case; for an error that it does not have, a value without effect.
     number : float
-        In `unit`.
+        Value in `unit`.
     unit : str
         Empty for a plain number.
     low, high, step : float
-        Of its slider, in `unit`.
+        Ends and step of its slider, in `unit`.
     whole : bool
         Whether it is a count.
     turning : bool
-        Whether it goes round, as a direction does.
+        Whether it is an angle over a whole turn, such as a direction.
     about : str
-        What it is.
+        Description.
     assumed : bool
     geometry : bool
         Whether it is a count or one of the lengths and angles that make the gears fit: no
@@ -86,7 +86,7 @@ class Input:
 
 @dataclass(frozen=True)
 class Inputs:
-    """All that a page may change of a case.
+    """All that a page may change in a case.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ class Inputs:
         return tuple(found)
 
     def changes(self, given: Mapping[str, object]) -> dict[str, Any]:
-        """Return what a page asks for as the changes that `Case.replace` takes.
+        """Return the changes that a page asks for, as `Case.replace` takes them.
 
         Parameters
         ----------
@@ -184,11 +184,11 @@ class Inputs:
             return {}
 
     def _vector_of(self, path: Path) -> Path | None:
-        """Path of the error by size and direction that holds a key; None for all other keys."""
+        """Return the path of the error by size and direction that holds a key, else None."""
         return path[:3] if path[:3] in self._tables else None
 
     def _vectors(self) -> Iterator[tuple[Path, dict[str, str]]]:
-        """Yield errors by size and direction, those that a gear could have as zero."""
+        """Yield errors by size and direction; those that a gear lacks but may have are zero."""
         absent = {}
         for gear in self.case.gears:
             for kind, parts in VECTORS.items():
@@ -209,7 +209,7 @@ class Inputs:
         yield from self._possible(absent)
 
     def _possible(self, absent: dict[Path, dict[str, str]]) -> Iterator[tuple[Path, Any]]:
-        """Yield those errors that the case may have; it says itself which it may not."""
+        """Yield those errors that the case may have; its checks name those that it may not."""
         while absent:
             trial = {dotted(p): table | {"amount": "1 um"} for p, table in absent.items()}
             try:
@@ -252,7 +252,7 @@ def _concerns(wrong: Iterable[str], key: str) -> bool:
 def _polar(given: list[Any], plane: Vector) -> dict[str, str]:
     """Return components along x and y as size and direction in a plane, in the unit of the first.
 
-    What lies along the axis has no effect.
+    The component along the axis has no effect.
     """
     x, y = (read_value(part) for part in given)
     assert x is not None
@@ -263,7 +263,7 @@ def _polar(given: list[Any], plane: Vector) -> dict[str, str]:
 
 
 def _described(path: Path) -> tuple[str, Dimension | None]:
-    """Return what an input is in words, and what it must measure."""
+    """Return the description of an input, and its dimension."""
     model: Any = Content
     words, dimension = "", None
     for step in path:
@@ -275,7 +275,7 @@ def _described(path: Path) -> tuple[str, Dimension | None]:
             name, field = fields[str(step)]
             lines = description(model, name).splitlines()
             words = lines[0] if lines else words
-            # Where a field may hold several elements, the one that knows the next step.
+            # Where a field may hold several elements, the one that has the next step.
             models = list(elements_in(field.annotation))
             following = path[path.index(step) + 1 :]
             model = _knowing(models, following)
@@ -301,7 +301,7 @@ def _parts(annotation: Any) -> Iterator[Any]:
 def _reach(
     path: Path, value: Value, dimension: Dimension | None, turning: bool
 ) -> tuple[float, float]:
-    """Ends of a slider: round about the input, and where it may be."""
+    """Return the ends of a slider, around the input and within its bounds."""
     number, factor = value.number, value.factor
     if turning:
         turn = round(2.0 * math.pi / factor, 6)

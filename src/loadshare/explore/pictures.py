@@ -27,9 +27,9 @@ PLACES = 4
 
 
 def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
-    """Yield every float: its region at the shown position, and where its centre is at all.
+    """Yield every float: its region at the shown position, and its centre at all positions.
 
-    Lengths are in µm, in the gear's transverse frame, from the centre's own place.
+    Lengths are in µm, in the gear's transverse frame, from the centre without displacement.
     """
     palette = palette_of(result)
     here = replace(result, positions=(shown,))
@@ -59,7 +59,7 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
 
 
 def _square(view: tuple[Point, float], path: list[Point]) -> tuple[float, float, float]:
-    """Return middle and half the side of a square that holds a view, and a path with some room."""
+    """Return the middle and half the side of a square that holds a view and, with room, a path."""
     middle, half = view
     lows = [min(m - half, *(1.1 * p[k] - 0.1 * m for p in path)) for k, m in enumerate(middle)]
     highs = [max(m + half, *(1.1 * p[k] - 0.1 * m for p in path)) for k, m in enumerate(middle)]
@@ -73,7 +73,7 @@ def force_shapes(train: Train, shown: Position) -> Iterator[Plain]:
     Parameters
     ----------
     train : Train
-        Placed as it is drawn, whatever has turned at the position.
+        In the places in which it is drawn, whatever has turned at the position.
     shown : Position
     """
     for flank in carrying(shown):
@@ -90,7 +90,7 @@ def force_shapes(train: Train, shown: Position) -> Iterator[Plain]:
 def train_shapes(case: Case) -> Plain | None:
     """Return the train to scale, seen along the axis of most gears and from the side, in mm.
 
-    None where no gear has a place.
+    None if no train can be built, or no gear has a place.
     """
     try:
         train = build_train(case)
@@ -138,7 +138,7 @@ def _gear(layout: Layout, palette: Palette, body: Body, frame: Vector) -> Plain:
 
 
 def _ring(body: Body, radius: float, frame: Vector, is_round: bool) -> Any:
-    """Radius of a circle that is seen as one, or the path of one that is seen from the side."""
+    """Return the radius of a circle seen as one, or the path of one seen from the side."""
     if is_round:
         return round(MILLIMETRE.of(radius), PLACES)
     return _flat(body.circle(radius), frame).round(PLACES).tolist()

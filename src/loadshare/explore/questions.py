@@ -1,4 +1,4 @@
-"""What a page asks workers: read, bounded, and cut into parts that are answered one by one."""
+"""Questions of a page to workers: read, limited, and cut into parts that are answered in turn."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Along(NamedTuple):
         In `unit`.
     unit : str
     points : int
-        Of a sweep.
+        Number of points of a sweep.
     position : int
         1-based.
     """
@@ -40,11 +40,11 @@ class Along(NamedTuple):
     position: int
 
     def text(self, number: float) -> str | float:
-        """Return a value as a case file has it."""
+        """Return a value as written in a case file."""
         return f"{number!r} {self.unit}" if self.unit else number
 
     def stretches(self, at: float) -> list[Along]:
-        """Return its parts, those about a value first: what happens there is of most interest."""
+        """Return its parts, those around a value first: what happens there is of most interest."""
         count = EXPLORE.stretches
         ends = [self.low + (self.high - self.low) * (k / count) for k in range(count)] + [self.high]
         parts = [self._replace(low=a, high=b) for a, b in pairwise(ends)]
@@ -59,7 +59,7 @@ class Slopes(NamedTuple):
     case : Case
     keys : tuple of str
     reaches : tuple of float
-        By which they move in a comparison, in their own units.
+        Changes of the inputs by which their effects are compared, in their own units.
     position : int
         1-based.
     """
@@ -82,7 +82,7 @@ def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
     Raises
     ------
     RequestError
-        If it is none.
+        If the request does not give one.
     CaseError
         If a key or the setting cannot be used.
     """
@@ -112,10 +112,9 @@ def slopes(inputs: Inputs, body: Mapping[str, Any]) -> Slopes:
 
 
 def by_parts(inputs: Inputs, keys: Sequence[str], given: Mapping[str, object]) -> Case:
-    """Return the case of a setting in which keys are there, so that they can be varied.
+    """Return the case of a setting with some keys written out, so that they can be varied.
 
-    An error that the case lacks, or has by components, has no size and no direction until it is
-    written so.
+    An error that the case lacks, or gives by components, has no size and direction until then.
     """
     return setting_of(inputs, {key: inputs.every[key].text for key in keys} | {**given})
 

@@ -1,4 +1,4 @@
-"""What a request must be: its size, its form. Any other is answered with a message."""
+"""Checks of the size and form of requests; a request that fails is answered with a message."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from loadshare.settings import EXPLORE
 
 
 class RequestError(Exception):
-    """A request that cannot be answered, with why.
+    """A request that cannot be answered, and the reason.
 
     Parameters
     ----------
     status : int
-        Of HTTP.
+        HTTP status.
     message : str
     """
 
@@ -50,7 +50,7 @@ async def body_of(request: Request) -> dict[str, Any]:
             parse_int=lambda text: _held(text, int),
             parse_float=lambda text: _held(text, float),
         )
-        # Half a character, as JSON may write it, is in no file and no message.
+        # A lone surrogate, which JSON may hold, cannot be written to a file or a message.
         json.dumps(found, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
         raise RequestError(400, "the request is no JSON, or a number in it is too long") from None

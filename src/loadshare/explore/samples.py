@@ -33,13 +33,13 @@ from loadshare.study.tolerance.statistics import OmegaStatistics, apart_kinds, o
 from loadshare.study.tolerance.study import requested_job
 
 SHOWN = "explorer"
-"""Name of a study in which what the page shows scatters."""
+"""Name of a study in which the inputs shown by the page scatter."""
 EVENLY = ("m", "rad", "")
-"""SI units of clearances, errors and friction, which scatter over their sliders."""
+"""SI units of clearances, errors and friction, which scatter evenly over their sliders."""
 DEVIATION, CUT = 0.02, 3.0
-"""Of all else: standard deviation over the value, and where the distribution is cut off."""
+"""For all others: standard deviation over the value, and deviations at which it is cut off."""
 PROBLEMS = 3
-"""Reasons for refusals that are shown."""
+"""Number of reasons for refusals that are shown."""
 
 
 class Scatter(NamedTuple):
@@ -50,9 +50,9 @@ class Scatter(NamedTuple):
     case : Case
     name : str
     table : dict
-        As ``[study.NAME]`` has it.
+        As in ``[study.NAME]``.
     left : tuple of str
-        Inputs that are shown and do not scatter.
+        Inputs that are shown but do not scatter.
     """
 
     case: Case
@@ -67,7 +67,7 @@ def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
     Raises
     ------
     RequestError
-        If it is none.
+        If there is no such study, or the request is not valid.
     CaseError
         If a key or the setting cannot be used.
     """
@@ -116,7 +116,7 @@ def _of_shown(
 
 
 def _spread(one: Input, given: Mapping[str, object], low: float, high: float) -> dict[str, Any]:
-    """Return how an input scatters where the case does not say."""
+    """Return how an input scatters if the case does not give that."""
     now, unit = read_value(given.get(one.key, one.text)), one.unit
     if Value(1.0, unit).si_unit in EVENLY or now is None or now.number == 0.0:
         kind, numbers = "uniform", {"low": low, "high": high}
@@ -131,8 +131,8 @@ def _spread(one: Input, given: Mapping[str, object], low: float, high: float) ->
 
 @reporting_errors
 def start_study(question: Scatter) -> Plain:
-    """Check a study, and return what each of its parts needs and what the page says of it."""
-    # Nobody in front of a page waits for a compiler.
+    """Check a study, and return what each of its parts needs and what the page shows of it."""
+    # A page must not wait for a compiler.
     engine = "compiled" if at_hand() else "vectorised"
     case = question.case.replace({dotted(("study", question.name)): question.table})
     job, block = requested_job(case, question.name, {}, engine=engine)
@@ -171,7 +171,7 @@ class Part(NamedTuple):
 
 
 def samples(part: Part) -> Plain:
-    """Draw and solve some samples; those of one block at most."""
+    """Draw and solve some samples, up to the end of a block at most."""
     job = known_job(part.job)
     block, at = divmod(part.first, JOB.block)
     values = job.designs[SAMPLES].values(block)[at : at + part.rows]
@@ -232,7 +232,7 @@ class Growing:
 
 
 def omega_table(every: Sequence[OmegaStatistics], limit: float | None) -> Table:
-    """One column for each Ω, as `loadshare tolerance` prints its figures."""
+    """Return a table with a column for each Ω, as `loadshare tolerance` prints its figures."""
     form = ".5f"
     rows = [
         ["mean", *(interval(one.summary.mean, form) for one in every)],

@@ -1,4 +1,4 @@
-"""The server: which request leads to what. It remembers nothing of those who ask."""
+"""The server: it assigns requests to the functions that answer them, and keeps no sessions."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ Handler = Callable[[Request], Awaitable[Response]]
 
 @cache
 def assets() -> dict[str, tuple[bytes, str]]:
-    """Content and type of every file of the page, by name: what is not here, is nowhere."""
+    """Return content and type of every file of the page, by name; no other file is served."""
     # The style of the report is the base of the page's own.
     folders = files("loadshare.report.page") / "templates", files("loadshare.explore") / "page"
     return {
@@ -61,18 +61,18 @@ def assets() -> dict[str, tuple[bytes, str]]:
 
 
 class Explorer:
-    """Answers what pages ask of one case.
+    """Answers the requests of pages about one case.
 
     Parameters
     ----------
     case : Case
     file : Path or None
-        From which it is, for cases that extend it.
+        File of the case, for cases that extend it.
     """
 
     def __init__(self, case: Case, file: Path | None) -> None:
         self.inputs, self.file = Inputs(case), file
-        # One after another: each answer is there sooner than if they took turns.
+        # One after another: each answer is ready sooner than if they ran at the same time.
         self.solver = ThreadPoolExecutor(1, "solver")
         self.crew = Crew(max(1, (os.cpu_count() or 2) - 1))
         self.studies: Mapping[str, Callable[[Request, Body], Parts]] = {
@@ -87,11 +87,11 @@ class Explorer:
         return await asyncio.get_running_loop().run_in_executor(self.solver, work)
 
     async def index(self, request: Request) -> Response:
-        """The page."""
+        """Return the page."""
         return await self.asset(request, INDEX)
 
     async def asset(self, request: Request, name: str = "") -> Response:
-        """One of its files."""
+        """Return one of the page's files."""
         known = assets().get(name or request.path_params["name"])
         if known is None:
             raise RequestError(404, "There is no such file.")
@@ -99,29 +99,29 @@ class Explorer:
         return Response(content, headers={"content-type": kind})
 
     async def case(self, request: Request) -> Response:
-        """What the page must know of the case."""
+        """Return what the page must know about the case."""
         return JSONResponse(await self.solved(partial(case_of, self.inputs)))
 
     async def answered(self, request: Request, work: Answering) -> Response:
-        """What is answered to a setting and a position."""
+        """Return what `work` answers to a setting and a position."""
         body = await body_of(request)
         asked = partial(work, self.inputs, setting(body), place(body))
         return JSONResponse(await self.solved(asked))
 
     async def answer(self, request: Request) -> Response:
-        """A setting, solved."""
+        """Return the answer to a setting."""
         return await self.answered(request, answer_of)
 
     async def whole(self, request: Request) -> Response:
-        """The same at all positions, and how far it is to be trusted."""
+        """Return the answer at all positions, and how far it can be trusted."""
         return await self.answered(request, whole_of)
 
     async def keys(self, request: Request) -> Response:
-        """The inputs that a name means: one with a star, or several joined."""
+        """Return the inputs that a name means: one with a star, or several joined."""
         return JSONResponse({"keys": self.inputs.keys(text(await body_of(request), "name"))})
 
     async def study(self, request: Request) -> Response:
-        """A study by the name of the path: a line of JSON after every part of it."""
+        """Return the study that the path names, with a line of JSON after each of its parts."""
         parts = self.studies.get(request.path_params["name"])
         if parts is None:
             raise RequestError(404, "there is no such study")
@@ -131,7 +131,7 @@ class Explorer:
         return StreamingResponse(_lines(first, lines), media_type="application/x-ndjson")
 
     async def critical(self, request: Request, body: Body) -> Parts:
-        """Critical values along an input, those about its present value first."""
+        """Yield critical values along an input, those near its present value first."""
         question = await self.solved(partial(along, self.inputs, body))
         stretches = question.stretches(finite(body, "at", question.low))
         for done, stretch in enumerate(stretches, start=1):
@@ -142,12 +142,12 @@ class Explorer:
             yield found | {"done": done, "of": len(stretches)}
 
     async def sweep(self, request: Request, body: Body) -> Parts:
-        """Ω and the places of floats along an input."""
+        """Yield Ω and the places of floats along an input."""
         question = await self.solved(partial(along, self.inputs, body))
         yield await self.crew.done(request, trace, question)
 
     async def slopes(self, request: Request, body: Body) -> Parts:
-        """How Ω moves with inputs."""
+        """Yield how Ω changes with inputs."""
         question = await self.solved(partial(slopes, self.inputs, body))
         done = 0
         for batch in question.batches():
@@ -156,7 +156,7 @@ class Explorer:
             yield found | {"done": done, "of": len(question.keys)}
 
     async def tolerance(self, request: Request, body: Body) -> Parts:
-        """A tolerance study: what it is, then its statistics after every part."""
+        """Yield what a tolerance study is, then its statistics after every part."""
         question = await self.solved(partial(scatter, self.inputs, body))
         study = await self.crew.done(request, start_study, question)
         if "job" not in study:
@@ -171,13 +171,13 @@ class Explorer:
             yield await asyncio.to_thread(growing.statistics)
 
     async def toml(self, request: Request) -> Response:
-        """A setting as a case file."""
+        """Return a setting as a case file."""
         given = setting(await body_of(request))
         return JSONResponse(await self.solved(partial(case_file, self.inputs, given, self.file)))
 
 
 async def _lines(first: dict[str, Any], others: Parts) -> AsyncIterator[str]:
-    """Yield the parts of a study as lines; what goes wrong on the way is the last one."""
+    """Yield the parts of a study as lines; if an error occurs, it is the last one."""
     yield f"{json.dumps(first)}\n"
     try:
         async for one in others:
@@ -187,7 +187,7 @@ async def _lines(first: dict[str, Any], others: Parts) -> AsyncIterator[str]:
 
 
 def _safely(handler: Handler) -> Handler:
-    """Answer whatever goes wrong with a message."""
+    """Return a handler that answers any error with a message."""
 
     async def answered(request: Request) -> Response:
         try:
@@ -205,7 +205,7 @@ def _failure(error: Exception, what: str) -> tuple[dict[str, Any], int]:
     if isinstance(error, RequestError):
         return {"status": "failed", "messages": [str(error)]}, error.status
     if isinstance(error, ClientDisconnect):
-        # In the middle of its request: nobody reads this, and nothing has failed.
+        # The page left in the middle of its request: nobody reads this, and nothing has failed.
         return {"status": "failed", "messages": ["the page went away"]}, 499
     log.error("%s failed", what, exc_info=error)
     message = f"the server failed: {type(error).__name__}; its log says more"
@@ -221,7 +221,7 @@ def application(case: Case, hosts: Iterable[str], file: Path | None = None) -> G
     hosts : iterable of str
         What a Host header may say, `guard.hosts_of`.
     file : Path, optional
-        From which the case is, for cases that extend it.
+        File of the case, for cases that extend it.
     """
     explorer = Explorer(case, file)
 

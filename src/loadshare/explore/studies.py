@@ -1,4 +1,4 @@
-"""What workers do for a page: sweeps, critical values, slopes."""
+"""Studies that workers do for a page: sweeps, critical values, slopes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Item = TypeVar("Item")
 
 
 def reporting_errors(work: Callable[[Item], Plain]) -> Callable[[Item], Plain]:
-    """Return what was found, or as messages why nothing was."""
+    """Return a function that returns the answer of `work`, or its errors as messages."""
 
     @wraps(work)
     def answered(item: Item) -> Plain:
@@ -36,7 +36,7 @@ def reporting_errors(work: Callable[[Item], Plain]) -> Callable[[Item], Plain]:
 
 @reporting_errors
 def criticals(question: Along) -> Plain:
-    """Every change of the active set along an input, with its exact value."""
+    """Return every change of the active set along an input, with its exact value."""
     from loadshare.study.critical import critical
 
     ends = question.text(question.low), question.text(question.high)
@@ -57,7 +57,7 @@ def criticals(question: Along) -> Plain:
 
 
 def event_text(event: Event) -> str:
-    """Return what happens, as an engineer says it: ``gear 5 leaves its ring (upper stop)``."""
+    """Return an event in an engineer's words: ``gear 5 leaves its ring (upper stop)``."""
     if event.gear and event.kind.startswith("float "):
         verb = event.kind.split()[1]
         where = boundary_name(event.element) if ": " in event.element else ""
@@ -67,7 +67,7 @@ def event_text(event: Event) -> str:
 
 @reporting_errors
 def trace(question: Along) -> Plain:
-    """Ω of every stage and the places of all floats along an input; gaps where there is none."""
+    """Return Ω of every stage and the places of all floats along an input; gaps where refused."""
     from loadshare.study.sweep import sweep
 
     values = f"{question.text(question.low)}:{question.text(question.high)}:{question.points}"
@@ -93,7 +93,7 @@ def trace(question: Along) -> Plain:
 
 @reporting_errors
 def rates(question: Slopes) -> Plain:
-    """How the largest Ω of the system moves with inputs: rows, with the effect that ranks them."""
+    """Return how the system's largest Ω changes with inputs: rows, each with a ranking effect."""
     from loadshare.study.sensitivity import sensitivity
 
     found = sensitivity(question.case, list(question.keys), positions=[question.position])
@@ -105,7 +105,7 @@ def rates(question: Slopes) -> Plain:
             rate = found.omega[item.key, side]["system"] * item.value.factor
             error = found.omega_error[item.key, side]["system"] * item.value.factor
             cells[side] = 0.0 if abs(rate) <= error else rate
-        # To one side there may be none: at the end of what an input can be.
+        # One side may have no rate: at the end of an input's range.
         effect = max((r for r in cells.values() if math.isfinite(r)), key=abs, default=0.0)
         effect *= reach[item.key]
         texts = list(dict.fromkeys(map(_slope, cells.values())))
