@@ -50,7 +50,7 @@ def read_changes(settings: Iterable[str]) -> dict[str, Any]:
     ----------
     settings : iterable of str
         ``KEY=VALUE`` each. A value is read as TOML; what is not TOML is a text, so that quantities
-        need no quotes. No value removes the key.
+        need no quotes. An empty value removes the key.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def read_changes(settings: Iterable[str]) -> dict[str, Any]:
 
 
 def _path(key: str) -> object:
-    """What a key names, however it is written; itself where it is no key path."""
+    """Return the path that a key names, however it is written; the key itself if it is no path."""
     from loadshare.case.keys import parse
 
     try:
@@ -90,7 +90,7 @@ def _value(text: str) -> Any:
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except (ValueError, RecursionError):
-        # Of TOML that is none, numbers with thousands of digits, and what is nested too deeply.
+        # Not TOML, a number with thousands of digits, or nested too deeply.
         return text
 
 
@@ -101,12 +101,12 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
     ----------
     given : iterable of Path
         Files; folders, searched with their subfolders for ``*.toml`` except pair and law files;
-        patterns, for shells that leave them alone.
+        patterns, for shells that do not expand them.
 
     Returns
     -------
     list of Path
-        A file that does not exist is among them, so that it is reported like any other bad case.
+        Files that do not exist are included, so that they are reported like any other bad case.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def _no_case_text(path: Path) -> str:
 
 
 def _of_another_kind(file: Path) -> bool:
-    """Whether a file says that it is a pair or a law, which cases name and which are no cases."""
+    """Return whether a file says that it is a pair or a law, which cases name but which is none."""
     from loadshare.case.recognise import KINDS
     from loadshare.settings import ALLOWED
 
@@ -169,5 +169,5 @@ def _of_another_kind(file: Path) -> bool:
 
 
 def _hidden(file: Path, folder: Path) -> bool:
-    """Whether a file lies in what starts with a dot, such as a virtual environment."""
+    """Return whether a file is in a folder that starts with a dot, as virtual environments do."""
     return any(part.startswith(".") for part in file.relative_to(folder).parts)

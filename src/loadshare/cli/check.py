@@ -1,4 +1,4 @@
-"""`loadshare check`: whether cases can be used, without solving them, and results believed."""
+"""`loadshare check`: check cases without solving them, and certify results again."""
 
 from __future__ import annotations
 

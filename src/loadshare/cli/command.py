@@ -1,4 +1,4 @@
-"""How every command reads its words, and how it ends when it is stopped."""
+"""How every command reads its arguments, and how it ends when it is stopped."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Command(TyperCommand):
     """A command that reports what is wrong with an option in plain words."""
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
-        """Run a command; what it notes (outputs, ``--quiet``) ends with it."""
+        """Run a command in its own context: what it notes (outputs, ``--quiet``) ends with it."""
         return copy_context().run(super().main, *args, **kwargs)
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
@@ -55,7 +55,7 @@ class Command(TyperCommand):
             _tell_takers(ctx, error)
             raise
         if ctx.resilient_parsing:
-            # The shell asks what may follow: nothing is done.
+            # The shell asks for completions: nothing is done.
             return left
         self._refuse_empty(ctx, words)
         machine = bool(ctx.params.get("json"))
@@ -75,12 +75,12 @@ class Command(TyperCommand):
         return left
 
     def _refuse_empty(self, ctx: Any, words: list[str]) -> None:
-        """Refuse an empty text for a file or folder, which would be the one at hand.
+        """Refuse an empty text for a file or folder, which would mean the current folder.
 
         Raises
         ------
         typer.BadParameter
-            For the first.
+            For the first one.
         """
         given, _, _ = self.make_parser(ctx).parse_args(args=list(words))
         for param in ctx.command.params:
@@ -107,16 +107,16 @@ class Command(TyperCommand):
 
 
 class Commands(Mapping[str, Any]):
-    """Commands by their names, each made when it is asked for.
+    """Commands by their names, each built when it is needed.
 
-    To make all of them takes longer than to print the help.
+    Building all of them takes longer than printing the help.
 
     Parameters
     ----------
     make : callable
         Returns a command.
     helps : mapping of str to str
-        What the help says of each.
+        Help text of each.
     """
 
     def __init__(self, make: Callable[[str], Any], helps: Mapping[str, str]) -> None:
@@ -135,12 +135,12 @@ class Commands(Mapping[str, Any]):
 
 
 class Group(TyperGroup):
-    """The commands together; an unknown word leads to the intended one."""
+    """The group of all commands; for an unknown word it suggests the intended one."""
 
     commands: Commands  # type: ignore[assignment]
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
-        """Run a command; what it notes (outputs, ``--quiet``) ends with it."""
+        """Run a command in its own context: what it notes (outputs, ``--quiet``) ends with it."""
         return copy_context().run(super().main, *args, **kwargs)
 
     def list_commands(self, ctx: Any) -> list[str]:
@@ -148,7 +148,7 @@ class Group(TyperGroup):
         return list(self.commands)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the commands' names and what they do, which makes none of them."""
+        """Write the commands' names and what they do, without building any."""
         limit = formatter.width - 6 - max(map(len, self.commands))
         helps = self.commands.helps.items()
         rows = [(n, TyperCommand(n, help=h).get_short_help_str(limit)) for n, h in helps]
@@ -161,7 +161,7 @@ class Group(TyperGroup):
         Raises
         ------
         UsageError
-            If there is none, with the one that is near or does what the word says.
+            If there is none; the message names one that is similar or does what the word says.
         """
         word = args[0]
         if self.get_command(ctx, word) is not None or word.startswith("-"):
@@ -186,11 +186,11 @@ OTHER_NAMES = {
     "montecarlo": "tolerance",
     "help": "--help",
 }
-"""What users call commands that have another name."""
+"""Names by which users may look for commands that have another name."""
 
 
 def _tell_takers(ctx: Any, error: NoSuchOption) -> None:
-    """Add to an unknown option which commands take it, or the one that is near."""
+    """Add to the error of an unknown option which commands take it, or a similar option."""
     from loadshare.case.words import did_you_mean
 
     commands = ctx.parent.command.commands.values() if ctx.parent else ()
@@ -208,7 +208,7 @@ def _add_json(ctx: Any) -> None:
     Raises
     ------
     typer.BadParameter
-        If another file goes there.
+        If another file goes to standard output.
     """
     others = ctx.params["file"] or []
     if any(output.file == STANDARD for output in others):

@@ -1,4 +1,4 @@
-"""What the shell proposes at the TAB key: names from the case on the line."""
+"""Completion in the shell: names from the case on the command line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def setting_names(ctx: typer.Context, incomplete: str) -> list[str]:
 
 
 def key_names(ctx: typer.Context, incomplete: str) -> list[str]:
-    """Return the keys of the case that hold a value, and those of all names of a section."""
+    """Return the keys of the case that hold a value."""
     case = _case(ctx)
     return [key for key in (_keys(case) if case else ()) if key.startswith(incomplete)]
 
@@ -44,7 +44,7 @@ def kind_names(incomplete: str) -> list[str]:
 
 
 def _case(ctx: typer.Context) -> Case | None:
-    """Return the case that is named on the line; None where that is no case, or none yet."""
+    """Return the case that is named on the command line; None if there is none, or not yet."""
     from loadshare.case import load_case
     from loadshare.errors import LoadshareError
 

@@ -1,6 +1,6 @@
-"""Where text goes: stdout for answers, stderr for progress and next to a file on stdout.
+"""Output of text: answers go to stdout, progress to stderr; all to stderr if a file is on stdout.
 
-With ``--quiet``, and with ``--json``, there are neither answers nor progress in words.
+With ``--quiet`` or ``--json``, neither answers nor progress are printed.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 
 class Tick(Protocol):
-    """Called with how much is done, and of how much."""
+    """Callback of progress, with the number done and the total."""
 
     def __call__(self, done: int, total: int) -> None:
-        """Tell that `done` of `total` are finished."""
+        """Report that `done` of `total` are finished."""
 
 
 @dataclass
 class _Stand:
-    """How far what is under way has come."""
+    """Progress of the work that is under way."""
 
     what: str
     done: int = 0
@@ -80,7 +80,7 @@ def console(*, stderr: bool = False) -> Console:
 
 
 def say(*parts: object, style: str | None = None, whole: bool = False) -> None:
-    """Print an answer; `whole` leaves its lines to be broken by the terminal, as paths need."""
+    """Print an answer; with `whole` only the terminal breaks its lines, as paths need."""
     if is_hushed():
         return
     shown = (readable(part) if isinstance(part, str) else part for part in parts)
@@ -101,14 +101,14 @@ def tell_note(note: str) -> None:
 
 @contextmanager
 def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[Tick]:
-    """Count what is done, and show it on a terminal: how much, how much is left, and for how long.
+    """Count what is done, and show on a terminal how much that is and how long the rest will take.
 
     Parameters
     ----------
     what : str
         What is counted, in front of the bar.
     total : int or None
-        How many there are; None if that is not known beforehand.
+        Their total number; None if it is not known beforehand.
     rated : bool
         Whether the bar shows a rate, for what comes by the thousands.
     """
@@ -139,7 +139,7 @@ def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[T
         bars.TextColumn("left"),
         bars.TimeRemainingColumn(),
     )
-    # Parts of what is rated come seconds apart: a short memory would show no rate between them.
+    # Rated parts come seconds apart: a short memory would show no rate between them.
     memory = 300.0 if rated else 30.0
     with bars.Progress(
         *columns, console=screen, transient=True, speed_estimate_period=memory

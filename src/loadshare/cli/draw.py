@@ -41,7 +41,7 @@ def draw(
 
 
 def _drawn(file: Path, settings: Sequence[str]) -> tuple[Figure, list[Problem]]:
-    """Return the drawing of a case, and what is wrong with the case.
+    """Return the drawing of a case, and the problems of the case.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def _drawn(file: Path, settings: Sequence[str]) -> tuple[Figure, list[Problem]]:
         case = open_case(file, settings)
     except CaseError as error:
         draft = load_draft(file, read_changes(settings))
-        # Without a problem of its own, it was a file that could not be read just then.
+        # If the draft has no problem of its own, a file could not be read at that moment.
         if not (draft.gears and draft.problems):
             raise
         return train(draft), list(error.problems)

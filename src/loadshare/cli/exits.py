@@ -23,9 +23,9 @@ UNUSABLE = 2
 """The case is invalid, the command was used wrongly, a file cannot be read or written, or memory
 does not suffice."""
 INTERRUPTED = 130
-"""Stopped from the keyboard, as shells count it."""
+"""Stopped from the keyboard; the code is that of shells."""
 TERMINATED = 143
-"""Stopped by SIGTERM, as shells count it."""
+"""Stopped by SIGTERM; the code is that of shells."""
 
 
 def fail(lines: Iterable[str], code: int) -> NoReturn:
@@ -42,7 +42,7 @@ def fail(lines: Iterable[str], code: int) -> NoReturn:
 
 
 def fail_of(problems: Iterable[Problem], more: str) -> NoReturn:
-    """Write problems to stderr, one per line, and their count with more words last.
+    """Write problems to stderr, one per line, then their count followed by `more`.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def fail_of(problems: Iterable[Problem], more: str) -> NoReturn:
 
 @contextmanager
 def reporting_problems(done: str = "solved") -> Iterator[None]:
-    """Turn problems into a list, one per line, and last their count and what was not done."""
+    """Turn problems of a case into lines on stderr, their count and what was not done last."""
     try:
         yield
     except CaseError as error:
@@ -64,22 +64,22 @@ def reporting_problems(done: str = "solved") -> Iterator[None]:
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Turn a file that cannot be written into a message."""
+    """Turn the failure to write a file into a message."""
     try:
         yield
     except OSError as error:
-        # Of a folder, the file in it.
+        # For a folder, the file in it.
         file = error.filename if isinstance(error, NotWritten) else path
         fail([f"{file}: {unwritten(error)}"], UNUSABLE)
 
 
 def unwritten(error: OSError) -> str:
-    """Return what became of a file that could not be written."""
+    """Return the message for a file that could not be written."""
     return f"cannot be written: {error.strerror or error}"
 
 
 def out_of_memory(what: str) -> str:
-    """Return that memory did not suffice, and for what as far as that is known."""
+    """Return the message that memory did not suffice, and for what if that is known."""
     more = f" ({what})" if what else ""
     return (
         f"There is not enough memory{more}. Give the process more, or ask for less at a time: "
@@ -94,8 +94,7 @@ def reporting_lack_of_room() -> Iterator[None]:
     Raises
     ------
     SystemExit
-        With 2, for a file that cannot be written, standard output among them, and for a lack of
-        memory.
+        With 2, if a file or standard output cannot be written, or memory does not suffice.
     """
     try:
         yield
@@ -109,15 +108,15 @@ def reporting_lack_of_room() -> Iterator[None]:
 
 
 NO_ROOM = {"ENOSPC", "EDQUOT", "EFBIG"}
-"""Of disks, quotas and limits on the size of files; not every system has all of them."""
+"""Errors of disks, quotas and limits on the size of files; not every system has all of them."""
 
 
 NOT_MAPPED = ("failed to map segment", "annot allocate memory")
-"""What the system says of a library that does not fit into memory."""
+"""Messages of the system about a library that does not fit into memory."""
 
 
 def _want_of_room(error: MemoryError | OSError | ImportError) -> str | None:
-    """Return what there was no room for, or None where it was something else that failed."""
+    """Return the message for a lack of room or a failing file, or None for any other error."""
     if isinstance(error, MemoryError):
         return out_of_memory(str(error))
     if isinstance(error, ImportError):
@@ -137,6 +136,6 @@ def _want_of_room(error: MemoryError | OSError | ImportError) -> str | None:
 
 
 def _let_go() -> None:
-    """Drop what waits to be printed: at its end, Python would try again and report a failure."""
+    """Discard what waits to be printed: on exit, Python would try again and report a failure."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -81,7 +81,7 @@ def _listening(host: str, port: int) -> socket.socket:
     Raises
     ------
     typer.Exit
-        If the address cannot be had.
+        If the address is not available.
     """
     import socket
 

@@ -1,4 +1,4 @@
-"""Files that commands write, and what of them they must not touch."""
+"""Files that commands write, and those that they must not write over."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _written: ContextVar[tuple[Path, ...]] = ContextVar("written", default=())
 
 
 def kept() -> str:
-    """Return what a command that is stopped leaves behind, and how to go on."""
+    """Return a sentence on what a stopped command leaves behind, and how to go on."""
     files = ", ".join(map(str, _written.get()))
     return f"{f'Kept: {files}.' if files else 'Nothing is kept.'} The same command starts again."
 
@@ -48,7 +48,7 @@ _outputs: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", defau
 
 
 def ask_for(outputs: Iterable[tuple[str, Path]]) -> None:
-    """Note which files the command at hand is to write, by the names of their options."""
+    """Note which files the current command is to write, by the names of their options."""
     _outputs.set(tuple(outputs))
     _written.set(())
 
@@ -59,18 +59,18 @@ def is_stdout_taken() -> bool:
 
 
 def keep_inputs(read: Iterable[Path], written: Iterable[tuple[str, Path]] = ()) -> None:
-    """Refuse to write over a file that is read, before any work.
+    """Refuse to write over an input file, before any work is done.
 
     Parameters
     ----------
     read : iterable of Path
     written : iterable of (str, Path)
-        Files that are written besides those that were asked for by name, with their options.
+        Files to be written besides those that were asked for by name, with their options.
 
     Raises
     ------
     typer.BadParameter
-        Naming the option and the file.
+        If a file would be written over; the message names the option and the file.
     """
     outputs = [(option, file) for option, file in (*_outputs.get(), *written) if file.exists()]
     for path in read if outputs else ():

@@ -39,14 +39,14 @@ FORMS = {
     "rexs": "REXS file",
     "folder": "folder",
 }
-"""Endings of files and what they hold; "folder" is a place for many."""
+"""Endings of files and what they hold; "folder" is a place for many files."""
 FIGURES = ("svg", "png", "pdf", "html")
-"""Of a picture; as a page it shows figures under the pointer."""
+"""Forms of a picture; as a page it shows figures under the pointer."""
 TABLES = ("csv", "parquet", "xlsx", "json", "nc")
 FOLDER = "folder"
 
 Makers = Mapping[str, Callable[[], str | bytes]]
-"""What makes the content of a file, by the file's form."""
+"""Functions that make the content of a file, by the file's form."""
 
 
 @dataclass(frozen=True)
@@ -71,12 +71,12 @@ def read_output(text: str, forms: Sequence[str]) -> Output:
     ----------
     text : str
     forms : sequence of str
-        What the command writes; the first goes to standard output if no form is given.
+        Forms that the command writes; standard output takes the first if no form is given.
 
     Raises
     ------
     typer.BadParameter
-        If the ending, or none, is none of the forms.
+        If the text names no file, or the ending is missing or none of the forms.
     """
     prefix, colon, rest = text.partition(":")
     if not rest and (not prefix or (colon and prefix in FORMS)):
@@ -104,7 +104,7 @@ def read_output(text: str, forms: Sequence[str]) -> Output:
 
 
 def check_case_file(file: Path, force: bool) -> None:
-    """Refuse a name for a case that says it is something else, or that of a file, unless forced.
+    """Refuse a case file with the ending of another form, or one that exists, unless forced.
 
     Raises
     ------
@@ -122,17 +122,17 @@ def check_case_file(file: Path, force: bool) -> None:
 
 
 def _first(forms: Sequence[str]) -> str:
-    """Return the form of what goes to standard output."""
+    """Return the form of a file on standard output."""
     return next(form for form in forms if form != FOLDER)
 
 
 def _is_folder(text: str, ending: str, *, mainly: bool) -> bool:
-    """Whether a place for many files is meant, by a command that mainly writes such or not."""
+    """Return whether a folder is meant; `mainly` if that is what the command writes by default."""
     return text.endswith(("/", os.sep)) or Path(text).is_dir() or (mainly and ending not in FORMS)
 
 
 def outputs(*forms: str, what: str = "Write what was found") -> Any:
-    """Return the option for files of any of some forms."""
+    """Return the option for files of some forms."""
 
     def checked(made: list[Output] | None) -> list[Output] | None:
         if made is None:
@@ -160,7 +160,7 @@ def outputs(*forms: str, what: str = "Write what was found") -> Any:
 
 
 def write_all(wanted: Iterable[Output] | None, makers: Makers, *, err: bool = True) -> None:
-    """Write what was asked for, each file whole or not at all, and report it on stderr or stdout.
+    """Write the files asked for, each whole or not at all, and report them on stderr or stdout.
 
     Raises
     ------
@@ -184,12 +184,12 @@ def write_all(wanted: Iterable[Output] | None, makers: Makers, *, err: bool = Tr
 
 
 def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:
-    """Return what makes files of a table: CSV, Parquet, a workbook, JSON, netCDF.
+    """Return the functions that make files of a table: CSV, Parquet, a workbook, JSON, netCDF.
 
     Parameters
     ----------
     name : str
-        Of what was asked, such as ``"sweep"``.
+        Name of the question, such as ``"sweep"``.
     frame : callable
         Makes the table.
     **about
@@ -212,7 +212,7 @@ def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> 
 
 
 def figure_of(figure: Callable[[], Figure]) -> Makers:
-    """Return what makes files of a picture."""
+    """Return the functions that make files of a picture."""
     return {form: partial(_drawn, figure, form) for form in FIGURES}
 
 
@@ -227,7 +227,7 @@ def _parquet(frame: pd.DataFrame) -> bytes:
 
 
 def _of_one_type(column: pd.Series[Any]) -> pd.Series[Any]:
-    """Return a column of the type that it has in every file: figures may happen to be whole."""
+    """Return a column in the type it has in every file, even if its figures happen to be whole."""
     known = column.dropna()
     if len(known) and all(isinstance(value, float) for value in known):
         return column.astype("Float64")
@@ -235,7 +235,7 @@ def _of_one_type(column: pd.Series[Any]) -> pd.Series[Any]:
 
 
 def _netcdf(name: str, frame: pd.DataFrame) -> bytes:
-    """Return a table as labelled arrays over its rows; texts that are missing are empty."""
+    """Return a table as labelled arrays over its rows; missing texts are empty."""
     from loadshare._version import __version__
     from loadshare.output import netcdf_of
 
@@ -263,7 +263,7 @@ def _json(name: str, frame: pd.DataFrame, about: Mapping[str, object]) -> str:
 
 
 def _plain(cell: Any) -> object:
-    """Return a cell as JSON knows it, which has no NaN and no infinity."""
+    """Return a cell as plain data for JSON, which has no NaN and no infinity."""
     value = cell.item() if hasattr(cell, "item") else cell
     if isinstance(value, float):
         return value if math.isfinite(value) else None

@@ -92,7 +92,7 @@ def ltca(
 
 
 def _torque(text: str | None) -> float | None:
-    """Torque [N·m] of the option."""
+    """Return the torque [N·m] that the option gives."""
     if text is None:
         return None
     from pydantic import TypeAdapter, ValidationError

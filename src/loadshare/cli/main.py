@@ -1,7 +1,7 @@
 """The command `loadshare`.
 
-What it needs to print its help is imported here; everything else is imported by the command that
-needs it, so that the help comes at once and a run does not wait for what it does not use.
+Only what the help needs is imported here; everything else is imported by the command that needs it,
+so that the help appears at once and no command waits for what it does not use.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ from loadshare.output import Closed
 STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
 CASES = (run, batch, report, draw, check, export, explore, *STUDIES)
 SCRIPTED = (run, *STUDIES)
-"""Commands one of whose files can be JSON, and so be printed by ``--json``."""
+"""Commands that can write JSON, and so print it with ``--json``."""
 COMMANDS = {
     **{
         command.__name__: command
@@ -61,7 +61,7 @@ COMMANDS = {
 
 
 def _made(name: str) -> Any:
-    """Return a command with the options that it takes without a word of its own about them."""
+    """Return a command, with the shared options added that it does not define itself."""
     command = COMMANDS[name]
     has = {
         "json": command in SCRIPTED,
@@ -132,15 +132,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 @cache
 def _built() -> Callable[..., object]:
-    """Put the commands together: once, for those who call `main` again and again."""
+    """Put the commands together, once for all calls of `main`."""
     return get_command(app)
 
 
 def open_streams() -> None:
-    """Put nothing in the place of streams that are closed, as by ``2>&-`` or by some daemons.
+    """Replace closed streams by the null device, as after ``2>&-`` or under some daemons.
 
-    Files and pipes that are opened would get their numbers, and then what libraries and workers
-    print. That a file was asked for on a closed output is reported when it is written.
+    Otherwise files and pipes opened later would get their numbers, and so what libraries and
+    workers print. A file asked for on a closed output is reported when it is written.
     """
     for number, stream in enumerate((sys.stdin, sys.stdout, sys.stderr)):
         if stream is None and not _is_open(number):
@@ -155,7 +155,7 @@ def open_streams() -> None:
             setattr(sys, name, Closed(os.fdopen(nowhere, "wb"), encoding="utf-8"))
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
-            # A stream that cannot show Ω shall show a question mark and go on.
+            # A stream that cannot show Ω shows a question mark instead of failing.
             stream.reconfigure(errors="replace")
 
 

@@ -1,4 +1,4 @@
-"""Words of earlier versions: each goes on working, and a note says what it is called now."""
+"""Options of earlier versions: each still works, and a note gives its new name."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ OLD = {
     "--json": ("-o", "json:"),
     "--tables": ("-o", "folder:"),
 }
-"""Options that are called differently now, and what their values have before them."""
+"""Options that have a new name, and the prefix that their values now take."""
 OF = {"--unknown": ("fit",)} | dict.fromkeys(("--netcdf", "--csv", "--json", "--tables"), ("run",))
-"""Commands that had them; those that are not named had them everywhere."""
+"""Commands that had these options; the options not named here belonged to all commands."""
 
 
 def renewed(command: str, words: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Return the words of a command line as they are written now, and a note on every old one.
+    """Return the words of a command line in their present form, and a note on every old one.
 
     Parameters
     ----------
     command : str
         Name of the command.
     words : sequence of str
-        What follows it.
+        The words after it.
     """
     grids = command == "sweep" and not any(_name(word) == OVER for word in words)
     has_case = bool(words) and not words[0].startswith("-")
@@ -89,9 +89,9 @@ def _name(word: str) -> str:
 
 
 def _is_file(word: str | None, *, has_case: bool) -> bool:
-    """Whether the word after ``--json`` names the file to write, as it once did.
+    """Return whether the word after ``--json`` names a file to write, as in earlier versions.
 
-    Where the case is still to come, a file that is there is the case, unless it is JSON.
+    If the case has not been named yet, an existing file is the case, unless it is JSON.
     """
     if word is None or (word.startswith("-") and word != "-"):
         return False

@@ -1,4 +1,4 @@
-"""The options that commands share, each described once, and those they take unasked."""
+"""The options that commands share, each described once, and those added to every command."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ OPTIONS: dict[str, Any] = {
         typer.Option("-q", "--quiet", help="Print errors only; files are still written."),
     ],
 }
-"""By the names of their parameters. `Command` heeds "json" and "quiet"."""
+"""Options by the names of their parameters. `Command` acts on "json" and "quiet"."""
 
 
 def taking(command: Command, *names: str) -> Command:
@@ -80,8 +80,8 @@ def _outside(allowed: bool) -> Iterator[None]:
             os.environ |= {} if before is None else {OUTSIDE: before}
 
 
-# The words are repeated here because asking the solver room for them would import it for every
-# --help; a test compares them.
+# The words are repeated here because taking them from the solver would import it for every --help;
+# a test compares them.
 SolverName: TypeAlias = Literal["auto", "clarabel", "osqp", "cvxpy"]
 MethodName: TypeAlias = Literal["newton", "picard", "power"]
 
@@ -199,7 +199,7 @@ def settings_of(given: Iterable[str], form: str) -> dict[tuple[str, ...], str]:
 
 
 def ranges_of(given: Iterable[str] | None, form: str) -> dict[tuple[str, ...], tuple[str, str]]:
-    """Return the two ends of every range ``KEY=FROM:TO`` that was asked for, by its keys.
+    """Return the two ends of every range ``KEY=FROM:TO``, by its keys.
 
     Raises
     ------

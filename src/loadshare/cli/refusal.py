@@ -47,6 +47,6 @@ def refused_document(refusal: Refused, case: str) -> dict[str, Any]:
     """
     none: dict[str, Any] = {"case": case, "version": __version__, "positions": [], "omega": {}}
     document = none if refusal.partial is None else refusal.partial.to_dict()
-    # JSON knows no infinity; a figure that is none is written as null.
+    # JSON has no infinity and no NaN; such a figure is written as null.
     figures = {n: v if math.isfinite(v) else None for n, v in refusal.figures.items()}
     return document | {"refused": {"message": str(refusal), "figures": figures}}

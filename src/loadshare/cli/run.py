@@ -1,4 +1,4 @@
-"""`loadshare run`: solve one case and print what was found."""
+"""`loadshare run`: solve one case and print the result."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def run(
 def _solved(
     case: Case, positions: Sequence[int], how: dict[str, Any]
 ) -> tuple[Result | None, Refused | None]:
-    """Return what is certified of a case, and what was refused."""
+    """Return the certified result of a case, and the refusal, if any."""
     from loadshare.job import solve
 
     try:

@@ -12,16 +12,17 @@ from loadshare.cli.exits import INTERRUPTED, TERMINATED
 
 
 class Stop:
-    """Signals that a command received.
+    """Handling of the signals that a command receives.
 
-    It is interrupted once at most: what it then still says and writes is short, and whoever
-    presses Ctrl-C again and again shall read it too.
+    The command is interrupted once at most: what it prints and writes after that is short, and
+    should reach even those who press Ctrl-C again and again.
 
     Parameters
     ----------
     gently : callable, optional
-        Called at the first Ctrl-C, where the command then comes to its end by itself; the second
-        interrupts it. Without it the first one does. SIGTERM always does: what sends it kills soon.
+        Called at the first Ctrl-C, after which the command ends by itself; the second one
+        interrupts it. Without `gently` the first one does. SIGTERM always does, because its sender
+        will soon kill the process.
 
     Attributes
     ----------
@@ -37,7 +38,7 @@ class Stop:
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Stop:
-        """Take Ctrl-C and SIGTERM; what the process ignores it goes on ignoring."""
+        """Handle Ctrl-C and SIGTERM, except where the process ignores them."""
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
                 if signal.getsignal(number) != signal.SIG_IGN:
@@ -46,20 +47,20 @@ class Stop:
 
     def __exit__(self, kind: object, error: object, _: object) -> None:
         if self.requested:
-            # A process that was stopped has nothing left to do but to end. Where it was met in a
-            # text that exec() runs, as dataclasses do, CPython under -m would end it by SIGINT in
-            # place of its exit code; the next text makes it forget that.
+            # A stopped process has nothing left to do but to end. If the signal came while exec()
+            # was running a text, as in dataclasses, CPython under -m would end the process by
+            # SIGINT instead of its exit code; running another text makes it forget that.
             exec("")
             if self._thrown and (error is None or isinstance(error, SystemError | ImportError)):
-                # Nothing of it is left, or what a compiled module makes of it, where it was met
-                # while modules were loading.
+                # While modules were loading, the interruption may have been lost, or turned into
+                # another error by a compiled module.
                 raise KeyboardInterrupt
             return
         for number, handler in self._before.items():
             signal.signal(number, handler)
 
     def over(self) -> None:
-        """Take no more signals: what is left is to say what was kept."""
+        """Ignore further signals: all that is left is to say what was kept."""
         self._over = True
 
     def _take(self, number: int, _: FrameType | None) -> None:

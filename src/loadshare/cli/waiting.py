@@ -1,4 +1,4 @@
-"""What is printed at all, and a line while libraries load, gone once there is something to say.
+"""Printing unless hushed, and a line shown while libraries load, erased by the next output.
 
 The first command of a fresh installation reads some hundred megabytes of libraries from the disk,
 which takes seconds.
@@ -18,12 +18,12 @@ from loadshare.readable import readable
 
 LINE = "Loading libraries …"
 DELAY = 0.4
-"""Time after which it is shown [s]; what is quicker than that shows nothing."""
+"""Time after which it is shown [s]; quicker commands do not show it."""
 _ERASE = "\r\033[K"
 
 
 class _Line:
-    """The line, shown by a timer and erased by whoever speaks next."""
+    """The line, shown by a timer and erased by the next output."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -40,7 +40,7 @@ class _Line:
                 sys.stderr.flush()
 
     def erase(self) -> None:
-        """Take the line away, and show it no more."""
+        """Erase the line for good."""
         self._timer.cancel()
         with self._lock:
             if self._shown and not self._over:
@@ -64,13 +64,13 @@ def waiting() -> Iterator[None]:
 
 
 def speak() -> None:
-    """Make room on the terminal for what is printed now."""
+    """Erase the line, to make room for what is printed now."""
     while _line:
         _line.pop().erase()
 
 
 def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
-    """Print a line to stdout or stderr; names of files in it command no terminal."""
+    """Print a line to stdout or stderr, without control characters, as names of files may hold."""
     speak()
     typer.echo(readable(text), err=err, nl=nl)
 
@@ -79,7 +79,7 @@ _hushed: ContextVar[bool] = ContextVar("hushed", default=False)
 
 
 def hush(wanted: bool) -> None:
-    """From here on print errors only, or everything."""
+    """Print only errors from here on, or everything."""
     _hushed.set(wanted)
 
 

@@ -1,1 +1,1 @@
-"""`loadshare batch`: many cases, of which none can stop the others."""
+"""`loadshare batch`: many cases, none of which can stop the others."""

@@ -1,4 +1,4 @@
-"""The command itself, and the summary of what became of all cases."""
+"""The command itself, and the summary of the outcomes of all cases."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def batch(
             ordered = [done[task.name] for task in tasks if task.name in done]
             waiting = [str(task.case) for task in tasks if task.name not in done]
             settings = {"solver": solver, "method": method, "tolerance": tolerance}
-            # First, so that it is printed even where nothing can be written.
+            # Printed first, so that it appears even if nothing can be written.
             print_summary(ordered)
             document = summary_document(ordered, settings, waiting)
             with writing(summary):
@@ -119,7 +119,7 @@ def _done(tasks: Sequence[Task], jobs: int, stop: Stop) -> dict[str, Outcome]:
 
 
 def _stopping() -> None:
-    # Past the buffers of stderr: a signal may come while they are written to.
+    # Past the buffers of stderr: a signal may arrive while they are being written to.
     message = "Stopping; the cases under way are finished first. Ctrl-C again leaves them.\n"
     os.write(2, message.encode())
 
@@ -128,7 +128,7 @@ STYLES = {"certified": "green", "kept": "green"}
 
 
 def print_summary(outcomes: Sequence[Outcome]) -> None:
-    """Print one row per case, and below what went wrong; nothing of none, after an interruption."""
+    """Print one row per case, and below what went wrong; nothing if no case was done."""
     from rich.text import Text
 
     from loadshare.cli.tables.table import show, table
@@ -157,7 +157,7 @@ def print_summary(outcomes: Sequence[Outcome]) -> None:
 
 
 def counts(outcomes: Sequence[Outcome]) -> str:
-    """Return how many cases came to which outcome, in words."""
+    """Return the number of cases with each outcome, in words."""
     found = Counter(done.outcome for done in outcomes)
     text = ", ".join(f"{number} {outcome}" for outcome, number in found.most_common())
     return f"{len(outcomes)} cases: {text}" if len(outcomes) != 1 else f"1 case: {text}"

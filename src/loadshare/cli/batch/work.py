@@ -29,23 +29,23 @@ UNWRITTEN = "unwritten"
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """What is to be done with a case.
+    """A case to be solved, and how.
 
     Attributes
     ----------
     case : Path
     name : str
-        Of the case within the batch.
+        Name of the case within the batch.
     target : Path
         Result file.
     solver, method : str
     together : int
-        Cases of the batch; see `engine_for`.
+        Number of cases in the batch; see `engine_for`.
     tolerance : float
     force : bool
         Solve even if the result is there already.
     changes : dict
-        To the case, as `Case.replace` takes them.
+        Changes to the case, as `Case.replace` takes them.
     """
 
     case: Path
@@ -70,7 +70,7 @@ class Outcome:
         "certified", "kept", "refused", "invalid", "unwritten" or "crashed".
     seconds : float
     positions : int
-        Certified ones.
+        Number of certified positions.
     omega : float or None
         Largest Ω of the system.
     worst : float or None
@@ -92,7 +92,7 @@ class Outcome:
 def work(task: Task) -> Outcome:
     """Solve a case, or keep its result, and write what was found.
 
-    Nothing but an interruption is raised.
+    No exception is raised but an interruption.
     """
     start = time.perf_counter()
     outcome, result = "crashed", None
@@ -103,7 +103,7 @@ def work(task: Task) -> Outcome:
         outcome, messages = UNWRITTEN, (f"{error.filename}: {unwritten(error)}",)
     except MemoryError as error:
         messages = (out_of_memory(str(error)),)
-    except Exception as error:  # noqa: BLE001 -- a bug met in one case must not cost the others theirs
+    except Exception as error:  # noqa: BLE001 -- a bug met in one case must not cost the others
         messages = (f"{type(error).__name__}: {error}",)
     if outcome in ("invalid", "crashed") and task.target.exists():
         messages += (f"{task.target}: left by an earlier run, not of the case as it is now",)
@@ -161,7 +161,7 @@ def _kept(task: Task, case: Case) -> tuple[Result | None, tuple[str, ...]]:
     -------
     Result or None
     tuple of str
-        What is wrong with a file that claims to be this result and is not.
+        What is wrong with a file that claims to be this result but is not.
     """
     from loadshare.results import load_result
     from loadshare.train import build_train
@@ -173,13 +173,13 @@ def _kept(task: Task, case: Case) -> tuple[Result | None, tuple[str, ...]]:
     try:
         result = load_result(task.target)
     except ResultError as error:
-        # That the case was refused before is no news; it is solved again all the same.
+        # An earlier refusal needs no message; the case is solved again anyway.
         if error.refusal:
             return None, ()
         first = replace(error.problems[0], hint="")
         return None, (f"the file there was not kept: {first}",)
     stamp = result.stamp
-    # Of the cases, not of their hashes: a result shows titles, sources and assumptions as well.
+    # Cases are compared, not hashes: a result also shows titles, sources and assumptions.
     found = (result.case, stamp.version, stamp.solver, stamp.method, stamp.tolerance)
     wanted = (case, __version__, task.solver, task.method, task.tolerance)
     if found != wanted or not stamp.reduce:
@@ -189,11 +189,11 @@ def _kept(task: Task, case: Case) -> tuple[Result | None, tuple[str, ...]]:
 
 
 SUMMARY = "summary"
-"""Name that no case may take: the batch's own file bears it."""
+"""Name of the batch's own file, which no case may take."""
 
 
 def result_names(cases: Sequence[Path]) -> list[str]:
-    """Return one name per case: that of its file, or its relative path if two are called alike.
+    """Return one name per case: that of its file, or its relative path if two names are equal.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def result_names(cases: Sequence[Path]) -> list[str]:
     Returns
     -------
     list of str
-        Different names, also on a file system that takes capitals for small letters.
+        Names that differ even on a file system that ignores case.
     """
     absolute = [path.absolute() for path in cases]
     root = os.path.commonpath([path.parent for path in absolute]) if absolute else ""
@@ -222,16 +222,16 @@ def result_names(cases: Sequence[Path]) -> list[str]:
 
 
 def engine_for(case: Case, together: int) -> str:
-    """Name the engine that solves a case of a batch of so many.
+    """Return the engine that solves a case in a batch of `together` cases.
 
-    Left to itself, a process takes the compiled one once it has solved enough: the last digits of
-    a result would hang on what was solved before it, and change where a batch is taken up again.
+    By default, a process takes the compiled engine once it has solved enough: the last digits of a
+    result would depend on what was solved before, and change if a batch is continued.
     """
     from loadshare.settings import JOB
 
     positions = case.operating.positions if case.march is None else case.march.steps
     if positions * together <= JOB.few:
-        # As `chosen` has it, whose modules take longer to load than a small batch to begin.
+        # The same as from `chosen`, whose modules take longer to load than a small batch to begin.
         return "vectorised"
     from loadshare.job.engines import chosen
 

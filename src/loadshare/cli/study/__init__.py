@@ -1,1 +1,1 @@
-"""Commands that ask more than one equilibrium of a case."""
+"""Commands that need more than one equilibrium of a case."""

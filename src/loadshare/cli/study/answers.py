@@ -1,4 +1,4 @@
-"""How the answers of studies are shown: what prints each kind, and what makes files of it."""
+"""Presentation of the answers of studies: functions that print each kind and make its files."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
 
 
 class Kind(NamedTuple):
-    """How the answer of a kind of study is shown: what prints it, and what makes files of it."""
+    """The functions that print the answer of a kind of study, and that make files of it."""
 
     show: Callable[[Any], None]
     makers: Callable[[Any], Makers]
 
 
 def _of_table(kind: str, found: Any, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:
-    """Return what makes files of a table and of the picture of an answer."""
+    """Return the functions that make files of a table and of the picture of an answer."""
     return {**tables_of(kind, frame, **about), **figure_of(found.plot)}
 
 
 def _labelled(found: Any) -> Makers:
-    """Return what makes a netCDF file of an answer with labelled arrays of its own."""
+    """Return the function that makes a netCDF file of an answer with labelled arrays of its own."""
     return {"nc": lambda: netcdf_of(found.dataset)}
 
 
@@ -75,7 +75,7 @@ def _of_comparison(found: Comparison) -> Makers:
 
 
 def show_critical(found: Critical) -> None:
-    """Print every event, and the positions at which it is found alike."""
+    """Print every event, with all positions at which it is found alike."""
     unit = f" [{found.parameter.unit}]" if found.parameter.unit else ""
     doubtful = not all(e.confirmed for e in found.events)
     alike: dict[tuple[str, ...], list[int]] = {}
@@ -104,7 +104,7 @@ def _of_critical(found: Critical) -> Makers:
 
 
 def show_fit(found: Fit) -> None:
-    """Print the fitted values, how sure they are, and what they give."""
+    """Print the fitted values with their uncertainties, and the comparison that they give."""
     rows = (
         (
             u.parameter.name,
@@ -176,7 +176,7 @@ def _of_march(found: March) -> Makers:
 
 
 def _of_sensitivity(found: Sensitivity) -> Makers:
-    """Return what makes the files of sensitivities; tables hold those of torques."""
+    """Return the functions that make files of sensitivities; tables hold those of torques."""
 
     def frame() -> pd.DataFrame:
         return found.dataset["torque"].to_dataframe().reset_index()
@@ -188,7 +188,7 @@ MEANS = {"stage": "omega", "group": "pair_omega"}
 
 
 def show_sweep(found: Sweep) -> None:
-    """Print the largest Ω of every stage at every point; by the group where that differs."""
+    """Print the largest Ω of every stage at every point; by group as well if that differs."""
     tables = {mean: _table(found, kind) for mean, kind in MEANS.items()}
     texts = [[list(column.cells) for column in made.columns] for made in tables.values()]
     if texts[0] == texts[1]:
@@ -223,7 +223,7 @@ def _of_sweep(found: Sweep) -> Makers:
 
 
 def _of_tolerance(found: Tolerance) -> Makers:
-    """Return what makes the files of a tolerance study: samples, and statistics."""
+    """Return the functions that make files of a tolerance study: samples, and statistics."""
     return {
         **_of_table("tolerance", found, found.to_frame),
         **_labelled(found),

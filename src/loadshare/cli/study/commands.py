@@ -1,4 +1,4 @@
-"""The commands that ask more than one equilibrium of a case: what each asks, and how it ends."""
+"""The commands that need more than one equilibrium of a case, and how they end."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ def running_study(
     ----------
     file : Path
     change : list of str or None
-        Of ``--set``.
+        Values of ``--set``.
     what, total, rated
-        Of the bar, as far as known beforehand.
+        As for `progress`, as far as known beforehand.
     """
     with answered():
         case = open_case(file, change)
@@ -78,12 +78,12 @@ def answered() -> Iterator[None]:
 
 
 def conclude(kind: str, found: Any, files: list[Output] | None) -> None:
-    """Print the answer of a study, and write its files but a folder of samples, which is there.
+    """Print the answer of a study and write its files, except a folder of samples, already there.
 
     Raises
     ------
     typer.Exit
-        With the code of a refusal where the study lacks an answer; says which.
+        With the code of a refusal if answers are missing; the message says which.
     """
     KINDS[kind].show(found)
     for output in files or ():
@@ -154,7 +154,7 @@ FORM = "KEY=FROM:TO, as in rings.4.float='0 um:12 um'"
 def _range(
     given: list[str] | None, key: list[str] | None, start: str | None, stop: str | None
 ) -> tuple[list[str], str, str]:
-    """Return the keys to vary and the ends, in the words of today or those of before."""
+    """Return the keys to vary and the ends of the range, from the present or the former options."""
     if given:
         if key or start or stop:
             raise typer.BadParameter(
@@ -276,7 +276,7 @@ def _kept(out: Path | None, done: int, total: int) -> str:
 
 
 def _scatter(ranges: list[str] | None, form: str) -> dict[str, dict[str, str]]:
-    """Return inputs that vary evenly over ranges, as [study.NAME] has them."""
+    """Return inputs that vary evenly over ranges, as in [study.NAME]."""
     return {
         "=".join(keys): {"distribution": "uniform", "low": low, "high": high}
         for keys, (low, high) in ranges_of(ranges, form).items()
@@ -389,7 +389,7 @@ def study(
 
 
 def _varied(case: Case, name: str, kind: str, given: list[str]) -> Case:
-    """Return the case with the inputs of a study as the command line has them.
+    """Return the case with the inputs of a study replaced by those of the command line.
 
     Raises
     ------

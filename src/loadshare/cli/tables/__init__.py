@@ -1,1 +1,1 @@
-"""A result as an engineer reads it."""
+"""Tables of results, as an engineer reads them."""

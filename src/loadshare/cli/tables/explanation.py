@@ -1,4 +1,4 @@
-"""How one position was solved."""
+"""The explanation of how one position was solved."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from loadshare.solver import Record
 
 
 def print_explanation(index: int, answer: Answer | None) -> None:
-    """Print everything that is known of how a position was solved.
+    """Print everything that is known about how a position was solved.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The whole report of a result."""
+"""The complete printout of a result."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from loadshare.report.words import advice, undetermined_lines
 from loadshare.results import Position, Result
 
 MOST = 6
-"""Positions that are shown side by side."""
+"""Largest number of positions that are shown side by side."""
 RESTS = "Floating gears: displacement x, y and margin [µm], reaction of the ring [N]"
 WORDS = ("figure", "unit", "where")
 
@@ -31,7 +31,7 @@ def print_result(result: Result, wanted: int, *, loads: bool = False, cycle: boo
     Parameters
     ----------
     result : Result
-        Of what was certified.
+        Result of the certified positions.
     wanted : int
         Number of positions that were asked for.
     loads : bool
@@ -67,7 +67,7 @@ def print_omega(result: Result) -> None:
 
 
 def print_loads(result: Result) -> None:
-    """Print torques from outside and of shafts, and forces on bearings, the largest of each."""
+    """Print external torques, torques of shafts and forces on bearings, the largest of each."""
     fields = ["part", "torque", "torque at", "bearing", "bearing at"]
     if len(result.positions) == 1:
         fields = [name for name in fields if not name.endswith(" at")]
@@ -76,7 +76,7 @@ def print_loads(result: Result) -> None:
 
 
 def print_cycle(result: Result) -> None:
-    """Print transmission error, stiffness, share and place in the cycle at every position."""
+    """Print transmission error, stiffness, share and point of the cycle at every position."""
     rows = list(records.yielding(result))
     title = "Transmission error [µrad] and stiffness [N·m/rad] of the train"
     show(title, texts(rows, rows[0], words=()))
@@ -88,7 +88,7 @@ def print_cycle(result: Result) -> None:
 
 
 def print_validity(result: Result) -> None:
-    """Print the largest figures over the positions, their bounds, and a warning above one."""
+    """Print the largest displacements over the positions, their bounds, and a warning above one."""
     rows = list(records.measures(result))
     for row in rows:
         value = row["value"].value or 0.0
@@ -122,7 +122,7 @@ def print_certificate(result: Result, wanted: int) -> None:
 
 
 def _fields(result: Result, *fields: str) -> tuple[str, ...]:
-    """Columns of these fields, and of the position where there are several."""
+    """Return these fields, and the position if there are several."""
     return (*fields, "position") if len(result.positions) > 1 else fields
 
 
@@ -141,7 +141,7 @@ def print_heading(
     file : str
         As the user named it.
     count : int
-        Positions of the case.
+        Number of positions of the case.
     wanted : sequence of int
         Positions that are solved.
     changes : iterable of str
@@ -149,7 +149,7 @@ def print_heading(
     """
     solved = counted(count, "position")
     if len(wanted) < count:
-        # The noun first: "3 of 5 positions" would be how many, not which.
+        # The noun comes first: "3 of 5 positions" would say how many, not which.
         noun = "positions" if len(wanted) > 1 else "position"
         solved = f"{noun} {ranges(list(wanted))} of {count}"
     say(case.title or case.name, style="bold")
@@ -163,7 +163,7 @@ def print_heading(
 
 
 def print_sharing(result: Result) -> None:
-    """Print the torque of every mesh: alike everywhere, position by position, or summed up."""
+    """Print the torque of every mesh: once if alike everywhere, else by position, or summed up."""
     alike = records.alike(result)
     rows = list(records.torques(result, "alike" if alike else "each"))
     made = texts(rows, rows[0], words=("stage", "mesh"))
@@ -190,7 +190,7 @@ def _coast(result: Result) -> list[str]:
 
 
 def print_floats(result: Result) -> None:
-    """Print where the floats rest, and what the forces leave open of that and of rotations."""
+    """Print where the floats rest, and which displacements and rotations forces leave open."""
     if result.positions[0].floats:
         _print_rests(result.positions)
     lines = undetermined_lines(result.positions)
@@ -199,7 +199,7 @@ def print_floats(result: Result) -> None:
 
 
 def _print_rests(positions: tuple[Position, ...]) -> None:
-    """Print the rest of every float: alike everywhere, position by position, or summed up."""
+    """Print where every float rests: once if alike everywhere, else by position, or summed up."""
     places = records.reaction_places(positions)
     each = {g: [_rest(p, g, places) for p in positions] for g in positions[0].floats}
     alike = all(rests.count(rests[0]) == len(rests) for rests in each.values())
@@ -250,7 +250,7 @@ def _span(values: list[float]) -> str:
 
 
 def _shares(states: Iterable[str]) -> str:
-    """Return states, each with at how many positions it is found if there are several."""
+    """Return the states; if there are several, each with its number of positions."""
     counts = Counter(states)
     if len(counts) == 1:
         return next(iter(counts))

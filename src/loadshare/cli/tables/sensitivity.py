@@ -1,4 +1,4 @@
-"""How load sharing changes with every input, and how surely that is known."""
+"""How load sharing changes with every input, and how accurately that is known."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
     from loadshare.study.sensitivity import Input, Sensitivity
 
 SHOWN = 25
-"""Inputs that are shown; a file holds all."""
+"""Number of inputs that are shown; a file holds all."""
 SIDES = ("falling", "rising")
 DIGITS = 4
-"""Digits of a derivative that is known to more."""
+"""Digits that are shown of a derivative that is known to more."""
 ALIKE = 1e-6
-"""Relative difference of two sides that no reader needs to see."""
+"""Relative difference of the derivatives to both sides that is not worth showing."""
 ROUND_OFF = 1e-13
-"""Change of Ω over a unit and over the whole value of an input that says nothing."""
+"""Change of Ω, over a unit and over the whole value of an input, that counts as zero."""
 
 
 def show_sensitivity(found: Sensitivity) -> None:
-    """Print what moves the system's Ω most, per unit of each input and over its whole value."""
+    """Print which inputs change the system's Ω most, per unit and over their whole value."""
     ordered = sorted(found.inputs, key=lambda item: -_whole(found, item))[:SHOWN]
     one_sided = {item.key for item in ordered if _apart(found, item)}
     sides = ("dΩ per unit", *(["falling"] if one_sided else []))
@@ -58,7 +58,7 @@ def show_sensitivity(found: Sensitivity) -> None:
 
 
 def _figure(found: Sensitivity, item: Input, side: str) -> tuple[float, float]:
-    """Derivative of the system's Ω per unit of an input, and its stated error."""
+    """Return the derivative of the system's Ω per unit of an input, and its stated error."""
     of = item.key, side
     rate, error = found.pair_omega[of]["system"], found.pair_omega_error[of]["system"]
     return rate * item.value.factor, error * item.value.factor
@@ -69,7 +69,7 @@ def _size(value: float) -> float:
 
 
 def _remarks(found: Sensitivity, keys: set[str]) -> list[str]:
-    """What is remarked of some inputs, the positions of one remark together."""
+    """Return the remarks on some inputs, each with all its positions."""
     positions: dict[tuple[str, str], list[int]] = {}
     for remark in found.remarks:
         if remark.key in keys:
@@ -83,7 +83,7 @@ def _remarks(found: Sensitivity, keys: set[str]) -> list[str]:
 
 
 def _apart(found: Sensitivity, item: Input) -> bool:
-    """Whether the derivatives to both sides differ, or there is one only."""
+    """Return whether the derivatives to both sides differ, or there is one only."""
     (falling, low), (rising, high) = (_figure(found, item, side) for side in SIDES)
     if math.isnan(falling) or math.isnan(rising):
         return not (math.isnan(falling) and math.isnan(rising))
@@ -91,15 +91,15 @@ def _apart(found: Sensitivity, item: Input) -> bool:
 
 
 def _whole(found: Sensitivity, item: Input) -> float:
-    """Change of Ω over the whole value of an input, to first order; 0 where it has none."""
+    """Return the change of Ω over an input's whole value, to first order; 0 where it has none."""
     rates = [_figure(found, item, side)[0] for side in SIDES]
     return max(_size(rate * item.value.number) for rate in rates)
 
 
 def good(value: float, error: float) -> str:
-    """Write as many digits, four at most, as make the last one good to one unit.
+    """Return a figure with as many digits, four at most, as are good to one unit of the last.
 
-    Rounding takes half a unit, the error must not take more than the other half.
+    Rounding takes half a unit; the error must not take more than the other half.
     """
     if math.isnan(value):
         return "–"
@@ -116,6 +116,6 @@ def good(value: float, error: float) -> str:
 
 
 def _above(value: float) -> str:
-    """One digit, rounded up."""
+    """Return a value as one digit, rounded up."""
     power = 10.0 ** math.floor(math.log10(value))
     return f"{math.ceil(value / power) * power:.1g}"

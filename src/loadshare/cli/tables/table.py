@@ -1,4 +1,4 @@
-"""The one look of all tables."""
+"""The common layout of all tables."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def table(
     rows : iterable of iterable of str
         Cells.
     words : iterable of str
-        Headers of the columns that hold words: set to the left and folded if need be. All others
-        hold figures, which are set to the right and not broken as long as they fit.
+        Headers of the columns that hold words: aligned left and folded if need be. All others hold
+        figures, which are aligned right and not broken as long as they fit.
     """
     from rich import box
     from rich.table import Table
@@ -54,7 +54,7 @@ def table(
 
 
 def show(title: str, made: Table) -> None:
-    """Print a table under its title; in parts, below one another, where no figure may be cut."""
+    """Print a table under its title; if it is too wide, in parts, so that no figure is cut."""
     for k, part in enumerate(_parts(made, console().width)):
         say()
         say(title if k == 0 else f"{title}, further columns", style="bold")
@@ -62,7 +62,7 @@ def show(title: str, made: Table) -> None:
 
 
 def _parts(made: Table, width: int) -> list[Table]:
-    """Return a table as tables that are at most so wide, each with the first column."""
+    """Return a table as tables of at most some width, each with the first column."""
     least = [_least(column) for column in made.columns]
     for column, need in zip(made.columns[1:], least[1:], strict=True):
         # A header that does not even fit next to the first column is folded.
@@ -79,7 +79,7 @@ def _parts(made: Table, width: int) -> list[Table]:
 
 
 def _least(column: Column) -> int:
-    """Least width of a column: figures stay whole, words and headers fold."""
+    """Return the least width of a column: figures stay whole, words and headers fold."""
     from rich.cells import cell_len
 
     cells = max((cell_len(str(cell)) for cell in column.cells), default=0)
@@ -107,7 +107,7 @@ def _of_columns(made: Table, some: list[int]) -> Table:
 
 
 def fits(made: Table) -> bool:
-    """Whether a table fits the console without squeezing a column."""
+    """Return whether a table fits the console without squeezing a column."""
     screen = console()
     endless = screen.options.update(max_width=10_000)
     return screen.measure(made, options=endless).maximum <= screen.width

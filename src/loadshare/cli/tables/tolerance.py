@@ -1,4 +1,4 @@
-"""What scattering inputs do to load sharing."""
+"""The effect of scattering inputs on load sharing."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from loadshare.study.tolerance.statistics import Summary
 
 SHOWN = 20
-"""Inputs, and messages, that are shown."""
+"""Number of inputs, and of messages, that are shown."""
 
 
 def statistics_document(found: Tolerance) -> dict[str, Any]:
@@ -47,7 +47,7 @@ def statistics_document(found: Tolerance) -> dict[str, Any]:
 
 
 def show_tolerance(found: Tolerance) -> None:
-    """Print how Ω scatters, from which inputs it comes, and the worst case."""
+    """Print how Ω scatters, which inputs that comes from, and the worst case."""
     settings = found.settings
     say(
         f"Tolerance study of {found.case}: {found.samples:,} {settings['sampling']} samples, "
@@ -70,7 +70,7 @@ def show_tolerance(found: Tolerance) -> None:
 def _show_first(
     title: str, heads: Iterable[str], rows: Sequence[Sequence[str]], words: Iterable[str]
 ) -> None:
-    """Print the first rows, and how many there are more."""
+    """Print the first rows, and how many more there are."""
     show(title, table(heads, rows[:SHOWN], words))
     if len(rows) > SHOWN:
         say(f"and {len(rows) - SHOWN} more")
