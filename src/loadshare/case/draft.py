@@ -56,7 +56,7 @@ class Draft(Sections):
             raise CaseError([*self._problems, self.problem((), MORE, "", "")])
 
     def once(self, name: str, find: Callable[[], Found]) -> Found:
-        """Return a value that several checks need, computed once all elements have been read."""
+        """Return a value that several checks need, computed once, after all elements were read."""
         if name not in self._known:
             self._known[name] = find()
         found: Found = self._known[name]

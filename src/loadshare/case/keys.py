@@ -122,7 +122,7 @@ def walk(data: Mapping[str, Any], above: Path = ()) -> Iterator[Path]:
     data : mapping
         Nested tables; lists count as values.
     above : tuple of str or int
-        Where `data` itself is.
+        Path of `data` itself.
 
     Yields
     ------

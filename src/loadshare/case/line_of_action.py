@@ -55,7 +55,8 @@ def facing(
 ) -> tuple[Gear, Gear]:
     """Return driver and driven gear, with both faces cut to their overlap.
 
-    The gears are unchanged if the narrower face overlaps entirely, or a gear gives no face width.
+    The gears are unchanged if the narrower face overlaps entirely or not at all, or if a gear gives
+    no face width.
 
     Parameters
     ----------

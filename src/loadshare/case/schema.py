@@ -9,7 +9,7 @@ from loadshare.case.described import schema_of
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-# What else a file may say: it is gone once the file is read.
+# Keys that only files have: they are resolved when the file is read.
 FILE_KEYS: dict[str, Any] = {
     "extends": {
         "type": "string",
@@ -60,9 +60,9 @@ def case_schema() -> dict[str, Any]:
 
 
 def _demands(schema: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
-    """Return what the tables in a value must have, which is moved out of their definitions.
+    """Return the required keys of the tables in a value, moved out of their definitions.
 
-    Lists are given whole, whatever is inherited: tables in them keep what they must have.
+    Lists are given whole, whatever is inherited: tables in them keep their required keys.
     """
     if "$ref" in schema:
         name = schema["$ref"].rpartition("/")[2]
@@ -87,13 +87,13 @@ def _demands(schema: dict[str, Any], tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_null(schema: Any) -> Any:
-    """Return a schema without null, which TOML cannot say, and titles that repeat the key."""
+    """Return a schema without null, which TOML does not have, and titles that repeat the key."""
     if isinstance(schema, list):
         return [_without_null(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
     if set(schema) == {"text", "si"}:
-        # A default, which pydantic shows as the value object that it is.
+        # A default: pydantic shows the value object with its attributes.
         return schema["text"]
     kept = {
         key: _without_null(value)
@@ -104,6 +104,6 @@ def _without_null(schema: Any) -> Any:
     options = [option for option in kept.get("anyOf", ()) if option != {"type": "null"}]
     if len(options) == 1:
         del kept["anyOf"]
-        # The field's own description goes before that of its type.
+        # The field's own description takes precedence over that of its type.
         return {**options[0], **kept}
     return {**kept, "anyOf": options} if options else kept
