@@ -24,7 +24,7 @@ class Flow:
     first, last : str
         Names of the input and of the output.
     torque : float
-        On the input, in its running sense [N·m].
+        Torque on the input, in its running sense [N·m].
     running : str
         Sense about the axis of the input.
     output : float

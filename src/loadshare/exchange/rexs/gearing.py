@@ -213,7 +213,7 @@ class Gearing:
 
     @cached_property
     def _parts_of_carriers(self) -> dict[str, Component]:
-        """Carriers of which shafts are parts, by id of the shaft."""
+        """Carriers that have a shaft as a part, by id of the shaft."""
         return {
             part.id: whole
             for whole, part in self.model.parts

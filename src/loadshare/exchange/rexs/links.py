@@ -97,7 +97,7 @@ def _add_route(links: Links, of: Gearing, route: Route, assumed: list[str]) -> N
 
 
 def _between(of: Gearing, one: Joint, other: Joint, assumed: list[str]) -> float:
-    """Return the twist of a shaft without gears between two couplings [rad/(N·m)]."""
+    """Return the compliance of a shaft without gears between two couplings [rad/(N·m)]."""
     shaft = other.shaft
     places = (
         of.places.along(one.part, shaft, opposite(one.side)),
@@ -114,7 +114,7 @@ def _between(of: Gearing, one: Joint, other: Joint, assumed: list[str]) -> float
 
 
 def _seat(of: Gearing, shaft: Component, name: str, assumed: list[str]) -> float:
-    """Return the twist of the coupling between a carrier and its shaft; 0 for other bodies."""
+    """Return the compliance of the coupling between a carrier and its shaft; 0 for other bodies."""
     carrier = of.carrier_shafts.get(shaft.id)
     if carrier is None or of.names[carrier.id] != name:
         return 0.0
@@ -129,7 +129,7 @@ def _way(
     coupling: Component,
     assumed: list[str],
 ) -> float:
-    """Return the twist of a shaft between a coupling and the body nearest to it [rad/(N·m)].
+    """Return the compliance of a shaft from a coupling to the body nearest to it [rad/(N·m)].
 
     It is 0 if the coupling is between two bodies: it then counts as being at the nearest one.
     """
@@ -148,7 +148,7 @@ def _way(
 def _twist(
     of: Gearing, shaft: Component, between: tuple[float, float], what: str, assumed: list[str]
 ) -> float:
-    """Return the twist of a shaft between two places along it [rad/(N·m)]."""
+    """Return the compliance of a shaft between two places along it [rad/(N·m)]."""
     twist = twist_between(of, shaft, *between)
     if twist.assumed:
         assumed.append(f"{what}: {twist.assumed}")
@@ -156,7 +156,7 @@ def _twist(
 
 
 def _compliance(coupling: Component, assumed: list[str]) -> float:
-    """Return the twist of a coupling [rad/(N·m)]; 0 if its stiffness is not given."""
+    """Return the compliance of a coupling [rad/(N·m)]; 0 if its stiffness is not given."""
     stiffness = coupling.number("rotational_stiffness")
     if stiffness is None and coupling.type != "rigid_connection":
         assumed.append(f"{coupling.title()}: no torsional stiffness is given, it is rigid")

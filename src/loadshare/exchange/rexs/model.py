@@ -16,7 +16,7 @@ class Unread:
     Attributes
     ----------
     given : str
-        As the file has it, with its unit.
+        The value as in the file, with its unit.
     message : str
         What is wrong with it.
     allowed : str

@@ -11,7 +11,7 @@ from loadshare.exchange.rexs.model import Unread, Value
 from loadshare.settings import ALLOWED
 
 NO_UNIT = ("", "none", "-", "1")
-"""How files say that a number has no unit."""
+"""Spellings for a number that has no unit."""
 
 PURE = "1"
 DIRECTION = "direction"

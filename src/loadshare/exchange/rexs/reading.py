@@ -31,7 +31,7 @@ OTHERS = {
     ".csv": "is one table; give the folder that holds all tables of a case",
     **dict.fromkeys((".xlsm", ".xls", ".xlsb", ".ods"), "is a workbook; save it as .xlsx"),
 }
-"""What files are that are not gear units, by their endings."""
+"""Messages for files that are not gear units, by their endings."""
 
 FIRST_NAMES = {
     "side_1": "inner_part",

@@ -18,7 +18,7 @@ SLACK = 1e-6
 
 
 class Twist(NamedTuple):
-    """How far a shaft twists between two places [rad/(N·m)], and what was assumed for it."""
+    """Torsional compliance between two places on a shaft [rad/(N·m)], and what was assumed."""
 
     compliance: float
     assumed: str = ""
