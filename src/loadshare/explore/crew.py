@@ -87,7 +87,7 @@ class Crew:
             self.free.append(worker)
 
     def end(self) -> None:
-        """Kill all workers."""
+        """Kill all workers that are not lent."""
         for worker in self.free:
             worker.end()
 

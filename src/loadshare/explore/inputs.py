@@ -335,7 +335,7 @@ def _round_up(number: float) -> float:
 
 
 def _step(width: float) -> float:
-    """Return the largest round step of which a slider has at least a thousand."""
+    """Return the largest round step that gives a slider at least a thousand steps."""
     size = 10.0 ** math.floor(math.log10(width / EXPLORE.steps))
     step = next(k * size for k in (5.0, 2.0, 1.0) if k == 1.0 or k * size <= width / EXPLORE.steps)
     return float(f"{step:.12g}")
