@@ -1,4 +1,4 @@
-"""Trains of cases that differ in numbers only: what does not change is not built again."""
+"""Trains of cases that differ in numbers only: elements that are unchanged are not built again."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ _NUMBER = re.compile(NUMBER)
 
 
 def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
-    """Return the train of a case, built from that of a case before; None if they differ in more.
+    """Return the train of a case, built from that of an earlier case; None if that is impossible.
 
-    In more, that is, than in numbers that become arrays in a table of samples (see `array_keys`):
-    then the geometry is the same, unless loads press other flanks.
+    It is possible if the cases differ only in numbers that become arrays in a table of samples (see
+    `array_keys`) and the loads press the same flanks: the geometry is then the same.
 
     Parameters
     ----------
     case : Case
     base : (Case, Geometry, Train)
-        Another case, its mesh laws given, with its geometry and its train.
+        The earlier case with its mesh laws resolved, its geometry and its train.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
         As `build_train`.
     """
     if any([*getattr(case, n)] != [*getattr(base[0], n)] for n in ("gears", "meshes", "shafts")):
-        # Written in another order: results would be as well.
+        # The order of the elements is also that of the results.
         return None
     differences = list(case.differences(base[0]))
     for path, before, after in differences:
@@ -61,14 +61,14 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
 
 
 def _runs_alike(now: Operating, before: Operating, gears: Mapping[str, Gear]) -> bool:
-    """Whether torques have the signs that they had, and nothing else tells what they press."""
+    """Return whether the input torque alone decides the pressed flanks, and has the same signs."""
     if has_sets(gears) or now.external:
         return False
     return np.array_equal(np.sign(now.input_torque), np.sign(before.input_torque))
 
 
 def _number(value: object) -> float | None:
-    """Return the number of a value as a case file has it, in any unit; None for a word."""
+    """Return the number in a value of a case file, whatever its unit; None for a word."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return float(value)
     match = _NUMBER.match(value.strip()) if isinstance(value, str) else None

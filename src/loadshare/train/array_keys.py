@@ -1,8 +1,8 @@
 """Which keys of a case become arrays when they vary from sample to sample.
 
-Such a key moves right-hand sides, bounds or compliances (errors, loads, clearances, gaps,
-stiffnesses of what is elastic anyway). Any other key decides which elements there are, or where
-they push, and changes the machine itself.
+Such a key changes only right-hand sides, bounds or compliances (errors, loads, clearances, gaps,
+stiffnesses of elements that are elastic anyway). Any other key decides which elements there are or
+in which directions they push, and so changes the machine itself.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ _OF_SPLINES = (
 
 
 def array_unit(case: spec.Case, column: Column) -> str | None:
-    """SI unit of a key that becomes an array; None if it changes the machine.
+    """Return the SI unit of a key that becomes an array; None if the key changes the machine.
 
     Parameters
     ----------
     case : Case
-        With a value for every key that varies.
+        It has a value for every key that varies.
     column : Column
-        Loads may press other flanks than those of the case: see `pressed_flanks`.
+        Its loads may press other flanks than those of the case: see `pressed_flanks`.
     """
     return unit_of(column.path) if _becomes_array(case, column) else None
 
@@ -42,7 +42,7 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
         case ("errors", _, "installation", int()) | ("errors", _, "pin", _):
             return True
         case ("errors", _, "eccentricity", "amount"):
-            # Where it is not known how far gears turn, only an eccentricity of 0 has an answer.
+            # If it is not known how far gears turn, only an eccentricity of 0 has an answer.
             return turning_is_given(case.operating, case.march, case.gears)
         case ("errors", _, "eccentricity", "direction" | "phase"):
             return True
@@ -64,7 +64,7 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
         case ("meshes", mesh, "law", "a"):
             return case.meshes[str(mesh)].gap is None
         case ("meshes", _, "law", "c"):
-            # Without a Hertz part the law is linear: a set of its own.
+            # Without a Hertz part the law is linear, and the machine another one.
             return column.is_positive or not column.has_numbers
         case ("meshes", _, "backlash" | "normal_backlash"):
             words = not column.has_numbers and "teeth" in column.values

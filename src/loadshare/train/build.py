@@ -1,7 +1,7 @@
-"""From a case to a train: everything in SI.
+"""Turn a case into a train in SI units.
 
-A number may be an array of S values, one per sample (see `samples`): what is here is written so
-that it does for both.
+A number may also be an array of S values, one per sample (see `samples`); the code here handles
+both.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ from loadshare.train.train import Train
 Element = TypeVar("Element")
 
 CHAINS = "chains that begin with a mesh of the limited gear, one on either side of it"
-"""What a float that follows from backlashes needs."""
+"""What a float that is derived from backlashes needs, in the words of an error message."""
 JUMP = -2.0
-"""Twice the angle of a support's stiffest direction at which it is counted from the other side
+"""Twice the angle of a support's stiffest direction up to which the opposite direction is taken
 [rad]."""
 
 
@@ -61,7 +61,7 @@ def build_train(case: spec.Case) -> Train:
 
 
 def with_laws(case: spec.Case) -> spec.Case:
-    """Return the case, its mesh laws computed where it asks for them."""
+    """Return the case, with its mesh laws computed where it asks for that."""
     if any(mesh.law_is_computed for mesh in case.meshes.values()):
         from loadshare.tooth import resolve
 
@@ -75,16 +75,17 @@ def train_of(
     base: tuple[spec.Case, Train] | None = None,
     changed: Collection[Path] | None = None,
 ) -> Train:
-    """Turn a case into a train of a geometry that is settled.
+    """Turn a case whose geometry is settled into a train.
 
     Parameters
     ----------
     case : spec.Case
     geometry : Geometry
     base : (spec.Case, Train), optional
-        Another case and its train, which has all elements of which the two cases say the same.
+        Another case and its train. Elements that are the same in both cases are taken from it.
     changed : collection of Path, optional
-        Section and name of the others; by default all that are not one object in both.
+        Section and name of the elements that differ; by default, of all that are not the same
+        object in both cases.
 
     Raises
     ------
@@ -95,7 +96,7 @@ def train_of(
     def elements(
         section: str, convert: Callable[[str, Any], Element], known: str = ""
     ) -> dict[str, Element]:
-        """Elements of a section; those that the base does not have are built."""
+        """Return the elements of a section; those that the base does not have are built."""
         now = getattr(case, section)
         if base is None:
             return {name: convert(name, item) for name, item in now.items()}
@@ -149,14 +150,14 @@ def train_of(
 
 
 def _kept(section: str, now: Any, before: Any, changed: Collection[Path] | None) -> set[str]:
-    """Names of the elements of a section that are not built again (see `train_of`)."""
+    """Return the names of a section's elements that need not be built again (see `train_of`)."""
     if changed is None:
         return {name for name, item in now.items() if item is before[name]}
     return {name for name in now if (section, name) not in changed}
 
 
 def _supported(case: spec.Case, gears: Mapping[str, Gear], name: str) -> Gear:
-    """Return a gear on its support, of a full matrix or a pin seen from principal directions."""
+    """Return a gear with its support, which for a matrix or a pin is in principal directions."""
     gear = gears[name]
     given = case.gears[gear.name].support or ("free" if case.floats(gear.name) else "rigid")
     if isinstance(given, str):
@@ -172,14 +173,14 @@ def _supported(case: spec.Case, gears: Mapping[str, Gear], name: str) -> Gear:
     matrix = np.array([[k.si for k in row] for row in rows if isinstance(row, tuple)])
     stiffness, _ = np.linalg.eigh(0.5 * (matrix + matrix.T))
     twice = math.atan2(matrix[0, 1] + matrix[1, 0], matrix[0, 0] - matrix[1, 1])
-    # The directions must jump somewhere as the entries change: not where an entry off the diagonal
-    # is zero, or two on it are the same.
+    # As the entries change, the directions must jump somewhere: not where an off-diagonal entry is
+    # zero or the diagonal entries are equal.
     angle = 0.5 * (twice if twice > JUMP else twice + 2.0 * math.pi)
     return _seen_along(gear, angle, stiffness[::-1])
 
 
 def _seen_along(gear: Gear, angle: float, support: Array) -> Gear:
-    """Return a gear with its first direction turned by an angle, and its stiffnesses along both."""
+    """Return a gear with its frame turned by an angle, and its stiffnesses along the new frame."""
     ways = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     return replace(gear, support=support, frame=ways @ gear.frame)
 
@@ -201,7 +202,7 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
     radii = pair.driver.base_radius, pair.driven.base_radius
     r = radii[1] if pair.turned else radii[0]
     law = mesh.power_law
-    # A gap of the law is one of the teeth, whose flanks are alike; any other is the drive flank's.
+    # A gap of the law belongs to the teeth, thus to both flanks; any other is the drive flank's.
     of_teeth = (0.0,) if law is None else tuple(r * a.si for a in _each(law.a))
     phase, coast_phase = pair.phases if by_layout else (0.0, 0.0)
     if mesh.phase is not None:
@@ -227,7 +228,7 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
 
 
 def _laws(mesh: spec.Mesh, r: float) -> tuple[Law, ...]:
-    """Angle laws at the driver turned into laws along the line of action: δ = r Δφ, T = r F."""
+    """Turn angle laws at the gear named first into laws on the line of action: δ = rΔφ, T = rF."""
     law = mesh.power_law
     if law is not None:
         b, c = _each(law.b), _each(law.c)
@@ -294,10 +295,10 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
 def _float_range(
     gear: Gear, across: Vector, meshes: Mapping[str, Mesh], chains: tuple[tuple[str, ...], ...]
 ) -> float:
-    """Float that takes up the backlashes of a chain of meshes (formulation, section 6).
+    """Return the float that takes up the backlashes of a chain of meshes (formulation, section 6).
 
     The gear rests on the first mesh of the second chain and rolls on it until the backlash of the
-    whole chain is closed: y with n_closing·ŷ y + r φ = Σ j_n and n_resting·ŷ y + r φ = 0.
+    whole first chain is closed: y with n_closing·ŷ y + r φ = Σ j_n and n_resting·ŷ y + r φ = 0.
     """
     slopes = []
     for first, *_ in chains:

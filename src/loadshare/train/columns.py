@@ -1,4 +1,4 @@
-"""A table of samples as it is given: columns of values by key path."""
+"""A table of samples as the user gives it: columns of values by key path."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _UNIT = re.compile(r"(?P<key>.*\S)\s+\[(?P<unit>[^\]]*)\]")
 
 
 class Columns(Protocol):
-    """What has columns with names: a mapping, or a data frame."""
+    """Anything with named columns: a mapping or a data frame."""
 
     def items(self) -> Iterable[tuple[Any, Any]]:
         """Return names and values."""
@@ -36,7 +36,7 @@ class Column:
     path : tuple of str or int
         The key.
     unit : str
-        Of the values; empty for a bare number.
+        Unit of the values; empty for bare numbers.
     values : ndarray, shape (S,)
         Numbers, or texts for a key that takes words.
     """
@@ -61,21 +61,21 @@ class Column:
         return self.has_numbers and bool((self.values.astype(np.float64) > 0.0).all())
 
     def text(self, sample: int) -> str | float:
-        """Value of a sample as a case file has it; what may be a count, as one."""
+        """Return a sample's value as a case file has it, a whole number as an integer."""
         value = self.values[sample].item()
         if self.unit:
             return f"{value!r} {self.unit}"
-        # From 2⁵³ on every number is whole, and none of them counts anything.
+        # From 2⁵³ on every float is whole, which then does not suggest a count.
         count = isinstance(value, float) and value.is_integer() and abs(value) < 2.0**53
         return int(value) if count else value
 
     def in_si(self, unit: str) -> Array:
-        """Values (S,) in an SI unit, empty for bare numbers.
+        """Return the values (S,) in an SI unit; an empty unit is that of bare numbers.
 
         Raises
         ------
         CaseError
-            If a text is no value with a unit of that kind.
+            If a text is not a value with a unit of that kind.
         """
         if self.has_numbers:
             factor = si_factor(self.unit, unit) if unit else 1.0
@@ -110,7 +110,7 @@ def columns_of(samples: Columns) -> list[Column]:
     Raises
     ------
     CaseError
-        If lengths differ, or a key is no key path or given twice; all problems are listed.
+        If lengths differ, or a key is not a key path or is given twice; all problems are listed.
     """
     columns: list[Column] = []
     problems = []
@@ -140,25 +140,25 @@ def columns_of(samples: Columns) -> list[Column]:
 
 
 def _values(given: object) -> NDArray[np.generic]:
-    """Return values as an array of numbers or of texts, or of objects that are neither."""
+    """Return values as an array of numbers or of texts, or of objects if they are neither."""
     if isinstance(given, np.ma.MaskedArray | Iterator):
-        # Of a masked array the values below the mask would be taken; so they are None.
+        # NumPy would take the masked values of a masked array; `tolist` makes them None.
         given = given.tolist() if isinstance(given, np.ma.MaskedArray) else list(given)
     if isinstance(given, list | tuple) and not all(isinstance(v, int | float | str) for v in given):
         given = [as_text(value) for value in given]
     try:
         values = np.atleast_1d(np.asarray(as_text(given)))
         if values.dtype.kind == "O" and values.ndim == 1:
-            # Numbers and texts out of a data frame, and physical values.
+            # Numbers mixed with texts, as a data frame may hold them, or physical values.
             return np.array([as_text(value) for value in values])
     except ValueError:
-        # Lists of several lengths.
+        # Lists of different lengths.
         return np.array([[]], dtype=object)
     return values
 
 
 def _fault(column: Column, before: list[Column]) -> str:
-    """What is wrong with a column, given those before it; empty where nothing is."""
+    """Return what is wrong with a column, given those before it; empty if nothing is."""
     values = column.values
     if values.ndim != 1:
         number = f"{dotted(column.path)}[0]"

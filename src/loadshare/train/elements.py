@@ -1,4 +1,4 @@
-"""What joins and holds the gears of a train, and the stages that load sharing is counted by."""
+"""Shafts and splines of a train, and the stages for which load sharing is computed."""
 
 from __future__ import annotations
 
@@ -60,22 +60,22 @@ class Spline:
 
     @property
     def stop_name(self) -> str:
-        """Name of the stop at the end of its clearance, an element of its own with memory."""
+        """Name of the stop at the end of its clearance, with memory an element of its own."""
         return f"{self.name} clearance"
 
     def bound(self, torque: float) -> float:
-        """Friction bound F_m [N] when the spline transmits `torque` [N·m]."""
+        """Return the friction bound F_m [N] when the spline transmits `torque` [N·m]."""
         if self.friction_force is not None:
             return self.friction_force
         return self.friction_per_torque * abs(torque)
 
     def law(self, torque: float) -> RadialLaw:
-        """Radial law at `torque` [N·m].
+        """Return the radial law at `torque` [N·m].
 
         Raises
         ------
         ValueError
-            If the law would drop at this torque; the message names the numbers.
+            If the force would drop somewhere at this torque; the message names the numbers.
         """
         bound = self.bound(torque)
         try:
@@ -86,7 +86,7 @@ class Spline:
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """A named stage: the meshes among which load sharing is counted."""
+    """A named stage: the meshes among which the load sharing is computed."""
 
     name: str
     meshes: tuple[str, ...]

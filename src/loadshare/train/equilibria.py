@@ -1,4 +1,4 @@
-"""Answers of many samples in physical terms; `Equilibrium` is one of them."""
+"""Answers of many samples in physical terms; an `Equilibrium` is one of them."""
 
 from __future__ import annotations
 
@@ -47,38 +47,38 @@ class Names:
 
     @cached_property
     def stops(self) -> slice:
-        """Of the contacts, the stops of drums."""
+        """Slice of the contacts: the stops of drums."""
         return slice(0, 2 * len(self.train.drums))
 
     @cached_property
     def arcs(self) -> slice:
-        """Of the contacts, the arcs of drums."""
+        """Slice of the contacts: the arcs of drums."""
         return slice(self.stops.stop, len(self.contacts))
 
     @cached_property
     def rounds(self) -> slice:
-        """Of the radial elements, the round rings and bearings."""
+        """Slice of the radial elements: the round rings and bearings."""
         return slice(0, len(self.train.rounds))
 
     @cached_property
     def splines(self) -> slice:
-        """Of the radial elements, the splines."""
+        """Slice of the radial elements: the splines."""
         return slice(self.rounds.stop, self.rounds.stop + len(self.train.splines))
 
     @cached_property
     def spline_stops(self) -> slice:
-        """Of the radial elements, the stops of splines with memory."""
+        """Slice of the radial elements: the stops of splines with memory."""
         return slice(self.splines.stop, len(self.radials))
 
     @cached_property
     def on_splines(self) -> tuple[tuple[int, int], ...]:
-        """Numbers of the radial elements of splines, and of the spline of each."""
+        """Numbers of the radial elements of splines, each with the number of its spline."""
         parts = self.splines, self.spline_stops
         return tuple((q, k) for part in parts for k, q in enumerate(range(part.start, part.stop)))
 
     @cached_property
     def radials(self) -> tuple[tuple[str, str], ...]:
-        """Round rings, then splines: name and gear; last, with memory, the splines' stops."""
+        """Name and gear of round rings, bearings, splines and, with memory, splines' stops."""
         splines = self.train.splines
         return (
             *((r.name, r.gear) for r in self.train.rounds),
@@ -121,7 +121,7 @@ class Equilibria:
 
     @property
     def arrays(self) -> tuple[Array, ...]:
-        """All of them, in the order above."""
+        """All arrays, in the order above."""
         return tuple(getattr(self, name) for name in CLAIMED)
 
     def mapped(self, function: Callable[[Array], Array]) -> Equilibria:
@@ -129,11 +129,11 @@ class Equilibria:
         return Equilibria(self.names, *map(function, self.arrays))
 
     def take(self, samples: Numbers | slice) -> Equilibria:
-        """Return some of the samples: as a copy, those of a slice as a view."""
+        """Return some of the samples, as a copy; for a slice, as a view."""
         return self.mapped(lambda array: array[samples])
 
     def one(self, sample: int, index: int) -> Equilibrium:
-        """Return a sample as an equilibrium of position `index`."""
+        """Return a sample as an equilibrium at position `index`."""
         names, train = self.names, self.names.train
         torques = zip(train.shafts, self.shaft_torque[sample].tolist(), strict=True)
         forces = zip(train.gears, self.support_force[sample], strict=True)
@@ -154,7 +154,7 @@ class Equilibria:
 
     @classmethod
     def empty(cls, train: Train, count: int) -> Equilibria:
-        """Return room for the answers of `count` samples, not a number yet."""
+        """Return arrays for the answers of `count` samples, filled with NaN."""
         names = Names(train)
         gears = len(names.gears)
 
@@ -174,23 +174,23 @@ class Equilibria:
 
     @classmethod
     def of(cls, train: Train, answer: Equilibrium) -> Equilibria:
-        """Return an equilibrium as the only sample."""
+        """Return a batch with an equilibrium as its only sample."""
         alone = cls.empty(train, 1)
         alone.put(0, answer)
         return alone
 
     def forget(self, sample: int) -> None:
-        """Let a sample be not a number throughout."""
+        """Set all numbers of a sample to NaN."""
         for array in self.arrays:
             array[sample] = np.nan
 
     def put_all(self, samples: Numbers, answers: Equilibria) -> None:
-        """Write answers in the places of some samples."""
+        """Overwrite some of the samples with answers."""
         for here, others in zip(self.arrays, answers.arrays, strict=True):
             here[samples] = others
 
     def put(self, sample: int, answer: Equilibrium) -> None:
-        """Write an equilibrium in the place of a sample."""
+        """Overwrite a sample with an equilibrium."""
         names, train = self.names, self.names.train
         self.rotation[sample] = [answer.rotation[g] for g in names.gears]
         self.displacement[sample] = [answer.displacement[g] for g in names.gears]
@@ -204,9 +204,9 @@ class Equilibria:
 
 
 def carried(train: Train, answer: Equilibrium) -> tuple[dict[str, float], dict[str, Array]]:
-    """Torques of elastic shafts [N·m] and forces of bearings that can yield [N].
+    """Return torques of elastic shafts [N·m] and forces of bearings that can yield [N].
 
-    What is not claimed follows from displacements.
+    Those that the answer does not claim follow from its displacements.
     """
     phi, torque, force = answer.rotation, {}, {}
     for name, shaft in train.shafts.items():

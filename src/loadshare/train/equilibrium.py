@@ -1,4 +1,4 @@
-"""An answer in physical terms: what a solver claims, and what the certificate judges."""
+"""An answer in physical terms, as a solver claims it and the certificate judges it."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ class Equilibrium(Comparable):
     radial_reaction : mapping of element to ndarray, shape (3,)
         Force [N] of every spline and round ring on its gear.
     shaft_torque : mapping of shaft to float
-        Torque [N·m] of elastic shafts from the first gear to the second; that of a shaft which is
-        not named follows from its wind-up. Claimed torques are exact where a stiff shaft's wind-up
-        is lost in the digits of the rotations.
+        Torque [N·m] of elastic shafts from the first gear to the second; that of a shaft that is
+        not named follows from its wind-up. A claimed torque stays exact where a stiff shaft's
+        wind-up is lost in the digits of the rotations.
     support_force : mapping of gear to ndarray, shape (2,)
-        Force [N] on elastic bearings, in the gear's transverse frame; otherwise from the
-        displacement.
+        Force [N] on elastic bearings, in the gear's transverse frame; that of a gear that is not
+        named follows from its displacement.
     undetermined : mapping of coordinate to (float, float)
         Coordinates that the forces do not determine, as "gear 4 x" or "gear 4 rotation", with the
         least and the largest value that each may take [m, rad], infinite without a limit. The
-        place given is that of least norm.
+        values claimed above are those of least norm.
     """
 
     index: int

@@ -17,18 +17,18 @@ ORIGIN.flags.writeable = False
 
 
 def cross(first: Vector, second: Vector) -> Vector:
-    """Cross product of two vectors (3,): as `numpy.cross`, in a tenth of the time."""
+    """Return the cross product of two vectors (3,): as `numpy.cross`, in a tenth of the time."""
     a, b, c = first.tolist()
     p, q, r = second.tolist()
     return np.array([b * r - c * q, c * p - a * r, a * q - b * p])
 
 
 def transverse_frame(axis: Vector, turned: float = 0.0) -> Array:
-    """Two unit vectors (2, 3) that span the plane across `axis`, right-handed about it.
+    """Return two unit vectors (2, 3) that span the plane across `axis`, right-handed about it.
 
     The first is the global x direction projected into the plane; y for a gear whose axis is x
-    itself. For an axis along z the frame is the global x, y. Both are turned about the axis by
-    an angle [rad]. Gears along one axis share the array.
+    itself. For an axis along z the frame is the global x, y. Both are then turned about the axis by
+    `turned` [rad]. Gears with the same axis share the array.
     """
     return _frame_across(tuple(axis.tolist()), turned)
 
@@ -56,21 +56,21 @@ class Gear:
     ----------
     name : str
     kind : str
-        "external", "internal", "face" or "carrier".
+        "external", "internal", "face", "carrier" or "harmonic".
     centre : ndarray, shape (3,)
         O [m].
     axis : ndarray, shape (3,)
         Unit vector.
     frame : ndarray, shape (2, 3)
         Unit vectors of the transverse plane, along which a support's stiffness is given: those of
-        `plane`, or turned to where it is largest and smallest.
+        `plane`, or turned to the directions of largest and smallest stiffness.
     base_radius : float
         r_b [m]; the acting radius of a face gear, the distance of a carrier's outermost pin.
     sense : int
-        In which its rotation is counted: +1 if counter-clockwise seen against its axis, −1
-        otherwise. It is the running sense, of a planet as seen from its carrier.
+        Sense in which its rotation is counted: +1 if counter-clockwise seen against its axis, −1
+        otherwise. It is the running sense, for a planet as seen from its carrier.
     teeth : float or None
-        Given, or what follows from those of gears that it meshes with; None where nothing tells.
+        Number of teeth, given or derived from those of gears that it meshes with; None if unknown.
     support : ndarray, shape (2,), or None
         Stiffness along the frame's directions [N/m]; zeros for a free gear, None for a rigid
         bearing.
@@ -79,21 +79,22 @@ class Gear:
     relative : float
         The same as seen from the carrier about which it turns; the ratio outside planetary sets.
     held : bool
-        Whether the housing keeps it from turning. That of the output is the load.
+        Whether the housing keeps it from turning; the output is held by the load instead.
     carrier : str or None
         Carrier on whose pin it rides.
     seat : ndarray, shape (3,)
         How far its pin moves per rotation of the carrier [m].
     frame_of : str or None
-        Carrier from which it is seen: that of the planets with which it meshes, its own, or itself.
+        Carrier in whose frame it is described: that of the planets with which it meshes, its own,
+        or itself.
     rim_of : str or None
-        Internal gear of whose rim it is a harmonic: no body but a way in which that one bends. Its
-        displacement is the amplitude of cos nψ and of sin nψ.
+        Internal gear of whose rim it is a harmonic: not a body but a bending mode of that rim. Its
+        displacement holds the amplitudes of cos nψ and sin nψ.
     harmonic : int
         n.
     seen_at : float
-        Angle by which `plane` has turned [rad], where the gear is placed as the housing sees it and
-        its components are given as seen from a carrier that turns (see `placed.py`).
+        Angle by which `plane` has turned [rad], if the gear is placed in the frame of the housing
+        and its components are given in that of a turning carrier (see `placed.py`).
     """
 
     name: str
@@ -122,13 +123,13 @@ class Gear:
 
     @property
     def is_tilted(self) -> bool:
-        """Whether its frame is not that of its plane."""
+        """Whether `frame` differs from `plane`."""
         # The same object, unless the gear was pickled.
         plane = self.plane
         return self.frame is not plane and not np.array_equal(self.frame, plane)
 
     def in_plane(self, components: Vector) -> Vector:
-        """Components (2,) along `plane` of those along `frame`."""
+        """Convert components (2,) along `frame` into those along `plane`."""
         return components @ self.frame @ self.plane.T if self.is_tilted else components
 
     @property

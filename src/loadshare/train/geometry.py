@@ -41,10 +41,10 @@ class Pair:
         See `Mesh`.
     line : LineOfAction
     phases : (float, float)
-        Parts of their cycle that drive and coast flank have passed at the first position, where
-        teeth tell them [-].
+        Fractions of their cycle that drive and coast flank have passed at the first position, if
+        they follow from the teeth [-].
     backlash : float
-        Along the line of action, where the mesh has it follow from its teeth [m].
+        Along the line of action, if the case derives it from the teeth [m].
     counted : (int, int)
         See `Mesh`.
     unsure : bool
@@ -71,7 +71,7 @@ class Geometry:
     gears : mapping of str to Gear
     pairs : mapping of mesh to Pair
     period : Period or None
-        Of all meshes, where the positions go through it.
+        Common period of all meshes, if the positions run through it.
     determined : bool
         Whether all speeds follow from the input's; in a differential they do not.
     """
@@ -115,7 +115,7 @@ def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
     Raises
     ------
     CaseError
-        If tooth numbers do not tell it, or it has more positions than can be kept.
+        If it does not follow from tooth numbers, or has more positions than are allowed.
     """
     meshes = {name: mesh.ends for name, mesh in case.meshes.items()}
     counts = {n: gears[n].teeth or 0.0 for ends in meshes.values() for n in ends}
@@ -152,14 +152,14 @@ def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
 
 
 def _number_text(number: Fraction | int) -> str:
-    """A number of which only the size matters where it is large."""
+    """Return a number as text, to six digits; for a huge one, only that it is huge."""
     return f"{float(number):.6g}" if number < 10**300 else "more than 10^300"
 
 
 def _kinematics(case: spec.Case) -> Kinematics:
     running = 1 if case.operating.running == "counter-clockwise" else -1
     centres = case.centres()
-    # What follows from the counts that are given is a count as well.
+    # Counts that follow from given ones are used as well.
     teeth, _ = tooth_counts(case.gears, case.meshes)
 
     def unsettled(name: str, gear: spec.Gear) -> Gear:
@@ -188,7 +188,7 @@ def _kinematics(case: spec.Case) -> Kinematics:
 
 
 def _pairs(case: spec.Case, gears: Mapping[str, Gear], period: Period | None) -> dict[str, Pair]:
-    """Meshes with the flanks that the torque presses, whichever way it runs through them."""
+    """Return the meshes; one without a backlash has the flank that the torque presses."""
     every = pressed_flanks(case, gears, period)
     found, centres = {}, case.centres()
     for name, mesh in case.meshes.items():

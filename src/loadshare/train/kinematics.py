@@ -1,7 +1,8 @@
 """Running senses and speed ratios, found by walking from the input gear over meshes and shafts.
 
-Planets and what meshes with them are walked as seen from their carrier; where no mesh or shaft
-leads, the walk begins again. All senses that it found are turned to those of the true speeds.
+Planets and the gears that mesh with them are walked as seen from their carrier; the walk starts
+again at gears that no mesh or shaft reaches. In planetary trains all senses found are then reversed
+where the true speeds require it.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinematics:
-    """Gears with their senses and ratios, and what contradicts.
+    """Gears with their senses and ratios, and the contradictions found.
 
     Attributes
     ----------
@@ -73,7 +74,7 @@ def settle(
         driver, driven = meshes[name]
         try:
             if here == driver:
-                # Where the driven gear turns to does not enter.
+                # The contact does not depend on the sense of the driven gear.
                 forward = contact_of(settled[here], gears[driven])
                 sense, other = forward.driven_sense, driven
             else:
@@ -99,7 +100,7 @@ def settle(
     queue = deque([first])
     while queue or (planetary and len(settled) < len(gears)):
         if not queue:
-            # What goes round with a carrier as one piece keeps this sense: that of the input.
+            # A gear that turns with a carrier as one piece keeps this sense, that of the input.
             start = next(name for name in starts if name not in settled)
             settled[start] = replace(gears[start], sense=_sense_of(gears[start], gears[first]))
             queue.append(start)
@@ -127,17 +128,18 @@ def settle(
 
 
 def _sense_of(gear: Gear, other: Gear) -> int:
-    """Sense of a gear that turns as another does: of opposed axes, the other one."""
+    """Return the sense of a gear that turns with another one; opposed axes reverse it."""
     return -other.sense if gear.axis @ other.axis < -1e-9 else other.sense
 
 
 def _as_shafts_turn(
     gears: Mapping[str, Gear], shafts: Mapping[str, tuple[str, str]]
 ) -> dict[str, Gear]:
-    """Return gears whose senses are those of what they share shafts with.
+    """Return the gears with one sense for all that share a shaft, reversed on opposed axes.
 
-    In a loop over several sets the walk may come back with the other sense. Any sense does to count
-    a rotation in: the meshes tell (see `Mesh.along`), shafts need not.
+    In a loop over several sets the walk may come back with the opposite sense. Rotations may be
+    counted in either sense: meshes keep account of it (see `Mesh.counted`), so that shafts need
+    not.
     """
     found = dict(gears)
     for first, *others in on_one_shaft(gears, shafts.values()):

@@ -1,4 +1,4 @@
-"""The phases of the meshes of a case, and what does not meet, in the words of the case."""
+"""The phases of the meshes of a case, and problems of teeth that do not meet."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
     Raises
     ------
     CaseError
-        If teeth that are given completely do not meet, or a phase that counts does not follow.
+        If fully specified teeth do not meet, a given phase contradicts the layout, or a phase that
+        matters does not follow from it.
     """
     meetings = {
         name: Meeting(
@@ -56,16 +57,16 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
 
 
 def _is_complete(case: spec.Case, name: str) -> bool:
-    """Whether all is given that tells where the teeth of a gear are; its pinions cut a face gear's.
+    """Return whether the case says where a gear's teeth are; a face gear's follow from its pinions.
 
-    A gear of a few figures may be meant for an example only.
+    A gear that is given by a few figures may be meant as an example only.
     """
     gear = case.gears[name]
     return gear.tooth is not None or (gear.type == "face" and gear.teeth is not None)
 
 
 def _halves(case: spec.Case, pair: Pair, pairs: Mapping[str, Pair]) -> tuple[float, float]:
-    """Half the angle of a tooth of driver and driven gear at the pitch circle [rad]."""
+    """Return half the angle of a tooth of driver and driven gear at the pitch circle [rad]."""
 
     def of(gear: Gear, line: LineOfAction) -> float:
         tooth, count = case.gears[gear.name].tooth, gear.teeth or math.inf
@@ -74,7 +75,8 @@ def _halves(case: spec.Case, pair: Pair, pairs: Mapping[str, Pair]) -> tuple[flo
         )
 
     def of_face(face: Gear) -> float:
-        # It fills the spaces of its pinions; of several, those with the thickest teeth.
+        # Its teeth fill the spaces of its pinions; of several, the one with the thickest teeth
+        # counts.
         pinions = [
             (p.driven if p.driver is face else p.driver, p.line)
             for p in pairs.values()
@@ -91,10 +93,10 @@ def _halves(case: spec.Case, pair: Pair, pairs: Mapping[str, Pair]) -> tuple[flo
 
 
 def _twists(case: spec.Case, driver: Gear, driven: Gear) -> tuple[float, float]:
-    """Angles [rad] by which teeth stand further in the middle of the common face (see `Meeting`).
+    """Return by how much teeth are ahead in the middle of the common face [rad] (see `Meeting`).
 
-    Where gears stand at different heights and one gives no face width, the other's face is the
-    common one; where neither does, its middle is halfway. On a face gear it is the pinion's.
+    If one gear has no face width, the other's face is the common one; if neither has, its middle is
+    halfway between the two gears. With a face gear it is the pinion's face.
     """
     ends = driver, driven
     if "face" in (driver.kind, driven.kind):
@@ -117,7 +119,7 @@ def _twists(case: spec.Case, driver: Gear, driven: Gear) -> tuple[float, float]:
 
 
 def _phases_against(case: spec.Case, found: Mapping[str, tuple[float, float]]) -> Iterator[Problem]:
-    """Yield phases that are given although there is a layout from which others follow."""
+    """Yield problems of given phases that contradict those of the layout."""
     if case.operating.phases != "layout":
         return
     for name, (layout, _) in found.items():
@@ -131,7 +133,7 @@ def _phases_against(case: spec.Case, found: Mapping[str, tuple[float, float]]) -
 def _phases_unknown(
     case: spec.Case, pairs: Mapping[str, Pair], found: Mapping[str, tuple[float, float]]
 ) -> Iterator[Problem]:
-    """Yield meshes of which the layout is to tell the phase and does not, although it counts."""
+    """Yield problems of meshes whose phase matters but does not follow from the layout."""
     if case.operating.phases != "layout":
         return
     for name, pair in pairs.items():
@@ -150,7 +152,7 @@ def _phases_unknown(
 
 
 def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:
-    """Say by how much teeth miss each other, and where a planet between two gears would fit."""
+    """Return the problem of teeth that miss each other, with a hint where planets would fit."""
     pair = pairs[misfit.mesh]
     message = (
         f"cannot be put together: its teeth miss each other by {abs(misfit.pitches):.2g} of a "
@@ -160,11 +162,10 @@ def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) 
 
 
 def _spacing_hint(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str:
-    """Say how far apart planets fit that lead from one gear to another about the same axis.
+    """Return a hint at which angles planets fit between two gears about the same axis.
 
-    A planet that is turned on from one to the next by its pitch shifts the two gears against each
-    other by z₁ + z₂ parts of a revolution where they run against each other as seen from it, by
-    their difference where they run alike.
+    They fit at multiples of a revolution divided by z₁ + z₂ if the two gears run in opposite senses
+    as seen from the carrier, by their difference if they run in the same sense.
     """
     gears = {g.name: g for p in pairs.values() for g in (p.driver, p.driven)}
     meshing: dict[str, list[str]] = {name: [] for name in gears}

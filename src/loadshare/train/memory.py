@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A part of a spline that remembers its slip.
+    """One of the two elements of a spline that remembers its slip.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class _Part:
         return self.spline.friction_force
 
     def bound(self, torque: float) -> float:
-        """Friction bound [N] at a torque [N·m]."""
+        """Return the friction bound [N] at a torque [N·m]."""
         return self.spline.bound(torque)
 
 
@@ -53,7 +53,7 @@ class SlipFriction(_Part):
     __slots__ = ()
 
     def law(self, torque: float) -> RadialLaw:
-        """Law about the slip of the position before: F_m in any direction of slip.
+        """Return the law about the slip of the position before: F_m in any direction of slip.
 
         Raises
         ------
@@ -78,14 +78,14 @@ class SlipStop(_Part):
     __slots__ = ()
 
     def law(self, torque: float) -> RadialLaw:
-        """Rigid stop at S2 − F_m/K_w about the unloaded place; at zero if friction needs it all."""
+        """Return the rigid stop at S2 − F_m/K_w about the unloaded place; at 0 if that is less."""
         spline = self.spline
         room = spline.clearance - spline.bound(torque) / spline.bending_stiffness
         return RadialLaw((Piece(0.0, 0.0, max(room, 0.0), "slip"),))
 
 
 def slip_of(spline: Spline, answer: Equilibrium) -> Vector:
-    """Slip s (3,) [m] of a spline with memory: what the bending of its shaft leaves of p."""
+    """Return the slip s (3,) [m] of a spline with memory: p less the bending of its shaft."""
     forces = (answer.radial_reaction[name] for name in (spline.name, spline.stop_name))
     bending = -sum(map(np.asarray, forces)) / spline.bending_stiffness
     return np.asarray(answer.displacement[spline.gear] - bending)

@@ -1,4 +1,4 @@
-"""Mesh contact: the one expression that every sign comes from (formulation, section 2)."""
+"""The mesh contact: the one expression from which every sign follows (formulation, section 2)."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class MeshGeometryError(ValueError):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contact:
-    """Where the teeth of a driver push the teeth of a driven gear.
+    """Directions in which the teeth of a driver push the teeth of a driven gear.
 
     Attributes
     ----------
     radial : ndarray, shape (3,)
-        ĉ, pressing the driven gear away from the driver's tooth body.
+        ĉ, which presses the driven gear away from the driver's tooth body.
     tangential : ndarray, shape (3,)
         t̂, the direction in which the driver's teeth run at the pitch point.
     driven_sense : int
@@ -39,7 +39,7 @@ class Contact:
     driven_sense: int
 
     def normal(self, pressure_angle: float, drive: bool) -> Vector:
-        """Push on the driven gear: n for the drive flank, n' for the coast flank."""
+        """Return the push on the driven gear: n for the drive flank, n' for the coast flank."""
         along = 1.0 if drive else -1.0
         return (
             along * math.cos(pressure_angle) * self.tangential
@@ -59,31 +59,31 @@ class Mesh:
     drive_normal, coast_normal : ndarray, shape (3,)
         n and n'.
     laws : tuple of Law
-        One, or one per position of the mesh cycle, along the line of action. As the gaps, they are
-        in the order in which contact passes through them where the gear named first drives.
+        One, or one per position of the mesh cycle, along the line of action. Like the gaps, they
+        are in the order in which contact passes through them if the gear named first drives.
     gaps : tuple of float
         Unloaded gap of the drive flank along the line of action [m], one or one per position.
     backlash : float
         Along the line of action [m]; infinite if the coast flank cannot touch.
     turned : bool
-        Whether the case names the driven gear first: torque runs against the name of a mesh that
-        has one flank only, and that flank is the one it presses.
+        Whether the case names the driven gear first. Only in a mesh with a single flank: the torque
+        runs against the order of its name and presses that flank.
     unsure : bool
         Whether that one flank may be the wrong one: see `train.pressed`.
     phase : float
-        Part of its cycle that has passed at the first position [-].
+        Fraction of its cycle that has passed at the first position [-].
     coast_phase : float
-        The same of the coast flank.
+        The same for the coast flank.
     coast_gaps : tuple of float
-        What the teeth of the coast flank lack [m], one or one per position: its gap over the
-        backlash.
+        Gap of the coast flank in excess of the backlash [m], one or one per position.
     means : bool
-        Whether laws and gaps are means over the part of the cycle about their position, or hold
+        Whether laws and gaps are means over the part of the cycle around their position, or hold
         from their position on.
     counted : (int, int)
-        1 where a rotation of driver and of driven gear is counted in the sense in which the drive
-        flank goes with the driver and pushes the driven gear, −1 where against it: suns and rings
-        are counted as they turn in the housing, their meshes as they turn on the carrier.
+        For driver and driven gear, 1 if their rotation is counted in the sense in which the drive
+        flank moves with the driver and pushes the driven gear, −1 if against it: rotations of suns
+        and rings are counted as they turn in the housing, while meshes follow how these turn on the
+        carrier.
     """
 
     name: str
@@ -105,19 +105,19 @@ class Mesh:
 
     @property
     def first_radius(self) -> float:
-        """Base radius [m] of the gear that the name puts first, at which torques are given."""
+        """Base radius [m] of the gear that the name puts first, on which torques are given."""
         return self.radii[1] if self.turned else self.radii[0]
 
     def is_drive(self, drive: bool) -> bool:
-        """Whether a flank is the one with which the gear named first drives."""
+        """Return whether a flank is the one with which the gear named first drives."""
         return drive != self.turned
 
     def lever(self, drive: bool) -> float:
-        """Torque per flank force [m] on the gear named first, positive where it drives."""
+        """Return the torque per flank force [m] on the gear named first, positive if it drives."""
         return self.first_radius if self.is_drive(drive) else -self.first_radius
 
     def closer(self, by: float) -> Mesh:
-        """Return the mesh with both flanks closer along the line of action [m]."""
+        """Return the mesh with both flanks closer by a length along the line of action [m]."""
         return replace(self, gaps=tuple(g - by for g in self.gaps), backlash=self.backlash - by)
 
     @property
@@ -133,37 +133,38 @@ class Mesh:
         return len(self.laws) + len(self.gaps) + len(self.coast_gaps) > 3
 
     def flank_name(self, drive: bool) -> str:
-        """Name of a flank's row: the mesh's own for the drive flank."""
+        """Return the name of a flank's row: the mesh's own for the drive flank."""
         return self.name if drive else f"{self.name} coast"
 
     def law(self, position: int) -> Law:
-        """Compliance law of a flank that is at position `position` (0-based) of its laws."""
+        """Return the compliance law of a flank at position `position` (0-based) of its laws."""
         return self.laws[position % len(self.laws)]
 
     def gap(self, position: int, drive: bool) -> float:
-        """Gap [m] of a flank that is at position `position` (0-based) of its laws."""
+        """Return the gap [m] of a flank at position `position` (0-based) of its laws."""
         if drive:
             return self.gaps[position % len(self.gaps)]
         return self.backlash + self.coast_gaps[position % len(self.coast_gaps)]
 
     def position(self, drive: bool, passed: Any, count: int) -> Any:
-        """Position (0-based) of its laws at which a flank is.
+        """Return the position (0-based) of its laws at which a flank is.
 
         Parameters
         ----------
         drive : bool
         passed : float or ndarray
-            How many positions of the cycle have passed since its teeth touched at the pitch point.
+            Number of positions of the cycle that have passed since its teeth touched at the pitch
+            point.
         count : int
             Positions of a mesh cycle.
         """
-        # A position is not to be missed by round-off.
+        # A position just reached must not be missed by round-off.
         reached = np.floor(passed + (0.5 if self.means else 0.0) + 1e-9)
-        # Where the gear named second drives, contact passes through the positions backwards.
+        # If the gear named second drives, contact passes through the positions backwards.
         return (-reached if drive == self.turned else reached) % count
 
     def direction(self, drive: bool) -> tuple[float, float, Vector]:
-        """Coefficients of δ on φ_driver [m], φ_driven [m] and the relative offset (3,)."""
+        """Return the coefficients of φ_driver [m], φ_driven [m], relative offset (3,) in δ."""
         driver, driven = (s * r for s, r in zip(self.counted, self.radii, strict=True))
         if drive:
             return driver, -driven, self.drive_normal
@@ -172,15 +173,15 @@ class Mesh:
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """How the approach of a flank follows from bodies: driver, driven gear, and their carriers.
+    """How the approach of a flank depends on the motions of the two gears and their carriers.
 
     Attributes
     ----------
     turning : mapping of str to float
-        Per rotation [m].
+        Approach per rotation [m].
     shifting : mapping of str to ndarray, shape (3,)
-        Per displacement or centre offset. A planet's displacement is counted from its pin, which
-        moves with the carrier by p_c + φ_c times `Gear.seat` (formulation, section 12).
+        Approach per displacement or centre offset. A planet's displacement is counted from its pin,
+        which moves with the carrier by p_c + φ_c times `Gear.seat` (formulation, section 12).
     """
 
     turning: Mapping[str, float]
@@ -188,7 +189,7 @@ class Approach:
 
 
 def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
-    r"""Return how the approach of a flank follows from the bodies of a train.
+    r"""Return how the approach of a flank depends on the motions of a train's bodies.
 
     .. math:: \delta = r_{bi}\varphi_i - r_{bj}\varphi_j + n\cdot((p_i + c_i) - (p_j + c_j)) -
         \text{gap}
@@ -209,14 +210,15 @@ def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
 def running_contact(
     gears: Mapping[str, Gear], driver: str, driven: str, way: int | None = None
 ) -> tuple[Contact, tuple[int, int]]:
-    """Contact of two gears as they run, seen from their carrier, and how they are counted in it.
+    """Return the contact of two gears as they run, seen from their carrier, and `Mesh.counted`.
 
     Parameters
     ----------
     gears : mapping of str to Gear
     driver, driven : str
     way : int, optional
-        Which way the driver runs, over the sense in which it is counted (see `Mesh.counted`).
+        1 if the driver runs in the sense in which its rotation is counted, −1 if against it; by
+        default, according to its speed in the mesh.
     """
     way = way or (-1 if speed_in_mesh(gears, driver, driven) < 0.0 else 1)
     contact = contact_of(replace(gears[driver], sense=way * gears[driver].sense), gears[driven])
@@ -224,7 +226,7 @@ def running_contact(
 
 
 def contact_of(driver: Gear, driven: Gear) -> Contact:
-    """Contact of two placed gears, face or parallel.
+    """Return the contact of two placed gears, face or parallel.
 
     Raises
     ------
@@ -235,7 +237,7 @@ def contact_of(driver: Gear, driven: Gear) -> Contact:
 
 
 def _parallel(driver: Gear, driven: Gear) -> Contact:
-    """Contact of two gears with parallel axes.
+    """Return the contact of two gears with parallel axes.
 
     ĉ points from the driver's centre to the pitch point: towards an external partner, away from the
     centre of an internal one. A driver that is itself the internal gear pushes its pinion towards
@@ -255,7 +257,7 @@ def _parallel(driver: Gear, driven: Gear) -> Contact:
 
 
 def _face(driver: Gear, driven: Gear) -> Contact:
-    """Contact of a pinion with a face gear.
+    """Return the contact of a pinion with a face gear.
 
     The push lies in the pinion's transverse plane with its radial part along the face gear's axis.
     The pitch point is at the acting radius of the face gear, on the side of the pinion.
@@ -276,7 +278,7 @@ def _face(driver: Gear, driven: Gear) -> Contact:
 
 
 def _pushed(driver: Gear, driven: Gear, to_pitch: Vector, arm: Vector, radial: Vector) -> Contact:
-    """Contact at a pitch point, seen from the driver's centre and, as an arm, from the driven's."""
+    """Return the contact at a pitch point, given its directions from the two gears' centres."""
     tangential = driver.sense * cross(driver.axis, to_pitch)
     sense = 1 if driven.axis @ cross(arm, tangential) > 0.0 else -1
     return Contact(radial, tangential, sense)

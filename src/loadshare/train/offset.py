@@ -1,8 +1,8 @@
 """Geometric errors as centre offsets (formulation, section 1).
 
 An offset acts on approaches exactly as a displacement of the centre does, and costs no energy. An
-installation error is a fixed vector, of a planet fixed on its carrier; a manufacturing
-eccentricity turns with its gear.
+installation error is a vector fixed in the housing, for a planet fixed on its carrier; a
+manufacturing eccentricity turns with its gear.
 """
 
 from __future__ import annotations
@@ -33,16 +33,17 @@ class Offset:
     eccentricity: Vector
 
     def at(self, gear: Gear, rotation: Angle, frame: Angle = 0.0) -> Vector:
-        """Offset (…, 3) [m] of a gear.
+        """Return the offset (…, 3) [m] of a gear.
 
         Parameters
         ----------
         gear : Gear
         rotation : float or ndarray
-            By which it has turned in its sense [rad].
+            Angle by which it has turned in its sense [rad].
         frame : float or ndarray
-            By which the carrier from which it is seen has turned about the gear's axis [rad]: what
-            is fixed in the housing turns backwards, what is fixed on the carrier does not turn.
+            Angle by which the carrier from which it is seen has turned about the gear's axis [rad]:
+            seen from there, a vector fixed in the housing turns backwards and one fixed on the
+            carrier does not turn.
         """
         fixed = self.installation
         if gear.carrier is None and np.any(frame):
@@ -54,13 +55,13 @@ class Offset:
 
 
 def turned_about(gear: Gear, vector: Vector, angle: Angle) -> Vector:
-    """Vectors (…, 3) turned about a gear's axis by angles (…) [rad]."""
+    """Return vectors (…, 3) turned about a gear's axis by angles (…) [rad]."""
     along = (vector @ gear.axis)[..., None] * gear.axis
     return np.asarray(along + turned(vector @ gear.frame.T, angle) @ gear.frame)
 
 
 def turned(components: Vector, angle: Angle) -> Vector:
-    """Components (…, 2) turned counter-clockwise by angles (…) [rad]."""
+    """Return components (…, 2) turned counter-clockwise by angles (…) [rad]."""
     if isinstance(angle, float) and not angle:
         return components
     x, y = components[..., 0], components[..., 1]
@@ -69,13 +70,13 @@ def turned(components: Vector, angle: Angle) -> Vector:
 
 
 def polar(amount: float, direction: float) -> Vector:
-    """Vector (2,) of a size and a direction [rad]."""
+    """Return the vector (2,) of a size and a direction [rad]."""
     both = amount * np.cos(direction), amount * np.sin(direction)
     alone = not any(isinstance(component, np.ndarray) for component in both)
     return np.array(both) if alone else np.stack(both, axis=-1)
 
 
 def vector_of(lengths: tuple[Quantity, ...]) -> Vector:
-    """Three components, the last of them 0 where it is not given."""
+    """Return three components; the last is 0 if it is not given."""
     components = [*(q.si for q in lengths), 0.0][:3]
     return np.stack(np.broadcast_arrays(*components), axis=-1)

@@ -1,4 +1,4 @@
-"""What a case asks of a train: its ends and loads, forces from outside, and its stages."""
+"""The operating point that a case gives a train: input and output, loads, forces, stages."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from loadshare.train.offset import vector_of
 
 
 def stages_of(case: spec.Case) -> tuple[Stage, ...]:
-    """Stages, each with its groups of meshes, of which there may be one."""
+    """Return the stages with their groups of meshes; a stage without groups is one group."""
     groups = {name: s.groups or (s.meshes,) for name, s in case.stages.items()}
     return tuple(Stage(n, tuple(s.meshes), tuple(groups[n])) for n, s in case.stages.items())
 
 
 def operation_of(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Any]:
-    """Ends, torques and positions of a train."""
+    """Return input and output, torques and positions of a train, by its attributes."""
     operating, march = case.operating, case.march
     return {
         "input": operating.input,
@@ -37,7 +37,7 @@ def operation_of(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Any]:
 
 
 def forces_of(case: spec.Case) -> dict[str, Vector]:
-    """Forces from outside and weights."""
+    """Return external forces and weights, by gear."""
     operating = case.operating
     forces = {name: vector_of(force) for name, force in operating.forces.items()}
     if operating.gravity is not None:

@@ -1,12 +1,12 @@
 r"""The common period of all meshes of a train, in whole numbers.
 
-Mesh m goes through :math:`q_m = z_i |\omega_i - \omega_c|` cycles while the input turns once, i its
-driver and c the carrier from which it is seen. Speeds follow from tooth numbers as fractions, so
-that the first time at which all have made whole cycles is
+Mesh m goes through :math:`q_m = z_i |\omega_i - \omega_c|` cycles while the input turns once, where
+i is its driver and c the carrier from which it is seen. Speeds follow from tooth numbers as
+fractions. With the :math:`q_m` in lowest terms, all meshes have first made whole cycles after
 
 .. math:: T = \frac{\operatorname{lcm}(\text{denominators})}{\gcd(\text{numerators})}
 
-revolutions of the input, of the :math:`q_m` in lowest terms. Source: formulation, section 13.
+revolutions of the input. Source: formulation, section 13.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Period:
     revolutions : Fraction
         Of the input.
     cycles : mapping of mesh to int
-        What each mesh goes through in the period.
+        Number of cycles of each mesh in the period.
     """
 
     revolutions: Fraction
@@ -45,7 +45,7 @@ class Period:
         return max(self.cycles, key=lambda mesh: self.cycles[mesh])
 
     def steps(self, positions: int) -> int:
-        """Number of positions of which the fastest mesh has so many in each of its cycles."""
+        """Return the number of positions if the fastest mesh has `positions` in each cycle."""
         return positions * self.cycles[self.fastest]
 
 
@@ -99,7 +99,7 @@ def period_of(
 
 
 def _solved(rows: list[tuple[Row, Fraction]]) -> Row:
-    """Solve linear equations in fractions, row after row; what none of them tells is left out.
+    """Solve linear equations in fractions, row after row; unknowns that stay open are left out.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def _solved(rows: list[tuple[Row, Fraction]]) -> Row:
 
 
 def _taken(row: Row, name: str, known: tuple[Row, Fraction]) -> Fraction:
-    """Put what is known of a name, name + others = value, into a row; return what goes right."""
+    """Eliminate an unknown, name + others = value, from a row; return what its right side loses."""
     factor = row.pop(name)
     for other, value in known[0].items():
         row[other] = row.get(other, Fraction(0)) - factor * value

@@ -1,16 +1,17 @@
-r"""Where every mesh is in its cycle, from tooth counts and the places of gears.
+r"""The phase of every mesh in its cycle, from tooth counts and the places of gears.
 
-The phase of a mesh is what has passed of its cycle since the last pair of teeth touched at the
-pitch point. Seen from gear i with z teeth, one of them at the angle τ with half the angle h at the
-pitch circle, the pitch point at β, all along its sense of rotation,
+The phase of a mesh is the fraction of its cycle that has passed since a pair of teeth last touched
+at the pitch point. Let gear i have z teeth, one of them at the angle τ with the half angle h at the
+pitch circle, and the pitch point at β, all along its sense of rotation. Then
 
 .. math:: \gamma = \frac{z_i}{2\pi}\,(\tau_i \pm h_i - \beta_i) \mod 1 ,
 
-with the leading flank of a driver and the trailing flank of what is driven, and the other two for
-the coast flanks. Helical teeth stand elsewhere at another height: τ is that in the middle of the
-common face, where contact at the pitch point counts. A face gear is a gear like any other, its
-pitch point in the direction of the pinion. Both gears of a mesh must say the same; in a
-planetary set that is the condition of assembly. Source: formulation, section 13.
+with plus for the leading flank of a driver, minus for the trailing flank of a driven gear, and the
+other two flanks for the coast side. Helical teeth are at different angles at different heights: τ
+is that in the middle of the common face, where contact at the pitch point counts. A face gear is
+treated like any other gear, with its pitch point in the direction of the pinion. Both gears of a
+mesh must give the same phase; in a planetary set that is the assembly condition. Source:
+formulation, section 13.
 """
 
 from __future__ import annotations
@@ -25,16 +26,17 @@ import numpy as np
 from loadshare.train.gear import Gear
 
 WHOLE = 1e-2
-"""How far a number of teeth that follows from radii, which are rounded, may be from a whole one."""
+"""How far a number of teeth that follows from (rounded) radii may be from a whole number."""
 Both = tuple[float, float]
 """Phases of the drive and of the coast flank of a mesh."""
 MEETS = 0.02
-"""How far teeth may be from where they meet, in pitches: places are written with few digits."""
+"""By how many pitches teeth may miss each other and still meet: places are written with few
+digits."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Meeting:
-    """A mesh as its phase needs it.
+    """The data of a mesh from which its phase follows.
 
     Attributes
     ----------
@@ -42,9 +44,9 @@ class Meeting:
     halves : (float, float)
         Half the angle of a tooth of each at the pitch circle [rad].
     counted : (int, int)
-        See `Mesh`: the phase counts in the sense in which the drive flank goes.
+        See `Mesh`: the phase counts in the sense in which the drive flank moves.
     twists : (float, float)
-        By how much a tooth of each stands further about its axis in the middle of the common face
+        Angle about its axis by which a tooth of each is further on in the middle of the common face
         than in the middle of its gear [rad].
     """
 
@@ -60,7 +62,7 @@ class Meeting:
         return self.driver.name, self.driven.name
 
     def passed(self, gear: str, tooth: float, drive: bool = True) -> float:
-        """Pitches by which a flank of a tooth at an angle [rad] is past the pitch point."""
+        """Return how many pitches a flank is past the pitch point, its tooth at an angle [rad]."""
         here, sense = self._counted(gear)
         end = 0 if here is self.driver else 1
         half = self.halves[end] if drive == (end == 0) else -self.halves[end]
@@ -68,19 +70,19 @@ class Meeting:
         return round(here.teeth or 0.0) * (along + half) / (2.0 * math.pi)
 
     def tooth(self, gear: str, phase: float, drive: bool = True) -> float:
-        """Angle of a tooth of a gear [rad] in a phase of one of its flanks."""
+        """Return the angle of a tooth of a gear [rad] when one of its flanks is at a phase."""
         here, sense = self._counted(gear)
         pitches = phase - self.passed(gear, 0.0, drive)
         return sense * 2.0 * math.pi * pitches / round(here.teeth or math.inf)
 
     def _counted(self, gear: str) -> tuple[Gear, int]:
-        """One of the two gears, and the sense in which its part of the phase counts."""
+        """Return one of the two gears, and the sense in which its angles count in the phase."""
         if gear == self.driver.name:
             return self.driver, self.counted[0] * self.driver.sense
         return self.driven, self.counted[1] * self.driven.sense
 
     def _towards(self, gear: str) -> float:
-        """Direction of the pitch point from a gear's centre [rad], in its frame."""
+        """Return the direction of the pitch point from a gear's centre [rad], in its frame."""
         one, other = self.driver, self.driven
         if gear != one.name:
             one, other = other, one
@@ -110,11 +112,11 @@ class Misfit:
 def phases(
     meetings: Mapping[str, Meeting], walk: Sequence[str]
 ) -> tuple[dict[str, Both], tuple[Misfit, ...]]:
-    """Return the phases of all meshes between gears with whole teeth, and what does not meet.
+    """Return the phases of all meshes of gears with whole tooth numbers, and the misfits.
 
-    Of gears from which nothing leads to others, the mesh that is nearest to the input begins its
-    cycle: the leading flank of its gear that is nearer is at the pitch point, whichever flank
-    carries and whichever gear the name puts first.
+    In every group of gears that meshes connect, the mesh nearest to the input begins its cycle: the
+    leading flank of the nearer of its two gears is at the pitch point, whichever flank carries and
+    whichever gear is named first.
 
     Parameters
     ----------
@@ -128,7 +130,7 @@ def phases(
         for name in sorted(meetings, key=lambda n: sorted(order[end] for end in meetings[n].ends))
         if is_whole(meetings[name].driver.teeth) and is_whole(meetings[name].driven.teeth)
     }
-    # Which flanks touch decides where teeth are: one walk for those of each side.
+    # Where the teeth are depends on which flanks touch: one walk for each side.
     drive, misfits = _walked(known, order, drive=True)
     coast, _ = _walked(known, order, drive=False)
     return {n: (_of_cycle(drive[n]), _of_cycle(coast[n])) for n in drive}, tuple(misfits)
@@ -137,7 +139,7 @@ def phases(
 def _walked(
     known: Mapping[str, Meeting], order: Mapping[str, int], *, drive: bool
 ) -> tuple[dict[str, float], list[Misfit]]:
-    """Phases of all meshes whose flanks of one side touch, and what does not meet."""
+    """Return the phases of all meshes if their flanks of one side touch, and the misfits."""
     teeth: dict[str, float] = {}
     found: dict[str, float] = {}
     misfits: list[Misfit] = []
@@ -165,7 +167,7 @@ def _walked(
 
 
 def _of_cycle(phase: float) -> float:
-    # What is a whole cycle up to round-off is none.
+    # A phase of a whole cycle, up to round-off, is a phase of 0.
     return phase if phase < 1.0 - 1e-9 else 0.0
 
 
@@ -178,5 +180,5 @@ def _meshes_of(gear: str, known: Mapping[str, Meeting]) -> Iterator[tuple[str, s
 
 
 def is_whole(teeth: float | None) -> bool:
-    """Whether a number of teeth is known and a whole one."""
+    """Return whether a number of teeth is known and whole."""
     return teeth is not None and bool(np.isclose(teeth, round(teeth), rtol=0.0, atol=WHOLE))

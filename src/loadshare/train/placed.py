@@ -1,9 +1,9 @@
-"""Trains that are placed again at every position, since their surroundings are uneven.
+"""Trains whose planets are placed anew at every position, since their surroundings are uneven.
 
-As long as what holds a planetary set is the same in all directions, the set is seen from its
-carrier and looks the same at all positions except for errors and loads. Where it is not, the
-planets are placed where the carrier has taken them, and the train is placed as the housing sees it.
-What is given along a gear's `plane` is as seen from the carrier either way.
+If whatever holds a planetary set is the same in all directions, the set is described in the frame
+of its carrier, where only errors and loads differ between positions. Otherwise the planets are
+placed where the carrier has taken them, in the frame of the housing. Components along a gear's
+`plane` are in the frame of the carrier either way.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ Limit = TypeVar("Limit", bound=DrumRing | RoundRing)
 
 
 def train_at(train: Train, index: int) -> Train:
-    """Return the train that the mechanics of position `index` (1-based) are those of.
+    """Return the train whose mechanics hold at position `index` (1-based).
 
-    The train itself, or if its surroundings are uneven the train with its planets placed.
+    This is the train itself or, if its surroundings are uneven, the train with its planets placed.
     """
     if not train.is_placed_anew:
         return train
-    # No longer than the train itself: one of many samples holds large arrays.
+    # Kept no longer than the train itself: one of many samples holds large arrays.
     known = _known.setdefault(train, {})
     if index not in known:
         known[index] = _placed(train, index)

@@ -1,4 +1,4 @@
-"""The members of planetary sets: how they turn, from where they are seen, where their pins move."""
+"""Members of planetary sets: their speeds, the carriers they are seen from, their pins' motion."""
 
 from __future__ import annotations
 
@@ -20,16 +20,17 @@ def members(
     shafts: Mapping[str, tuple[str, str]],
     first: str,
 ) -> tuple[dict[str, Gear], bool]:
-    """Return the members of planetary sets with speeds, frames, pins, and senses that fit these.
+    """Return the members of planetary sets with speeds, frames, pins, and senses that fit them.
 
-    Planets count along their sense on the carrier, all others along that in the housing: users give
-    torques and clockings by these, and gears outside a set know of no carrier. What goes round with
-    a carrier as one piece has no sense on it and keeps that of its walk, unless a shaft leads out.
+    A planet's rotation counts along its sense on the carrier, that of any other gear along its
+    sense in the housing: users give torques and clockings in these senses, and gears outside a set
+    have no carrier. A gear that turns with a carrier as one piece has no sense on it and keeps the
+    one that the walk found, unless a shaft leads out of the set.
 
     Parameters
     ----------
     gears : mapping of str to Gear
-        Their senses walked, the same at both ends of a shaft.
+        With the senses that the walk found, the same at both ends of a shaft.
     meshes, shafts : mapping of str to (str, str)
     first : str
         The input gear.
@@ -54,7 +55,7 @@ def members(
             relative[name] = speed_on(gears[name], gears[frame], both)
     found = dict(gears)
     for group in on_one_shaft(gears, shafts.values()):
-        # What stands still in the housing has no sense there.
+        # A gear at rest in the housing has no sense there.
         seen = [(speeds if relative[n] and not gears[n].carrier else relative)[n] for n in group]
         seen += [relative[name] for name in group]
         way = -1 if next(filter(None, seen), 1.0) < 0.0 else 1
@@ -76,14 +77,14 @@ def members(
 
 
 def _on_pin(planet: Gear, gears: Mapping[str, Gear]) -> Gear:
-    """Return a planet with the way of its pin per rotation of its carrier."""
+    """Return a planet with the displacement of its pin per rotation of its carrier."""
     carrier = gears[planet.carrier or ""]
     arm = transverse(planet.centre - carrier.centre, carrier.axis)
     return replace(planet, seat=carrier.sense * cross(carrier.axis, arm))
 
 
 def _frames(gears: Mapping[str, Gear], meshes: Mapping[str, tuple[str, str]]) -> dict[str, str]:
-    """Carrier from which a member of a planetary set is seen."""
+    """Return the carrier from which each member of a planetary set is seen."""
     found = {name: name for name, gear in gears.items() if gear.kind == "carrier"}
     for ends in meshes.values():
         carrier = seen_from(gears, *ends)

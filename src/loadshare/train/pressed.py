@@ -1,16 +1,17 @@
 """Which flanks the load presses: meshes without a backlash have that flank only.
 
-Loads may be arrays of samples, so that those that press the same flanks can be told from others.
+Loads may be arrays of samples, so that samples that press the same flanks can be grouped.
 
-Where several loads reach parallel branches, or power may go round a loop of sets and shafts,
-statics of rigid gears cannot tell which flank carries. That of the even share is taken, and a mesh
-of which stiffness may press either flank is marked as unsure (`Links.pressed`): if
-it carries in the answer, the other flank would not touch whatever the play, and the choice was
-right; if it is open there, the play decides, and the answer is warned of (`certify.validity`). To
-refuse all such meshes would refuse most for nothing.
+Where several loads reach parallel branches, or power may circulate in a loop of sets and shafts,
+the statics of rigid gears cannot determine which flank carries. The flank that an even sharing
+presses is taken, and a mesh in which stiffness may press either flank is marked as unsure
+(`Links.pressed`). If it carries in the answer, the other flank would not touch whatever the
+backlash, and the choice was right; if it is open in the answer, the backlash decides, and the
+answer comes with a warning (`certify.validity`). Refusing all such meshes would refuse most of them
+needlessly.
 
-A force from outside turns a carrier if it acts on a planet. If it acts on what yields, it pushes
-gears against their partners as well, where stiffness may press either flank again.
+An external force on a planet turns the carrier. If it acts on a gear that can yield, it also pushes
+gears against their partners, where again stiffness may press either flank.
 """
 
 from __future__ import annotations
@@ -33,14 +34,14 @@ from loadshare.train.willis import NOISE, Links
 
 
 class Pressed(NamedTuple):
-    """Which flank loads press, each (1,) or (S,).
+    """Which flank the loads press, in arrays of shape (1,) or (S,).
 
     Attributes
     ----------
     turned : ndarray of bool
-        Whether the mesh has the one flank that its name does not.
+        Whether the one flank of the mesh is the opposite of the one that its name implies.
     unsure : ndarray of bool
-        Whether it may be its other flank, as stiffness shares the loads.
+        Whether it may be the other flank, depending on how stiffness shares the loads.
     """
 
     turned: Flags
@@ -50,7 +51,7 @@ class Pressed(NamedTuple):
 def pressed_flanks(
     case: spec.Case, gears: Mapping[str, Gear], period: Period | None = None
 ) -> dict[str, Pressed]:
-    """Tell which flank the meshes without a backlash have.
+    """Return which flank each mesh without a backlash has.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def pressed_flanks(
     gears : mapping of str to Gear
         With their speeds.
     period : Period, optional
-        Common period of all meshes, where the positions go through it.
+        Common period of all meshes, if the positions run through it.
 
     Returns
     -------
@@ -74,12 +75,13 @@ def pressed_flanks(
     torque = np.stack(np.broadcast_arrays(*map(np.atleast_1d, case.operating.input_torque)))
     names = {n for n, m in case.meshes.items() if not m.given("backlash", "normal_backlash")}
     against = _against_the_names(case, torque)
-    # Elsewhere the torque of the input runs through all meshes alike.
+    # Otherwise the input torque alone runs through all meshes, in the order of their names or
+    # against it.
     by_load = has_sets(case.gears) or case.operating.external
     pressed = _pressed(case, gears, torque, period) if names and by_load else {}
     pushed = _open_to_forces(case, gears) & names if names else set()
     problems = []
-    # Where statics does not tell, the names do.
+    # Meshes without an answer from statics go by their names.
     none = np.zeros_like(against)
     found = {
         n: Pressed(against & (n in names), none | (n in pushed))
@@ -92,7 +94,7 @@ def pressed_flanks(
             message = "is missing: the load presses now one flank, now the other"
             hint = "How much play the mesh has decides when its other flank carries."
             problems.append(case.problem(("meshes", name, "backlash"), message, "a length", hint))
-        # As where the load presses neither.
+        # If the load presses neither flank, the name decides here too.
         turned = np.where(coast | drive, coast, against) & (name in names)
         unsure = either.any(axis=0) | (name in pushed)
         found[name] = Pressed(turned, np.asarray(unsure & (name in names)))
@@ -102,7 +104,7 @@ def pressed_flanks(
 
 
 def _against_the_names(case: spec.Case, torque: Array) -> Flags:
-    """Whether torques (positions, S) run against the names of the meshes: all that are not 0."""
+    """Return whether all nonzero torques (positions, S) run against the names of the meshes."""
     other_end = from_the_other_end(case)
     against = np.where(torque != 0.0, (torque < 0.0) != other_end, True)
     return np.asarray(against.all(axis=0) & (torque != 0.0).any(axis=0))
@@ -111,7 +113,7 @@ def _against_the_names(case: spec.Case, torque: Array) -> Flags:
 def _pressed(
     case: spec.Case, gears: Mapping[str, Gear], torque: Array, period: Period | None
 ) -> dict[str, tuple[Numbers, Flags]]:
-    """Signs of the torques of meshes (positions, S), by statics (see `Links.pressed`)."""
+    """Return the signs of mesh torques (positions, S) by statics (see `Links.pressed`)."""
     operating = case.operating
     torques: dict[str, Any] = {
         n: t.si * math.copysign(1.0, gears[n].ratio) for n, t in operating.external.items()
@@ -135,7 +137,7 @@ def _turning(case: spec.Case, gears: Mapping[str, Gear]) -> list[str]:
 
 
 def _open_to_forces(case: spec.Case, gears: Mapping[str, Gear]) -> set[str]:
-    """Return the links that forces from outside may load either way, as stiffness shares them."""
+    """Return the links that external forces may load either way, depending on stiffness."""
     felt = {name for n in forces_of(case) for name in (n, gears[n].carrier) if name is not None}
     if not any(case.floats(n) or case.gears[n].support not in (None, "rigid") for n in felt):
         return set()
@@ -146,9 +148,10 @@ def _open_to_forces(case: spec.Case, gears: Mapping[str, Gear]) -> set[str]:
 def _moments(
     case: spec.Case, gears: Mapping[str, Gear], count: int, period: Period | None
 ) -> dict[str, Array]:
-    """Moments of forces from outside about carriers [N·m], in their senses.
+    """Return the moments of external forces about carriers [N·m], in the carriers' senses.
 
-    At all positions where the torque has `count` of them; else where they are least and largest.
+    They are those at all positions if the torque varies over these (`count` > 1), or else only
+    those at the positions at which a moment is least or largest.
     """
     forces = forces_of(case)
     if not forces:
@@ -165,7 +168,7 @@ def _moments(
         arm = gears[name].centre - carrier.centre
         across = np.atleast_1d(force @ np.cross(carrier.axis, arm))
         along = np.atleast_1d(force @ (arm - (arm @ carrier.axis) * carrier.axis))
-        # What is fixed in the housing turns backwards about the carrier.
+        # Seen from the carrier, a force fixed in the housing turns backwards.
         angle = (carrier.sense * carrier.ratio * turned)[:, None]
         moment = carrier.sense * (np.cos(angle) * across - np.sin(angle) * along)
         found[hub] = found.get(hub, 0.0) + moment
@@ -174,5 +177,5 @@ def _moments(
     if count == 1:
         ends = [end(m[:, 0]) for m in found.values() for end in (np.argmin, np.argmax)]
         rows = sorted(set(map(int, ends)))
-    # Weights of planets that are evenly spaced leave round-off.
+    # Weights of evenly spaced planets cancel up to round-off.
     return {n: np.where(np.abs(m) > NOISE * size[n], m, 0.0)[rows] for n, m in found.items()}

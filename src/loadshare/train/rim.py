@@ -1,9 +1,10 @@
-r"""Thin rims of internal gears: how they bend, as harmonics.
+r"""Bending of the thin rims of internal gears, in harmonics.
 
-A rim that bends without becoming longer moves at the angle ψ outwards by :math:`a \cos n\psi +
-b \sin n\psi` and round by :math:`(-a \sin n\psi + b \cos n\psi)/n`. Its meshes feel what that
-is along their line of action, and its energy is :math:`\tfrac12 k_n (a^2 + b^2)`. A harmonic
-is a body of the train that does not turn, on a support of stiffness k_n.
+A rim that bends without stretching moves at the angle ψ outwards by :math:`a \cos n\psi +
+b \sin n\psi` and tangentially by :math:`(-a \sin n\psi + b \cos n\psi)/n`. The component along
+the line of action enters the approach of its meshes, and its energy is
+:math:`\tfrac12 k_n (a^2 + b^2)`. A harmonic is written as a body of the train that does not turn,
+on a support of stiffness k_n.
 
 Source: formulation, section 12; Timoshenko, Strength of Materials II, for the thin ring.
 """
@@ -21,7 +22,7 @@ from loadshare.train.gear import Gear, Vector, cross
 
 
 def with_harmonics(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Gear]:
-    """Return gears with the harmonics of their rims.
+    """Return the gears, with the harmonics of their rims added as bodies.
 
     Parameters
     ----------
@@ -48,13 +49,13 @@ def with_harmonics(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Gear
 def bent(
     ring: str, partner: Gear, push: Vector, gears: Mapping[str, Gear]
 ) -> Iterator[tuple[str, Vector]]:
-    """Yield harmonics of a ring's rim, and what a push along a mesh does to each.
+    """Yield the harmonics of a ring's rim, and the component of a mesh's push on each.
 
     Parameters
     ----------
     ring : str
     partner : Gear
-        Towards which the mesh lies.
+        Gear in whose direction the mesh lies.
     push : ndarray, shape (3,)
         Along the line of action.
     gears : mapping of str to Gear

@@ -1,4 +1,4 @@
-"""What limits a float: rings, and bearings with clearance (formulation, sections 6 and 14)."""
+"""Elements that limit a float: rings, bearings with clearance (formulation, sections 6 and 14)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from loadshare.train.gear import Vector
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DrumRing:
-    """Rings that roll on the rings of two neighbours, with radial stops: the drum region.
+    """Ring that rolls on the rings of two neighbours, with radial stops: the drum region.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class RoundRing:
     stiffness : float
         [N/m^power]; infinite for a rigid ring.
     power : float
-        Of the way beyond the radius with which the force grows [-].
+        Exponent with which the force grows with the displacement beyond the radius [-].
     """
 
     gear: str
@@ -93,5 +93,5 @@ Ring = DrumRing | RoundRing
 
 
 def transverse(vector: Vector, axis: Vector) -> Vector:
-    """Part of `vector` across `axis`."""
+    """Return the part of `vector` across `axis`."""
     return np.asarray(vector - (vector @ axis) * axis)

@@ -1,8 +1,7 @@
-"""Samples of a case: inputs that change from sample to sample, as situations of one train.
+"""Samples of a case: inputs that vary from sample to sample, as situations of one train.
 
-Where only keys change that become arrays (see `array_keys`), one train does for all samples.
-Otherwise samples are grouped by the values of the other keys, and every group is a train of its
-own.
+If only keys that become arrays vary (see `array_keys`), one train serves all samples. Otherwise
+samples are grouped by the values of the other keys, and every group has a train of its own.
 """
 
 from __future__ import annotations
@@ -41,14 +40,14 @@ class Samples:
     Attributes
     ----------
     case : Case
-        The case with the first sample's values; it gives what no column gives.
+        The case with the first sample's values; it supplies whatever no column gives.
     geometry : Geometry
     train : Train
-        Built from it.
+        Built from that case.
     columns : tuple of Column
-        All of them, of S values each.
+        All varying keys, with S values each.
     values : mapping of Path to ndarray, shape (S,)
-        In SI, of the keys that become arrays.
+        SI values of the keys that become arrays.
     """
 
     case: spec.Case
@@ -81,19 +80,19 @@ class Samples:
     def abreast(self, positions: Sequence[int]) -> Situations:
         """Return the situations of all samples at several positions, one after another.
 
-        Of a train that is placed anew at every position: at one.
+        Only one position is allowed for a train that is placed anew at every position.
         """
         if self._varied is self.train and not self.train.is_placed_anew:
             return situations_of(self.train, positions)
         return stack([self.situations(index) for index in positions])
 
     def build(self) -> Train:
-        """Build the train whose numbers are those of all samples.
+        """Return the train whose numbers are those of all samples.
 
         Raises
         ------
         CaseError
-            If a sample makes none.
+            If a sample cannot be made into a train.
         """
         return self._varied
 
@@ -146,7 +145,7 @@ def groups_of(case: spec.Case, columns: Sequence[Column]) -> list[tuple[Numbers,
         values = {path: si[some] for path, si in arrays.items()}
         alike = _pressed_alike(base, geometry, values, len(rows))
         if not alike.all():
-            # The others press other flanks than the first of them.
+            # The others press other flanks than the first, and become groups of their own.
             parts[:0] = [rows[alike], rows[~alike]]
             continue
         group = Samples(base, geometry, train, mine, values)
@@ -161,7 +160,7 @@ _recent: Recent[tuple[spec.Case, Geometry, Train]] = Recent()
 
 
 def _built(case: spec.Case, base: spec.Case) -> tuple[Geometry, Train]:
-    """Return geometry and train of a sample; what it shares with one before is not built again."""
+    """Return geometry and train of a sample, reusing what it shares with a recent one."""
     known = _recent.of(case)
     train = None if known is None else train_alike(base, known)
     if known is not None and train is not None:
@@ -173,7 +172,7 @@ def _built(case: spec.Case, base: spec.Case) -> tuple[Geometry, Train]:
 def _pressed_alike(
     case: spec.Case, geometry: Geometry, values: Mapping[Path, Array], count: int
 ) -> Flags:
-    """Whether samples press the flanks that the geometry has, (count,)."""
+    """Return whether each sample presses the flanks that the geometry has, (count,)."""
     loads = {path: si for path, si in values.items() if path[0] == "operating"}
     alike = np.ones(count, dtype=bool)
     if loads and count > 1:
@@ -197,7 +196,7 @@ def _with(part: Any, values: Mapping[Path, Any]) -> Any:
         named = {field.alias or name: name for name, field in type(part).model_fields.items()}
         names = {named[str(step)]: inner for step, inner in below.items()}
         changes = {name: _with(getattr(part, name), inner) for name, inner in names.items()}
-        # A case too, which by itself is changed by nobody unchecked.
+        # The own `model_copy` of a case refuses changes, which nobody would check.
         return Element.model_copy(part, update=changes)
     if isinstance(part, Mapping):
         return {**part, **{step: _with(part[step], inner) for step, inner in below.items()}}
@@ -205,9 +204,9 @@ def _with(part: Any, values: Mapping[Path, Any]) -> Any:
 
 
 def _check(case: spec.Case, columns: Sequence[Column], arrays: Mapping[Path, Array]) -> None:
-    """Let the case file's own checks judge the extreme values of every key.
+    """Apply the checks of case files to the extreme values of every array key.
 
-    Other keys are judged with the groups that they make.
+    Values of other keys are checked with the groups that they form.
     """
     parts, judged = [np.arange(len(columns[0].values))], 0
     while parts:
@@ -215,19 +214,19 @@ def _check(case: spec.Case, columns: Sequence[Column], arrays: Mapping[Path, Arr
         try:
             for pick in (np.argmin, np.argmax):
                 at = {path: int(rows[pick(values[rows])]) for path, values in arrays.items()}
-                # The first sample was judged before.
+                # The first sample has been checked already.
                 if any(at.values()):
                     others = int(rows[0])
                     case.replace({dotted(c.path): c.text(at.get(c.path, others)) for c in columns})
         except CaseError:
-            # No sample need have all extremes at once.
+            # A combination of extremes may fail that no sample has: check smaller parts.
             if len(rows) == 1 or judged > JOB.extremes:
                 raise
             parts += np.array_split(rows, 2)[::-1]
 
 
 def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> dict[int, CaseError]:
-    """Return which samples make no train, and why.
+    """Return the samples that cannot be made into a train, and why.
 
     Parameters
     ----------
@@ -254,7 +253,7 @@ def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> dict[int, Cas
 
 
 def _groups(columns: Sequence[Column], count: int) -> list[Numbers]:
-    """Rows with the same values in all of these columns."""
+    """Return groups of rows that have the same values in all of these columns."""
     if not columns:
         return [np.arange(count)]
     codes = np.stack([np.unique(c.values, return_inverse=True)[1] for c in columns], axis=1)

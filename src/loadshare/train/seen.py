@@ -1,4 +1,4 @@
-"""How gears turn as seen from the carrier whose planets they mesh with."""
+"""Speeds of gears as seen from the carrier whose planets they mesh with."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from loadshare.train.gear import Gear
 
 STILL = 1e-9
-"""Speed on a carrier, over that of the carrier, that is round-off [-]."""
+"""Speed relative to a carrier, over the speed of the carrier, that counts as round-off [-]."""
 
 
 def seen_from(gears: Mapping[str, Gear], driver: str, driven: str) -> str | None:
@@ -16,27 +16,27 @@ def seen_from(gears: Mapping[str, Gear], driver: str, driven: str) -> str | None
 
 
 def along(gear: Gear, carrier: Gear) -> float:
-    """Speed along a gear's sense of what turns with a carrier, over that of the carrier: ±1."""
+    """Return ±1: the speed along a gear's sense of a body on a carrier, over the carrier's."""
     return gear.sense * carrier.sense * (1.0 if gear.axis @ carrier.axis > 0.0 else -1.0)
 
 
 def speed_on(gear: Gear, carrier: Gear, speeds: tuple[float, float]) -> float:
-    """Speed of a gear as seen from a carrier, along the gear's sense.
+    """Return the speed of a gear as seen from a carrier, along the gear's sense.
 
     Parameters
     ----------
     gear, carrier : Gear
     speeds : (float, float)
-        Of the two, along their senses.
+        Their speeds, along their senses.
     """
     carried = along(gear, carrier) * speeds[1]
     apart = speeds[0] - carried
-    # What goes round with its carrier as one piece does not turn on it.
+    # A gear that turns with its carrier as one piece does not turn relative to it.
     return apart if abs(apart) > STILL * abs(carried) else 0.0
 
 
 def speed_in_mesh(gears: Mapping[str, Gear], gear: str, partner: str) -> float:
-    """Speed with which a gear takes its teeth through a mesh, over that of the input.
+    """Return the speed at which a gear's teeth pass through a mesh, over that of the input.
 
     A sun or ring may mesh with planets of two carriers, and with gears outside its set.
     """

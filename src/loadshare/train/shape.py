@@ -1,8 +1,8 @@
-"""What of a train no numbers of its situations change: trains of one shape share a machine.
+"""The shape of a train: all that its numbers do not change. Trains of one shape share a machine.
 
-What is reduced once per machine (directions, statics of sets, rows of the certificate) follows from
-the geometry and from which elements there are. Loads, errors, clearances, gaps and compliances may
-differ from train to train as they do from sample to sample.
+All that is computed once per machine (directions, statics of active sets, rows of the certificate)
+follows from the geometry and from which elements there are. Loads, errors, clearances, gaps and
+compliances may differ from train to train as they do from sample to sample.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from loadshare.train.train import Train
 
 
 def shape_of(train: Train) -> Hashable:
-    """Return what trains must have in common to share what is reduced of a machine.
+    """Return what trains must have in common to share all that is computed once per machine.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def _ring(ring: Ring) -> tuple[Any, ...]:
 
 
 def _arcs(train: Train) -> Iterator[bytes]:
-    """Yield how errors shift the arcs at rest, from which directions in the statics follow."""
+    """Yield how errors shift the arcs at rest: directions in the statics follow from it."""
     if any(ring.with_errors for ring in train.drums):
         yield _bytes(situation_of(train, train.placed or 1).arc_shift)
 

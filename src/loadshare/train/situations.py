@@ -1,8 +1,8 @@
-"""What a position brings, for many samples at once.
+"""The numbers of a train at a position, for many samples at once.
 
 A tolerance study, a sweep or a march solves one machine again and again with other errors,
-clearances, loads and compliances. Here these numbers are in arrays whose leading axis runs over
-the samples; an array with a single row holds for all of them. What the arrays leave out (centres,
+clearances, loads and compliances. These numbers are held in arrays whose leading axis runs over the
+samples; an array with a single row holds for all of them. All that is not in the arrays (centres,
 lines of action, which elements there are) is the same in every sample.
 """
 
@@ -52,13 +52,13 @@ class Situations:
     bending, hertz : ndarray, shape (S or 1, flanks)
         b [m/N] and c [m/N^(2/3)] of the laws; 0 where a mesh has a table.
     table : ndarray, shape (S or 1, flanks, 2, points)
-        Forces [N] and compressions [m] of tabulated laws, the last point repeated to fill up.
+        Forces [N] and compressions [m] of tabulated laws, NaN beyond the last point of a table.
     clocking, torsion : ndarray, shape (S or 1, shafts)
         [rad], [N·m/rad].
     support : ndarray, shape (S or 1, gears, 2)
         [N/m]; 0 for a rigid bearing, which has no coordinate.
     arc_shift : ndarray, shape (S or 1, drums, 2, 3)
-        What errors add to the way from each neighbour [m].
+        What errors add to the vector from each neighbour [m].
     arc_clearance, stop : ndarray, shape (S or 1, drums, 2)
         c_x towards each neighbour; h1 and h2 [m].
     wall : ndarray, shape (S or 1, drums)
@@ -93,7 +93,7 @@ class Situations:
     spline: Array
 
     def take(self, rows: Numbers | slice) -> Situations:
-        """Return some of the samples; what holds for all is a row that is not repeated."""
+        """Return some of the samples; an array with a single row stays as it is."""
         chosen = {
             name: value[rows] if len(value) > 1 else value for name, value in self._arrays().items()
         }
@@ -116,11 +116,11 @@ class Situations:
         return dict(zip(self.train.gears, self.torque[0].tolist(), strict=True))
 
     def offset_of(self, gear: str) -> Array:
-        """Centre offset (3,) [m] of a gear in the first sample."""
+        """Return the centre offset (3,) [m] of a gear in the first sample."""
         return np.asarray(self.offset[0, self.train.order[gear]])
 
     def arc(self, ring: DrumRing, side: int) -> Arc:
-        """Exclusion arc of a drum ring towards its neighbour number `side`, in the first sample."""
+        """Return the exclusion arc of a drum ring towards neighbour `side`, in the first sample."""
         train = self.train
         d = [r.gear for r in train.drums].index(ring.gear)
         gear, neighbour = train.gears[ring.gear], train.gears[ring.neighbours[side]]
@@ -135,20 +135,20 @@ class Situations:
 
 
 VARYING = tuple(f.name for f in fields(Situations) if f.name not in ("train", "count", "index"))
-"""Names of the arrays that a position brings."""
+"""Names of the arrays whose values may differ from position to position."""
 
 
 @lru_cache(maxsize=64)
 def situation_of(train: Train, index: int) -> Situations:
-    """Return the situation of a train at position `index` (1-based), kept for the next time."""
+    """Return the situation of a train at position `index` (1-based), cached."""
     return situations_of(train, index)
 
 
 def situations_of(train: Train, index: int | Sequence[int]) -> Situations:
-    """Return what a train brings at a position (1-based), or at several, one after another.
+    """Return the situations of a train at a position (1-based), or at several, one after another.
 
-    At one position: one row for all samples where no number of the train is an array, S rows where
-    some are. At several, of a train without arrays: a row for each, or one for all.
+    At one position an array has one row for all samples, or S rows if numbers of the train are
+    arrays. At several positions, for a train without arrays, it has a row for each or one for all.
 
     Raises
     ------
@@ -178,7 +178,7 @@ _last_turned: WeakKeyDictionary[Train, tuple[tuple[Any, ...], dict[str, Array]]]
 
 
 def _turned(train: Train, rotation: Mapping[str, Any]) -> dict[str, Array]:
-    """What turns with the gears, worked out once for positions at which they stand alike."""
+    """Return the arrays that turn with the gears, computed once for positions of equal rotation."""
     angles = tuple(rotation.values())
     count = max((np.size(angle) for angle in angles if isinstance(angle, np.ndarray)), default=0)
     alone = not count
@@ -186,7 +186,7 @@ def _turned(train: Train, rotation: Mapping[str, Any]) -> dict[str, Array]:
     if alone and last is not None and last[0] == angles:
         return last[1]
     if train.stands_still:
-        # All positions in one; what has errors has a row for each all the same.
+        # One rotation for all positions; with errors, offsets have a row for each all the same.
         rotation = dict.fromkeys(rotation, 0.0)
     offset = _table([train.offset(n, rotation) for n in train.gears], 3)
     if train.stands_still and count and train.offsets:
@@ -202,7 +202,7 @@ def _turned(train: Train, rotation: Mapping[str, Any]) -> dict[str, Array]:
 
 
 def _lasting(train: Train) -> dict[str, Array]:
-    """What is the same at all positions, worked out once for a train."""
+    """Return the arrays that are the same at all positions, computed once for a train."""
     if (known := _known.get(train)) is not None:
         return known
     drums, rounds = train.drums, train.rounds
@@ -224,7 +224,7 @@ def _lasting(train: Train) -> dict[str, Array]:
 
 
 def _of_flanks(train: Train, position: Mapping[str, Any] | None = None) -> dict[str, Array]:
-    """Gaps and laws of flanks at the positions of their laws; their only ones without."""
+    """Return gaps and laws of flanks at positions of their laws; without these, their only ones."""
     flanks = [(mesh, drive) for mesh in train.meshes.values() for drive in mesh.flanks]
     where = [0 if position is None else position[mesh.flank_name(d)] for mesh, d in flanks]
     gaps = [m.gaps if d else [m.backlash + gap for gap in m.coast_gaps] for m, d in flanks]
@@ -240,11 +240,11 @@ def _of_flanks(train: Train, position: Mapping[str, Any] | None = None) -> dict[
 
 
 _NONE = PowerLaw(0.0)
-"""The power law of a mesh that has a table."""
+"""Stands for the power law of a mesh that has a table."""
 
 
 def _tables_at(laws: Sequence[Law], position: Any) -> Sequence[TableLaw | None]:
-    """Tables of a flank at a position of its laws, or at several of them; one for all alike."""
+    """Return the tables of a flank at the positions of its laws; only one if it holds for all."""
     tables = [law if isinstance(law, TableLaw) else None for law in laws]
     if len(tables) == 1 or not any(tables):
         return tables[:1]
@@ -252,7 +252,7 @@ def _tables_at(laws: Sequence[Law], position: Any) -> Sequence[TableLaw | None]:
 
 
 def _chosen(values: Sequence[Sequence[Any]], where: Sequence[Any]) -> Array:
-    """Of each of several values, one or one per position of a cycle, those at its positions."""
+    """Return the values of every flank at its positions, from one value or one per position."""
     longest = max(map(len, values), default=1)
     if longest == 1 or not all(isinstance(at, np.ndarray) and at.ndim for at in where):
         return _table([_at(each, at) for each, at in zip(values, where, strict=True)])
@@ -261,7 +261,7 @@ def _chosen(values: Sequence[Sequence[Any]], where: Sequence[Any]) -> Array:
 
 
 def _at(values: Sequence[Any], position: Any) -> Any:
-    """Of values, one or one per position of a cycle, those at a position or at several."""
+    """Return the value at a position, or at several, from one value or one per position."""
     if len(values) == 1:
         return values[0]
     if isinstance(position, int):
@@ -279,7 +279,7 @@ def stack(situations: Sequence[Situations]) -> Situations:
     every = [s._arrays() for s in situations]
     for name, value in first._arrays().items():
         parts = [arrays[name] for arrays in every]
-        # Not-a-number is the same as itself.
+        # Bytes are compared, since NaN must equal itself here.
         if len(value) == 1 and all(
             p is value or (p.shape == value.shape and p.tobytes() == value.tobytes()) for p in parts
         ):
@@ -288,7 +288,7 @@ def stack(situations: Sequence[Situations]) -> Situations:
         if name == "table":
             points = max(p.shape[-1] for p in parts)
             parts = [_filled(p, points) for p in parts]
-        # One row after another, which rows that are all alike would not be by themselves.
+        # `out` is contiguous row by row, which NumPy's own choice for broadcast rows is not.
         together[name] = np.concatenate(
             [
                 np.broadcast_to(p, (s.count, *p.shape[1:]))
@@ -334,7 +334,7 @@ def _rows(rows: Sequence[tuple[float, ...]], length: int) -> Array:
 
 
 def _torques(train: Train, index: Any) -> Array:
-    """External torques on gears [N·m], at a position or at several."""
+    """Return the external torques on gears [N·m], at one position or several."""
     found: list[Any] = [train.external.get(gear, 0.0) for gear in train.gears]
     first = train.order[train.input]
     found[first] = found[first] + _at(train.input_torque, index - 1)
@@ -353,7 +353,7 @@ def _support(support: Array | None) -> Array:
 
 
 def _tables(laws: Sequence[Sequence[TableLaw | None]]) -> Array:
-    """Tables of all flanks, each with one for all positions or one for each."""
+    """Return the tables of all flanks, each with one for all positions or one for each."""
     points = max((len(law.forces) for each in laws for law in each if law), default=0)
     count = max(map(len, laws), default=1) if points else 1
     table = np.zeros((count, len(laws), 2, points))

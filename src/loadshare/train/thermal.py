@@ -1,8 +1,8 @@
-"""Thermal growth: bodies that are warmer than they were made, as gaps of known size.
+"""Thermal growth: bodies warmer than when they were made, as gaps of known size.
 
-A body grows evenly by α ΔT. What a gear's flank gains at the pitch point is what the approach gains
-if the gear is moved that far towards it. Housing and carriers move the gears that sit in them along
-their line of centres: what grows as these do comes no closer.
+A body grows uniformly by α ΔT. The growth of a gear at the pitch point adds to the approach as much
+as moving the gear that far towards the pitch point would. Housing and carriers move the gears
+mounted in them along the line of centres: gears that grow as much as these come no closer.
 Source: formulation, section 14.
 """
 
@@ -20,7 +20,7 @@ from loadshare.train.ring import Bearing, transverse
 
 
 def growth_of(case: spec.Case, gear: str | None) -> float:
-    """Relative growth of a gear, or of the housing [-]."""
+    """Return the relative growth of a gear, or of the housing [-]."""
     body = case.operating if gear is None else case.gears[gear]
     if body.temperature is None:
         return 0.0
@@ -28,12 +28,12 @@ def growth_of(case: spec.Case, gear: str | None) -> float:
 
 
 def grows(case: spec.Case) -> bool:
-    """Whether anything is warmer than it was made."""
+    """Return whether anything is warmer than when it was made."""
     return any(growth_of(case, body) for body in (None, *case.gears))
 
 
 def flank_growth(case: spec.Case, pair: Pair) -> float:
-    """By how much both flanks of a mesh come closer as its gears grow [m].
+    """Return by how much both flanks of a mesh come closer as its gears grow [m].
 
     Parameters
     ----------
@@ -55,14 +55,14 @@ def flank_growth(case: spec.Case, pair: Pair) -> float:
 
 
 def fitted(case: spec.Case, bearing: Bearing, gear: Gear) -> Bearing:
-    """Return a bearing with the clearance that warm bodies leave it.
+    """Return a bearing with the clearance that is left when the bodies are warm.
 
     A gear's shaft grows in the housing, a planet about the pin of its carrier.
 
     Raises
     ------
     CaseError
-        If none is left: a bearing that is pressed on all sides is none of these laws.
+        If it is negative: the laws here do not describe a bearing with interference.
     """
     given = case.bearings[gear.name]
     if given.diameter is None:

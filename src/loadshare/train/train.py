@@ -28,8 +28,8 @@ At = TypeVar("At", int, Numbers)
 class Train:
     """A gear train in SI units: geometry, laws, errors and operating point.
 
-    Where samples share a machine, numbers that vary are arrays of S values; what such a train is
-    for is to be turned into `Situations`.
+    If samples share a machine, numbers that vary are arrays of S values; such a train only serves
+    to be turned into `Situations`.
 
     Attributes
     ----------
@@ -51,19 +51,19 @@ class Train:
     march : tuple of (str, float, int) or None
         Reference gear, its revolutions and the number of steps.
     forces : mapping of gear to ndarray (3,)
-        Forces from outside, weights among them, fixed in the housing [N].
+        External forces, weights among them, fixed in the housing [N].
     period : Period or None
-        Common period of all meshes, where the positions go through it.
+        Common period of all meshes, if the positions run through it.
     slip : mapping of gear to ndarray (3,), or None
-        Slip s₀ [m] of every spline at the position before, for friction with memory; None where
-        friction has none.
+        Slip s₀ [m] of every spline at the position before, for friction with memory; None for
+        friction without.
     uneven : bool
-        Whether what holds a set that turns is not the same in all directions, so that every
-        position has a train of its own (see `placed.py`).
+        Whether whatever holds a turning set differs between directions, so that every position has
+        a train of its own (see `placed.py`).
     placed : int or None
-        The position whose train this is; then all vectors are as the housing sees them.
+        The position whose train this is; all vectors are then in the frame of the housing.
     held_at : mapping of flank to int, or None
-        Positions of their laws (0-based) at which all flanks are held.
+        Positions of their laws (0-based) at which flanks are held over all positions.
     """
 
     name: str
@@ -90,7 +90,7 @@ class Train:
     held_at: Mapping[str, int] | None = None
 
     def remembering(self, slip: Mapping[str, Vector]) -> Train:
-        """Return the train with spline friction that starts from a slip [m] of every spline."""
+        """Return the train with the slip [m] of every spline from which its friction starts."""
         return replace(self, slip=dict(slip))
 
     @property
@@ -105,22 +105,22 @@ class Train:
 
     @property
     def is_placed_anew(self) -> bool:
-        """Whether every position has a train of its own, which this is not."""
+        """Whether every position has a train of its own, and this is not one of them."""
         return self.uneven and self.placed is None
 
     @cached_property
     def order(self) -> dict[str, int]:
-        """Number of every gear."""
+        """Index of every gear."""
         return {name: k for k, name in enumerate(self.gears)}
 
     @cached_property
     def held(self) -> tuple[str, ...]:
-        """Gears that do not turn: the output, whose load is what is left, and held ones."""
+        """Gears that do not turn: the output, whose load the balance determines, and held ones."""
         return (self.output, *(name for name, gear in self.gears.items() if gear.held))
 
     @cached_property
     def approaches(self) -> dict[str, Approach]:
-        """How the approach of every flank follows from the bodies, by name of the flank."""
+        """How the approach of every flank depends on the bodies, by name of the flank."""
         return {
             mesh.flank_name(drive): approach_of(mesh, drive, self.gears)
             for mesh in self.meshes.values()
@@ -144,7 +144,7 @@ class Train:
 
     @cached_property
     def limits(self) -> dict[str, tuple[Ring, ...]]:
-        """What limits how far gears float, by gear."""
+        """Rings and bearings that limit how far gears float, by gear."""
         found: dict[str, tuple[Ring, ...]] = {}
         for limit in (*self.rings.values(), *self.bearings.values()):
             found[limit.gear] = (*found.get(limit.gear, ()), limit)
@@ -163,10 +163,10 @@ class Train:
 
     @cached_property
     def cycle(self) -> str | None:
-        """Gear one tooth of which is a mesh cycle; None if gears do not rotate over the cycle.
+        """Gear whose pitch makes a mesh cycle; None if gears do not rotate over the cycle.
 
-        The input gear, or else the nearest to it whose teeth are known. In a march it decides
-        nothing.
+        It is the input gear, or else the nearest to it whose teeth are known. In a march it has no
+        effect.
         """
         return cycle_gear(self.gears) if self.rotating else None
 
@@ -182,9 +182,9 @@ class Train:
     def rotations(self, index: Numbers) -> dict[str, Vector]: ...
 
     def rotations(self, index: int | Numbers) -> dict[str, float] | dict[str, Vector]:
-        """Angle [rad] by which every gear has turned at position `index` (1-based).
+        """Return the angle [rad] by which every gear has turned at position `index` (1-based).
 
-        At many positions at once where there is an array of them.
+        `index` may be an array of positions.
 
         In a mesh cycle the gears turn by one pitch of the gear `cycle` over the cycle, or over the
         common period of all meshes. In a march they turn through whole revolutions.
@@ -202,7 +202,7 @@ class Train:
         return angles
 
     def offset(self, gear: str, rotation: Mapping[str, Angle]) -> Vector:
-        """Centre offset (…, 3) [m] of a gear, as seen from the carrier about which it turns.
+        """Return the centre offset (…, 3) [m] of a gear, seen from the carrier it turns about.
 
         As the housing sees it in a train that is placed.
 
@@ -220,7 +220,7 @@ class Train:
         return offset if self.placed is None else turned_about(here, offset, turned)
 
     def push(self, gear: str, rotation: Mapping[str, Angle]) -> Vector:
-        """Force from outside on a gear (…, 3) [N], as seen from the carrier about which it turns.
+        """Return the external force (…, 3) [N] on a gear, seen from the carrier it turns about.
 
         As the housing sees it in a train that is placed.
 
@@ -243,7 +243,7 @@ class Train:
     def frame_angle(self, gear: str, rotation: Mapping[str, Angle]) -> Angle: ...
 
     def frame_angle(self, gear: str, rotation: Mapping[str, Angle]) -> Angle:
-        """Angle [rad] by which the carrier from which a gear is seen has turned about its axis.
+        """Return the angle [rad] by which the carrier from which a gear is seen has turned.
 
         Parameters
         ----------
@@ -259,10 +259,10 @@ class Train:
         return along * carrier.sense * rotation[carrier.name]
 
     def slip_seen_next(self, gear: str, slip: Vector, index: int) -> Vector:
-        """Slip (3,) [m] at the end of position `index` (1-based) as the next one sees it.
+        """Return the slip (3,) [m] after position `index` (1-based) as seen at the next position.
 
-        Seen from a carrier, what is fixed in the housing rotates back; as the housing sees it, in
-        a train whose positions are placed, what is fixed to a carrier goes round.
+        Seen from a carrier, a vector fixed in the housing rotates backwards; seen from the housing,
+        in a train whose positions are placed, one fixed on a carrier rotates with it.
         """
         here = self.gears[gear]
         if (here.carrier is not None) != self.uneven or index == self.count:
@@ -271,9 +271,9 @@ class Train:
         return turned_about(here, slip, then - now if self.uneven else now - then)
 
     def mesh_positions(self, index: At) -> dict[str, At]:
-        """Position (0-based) of its laws at which every drive flank is, by mesh.
+        """Return the position (0-based) of its laws at which every drive flank is, by mesh.
 
-        As `flank_positions`, which has coast flanks as well.
+        See `flank_positions`, which includes coast flanks.
         """
         found = self.flank_positions(index)
         return {mesh: found[mesh] for mesh in self.meshes}
@@ -281,7 +281,7 @@ class Train:
     def flank_positions(
         self, index: At, rotation: Mapping[str, Any] | None = None
     ) -> dict[str, At]:
-        """Position (0-based) of its laws at which every flank is at position `index` (1-based).
+        """Return the position of its laws (0-based) of every flank at position `index` (1-based).
 
         In a mesh cycle all meshes go through theirs together, each flank from its own phase; over
         their common period each goes through its own. In a march a mesh whose teeth are known is at
@@ -290,7 +290,7 @@ class Train:
         rotation = rotation or self.rotations(index)
         count, held = self.positions, self.held_at or {}
         found: dict[str, Any] = {}
-        # Many flanks are where others are.
+        # Many flanks are at the same position.
         known: dict[tuple[Any, ...], Any] = {}
         together = self.march is None and self.period is None
         for mesh in self.meshes.values():
@@ -306,7 +306,7 @@ class Train:
         return {flank: np.asarray(at, dtype=np.intp) for flank, at in found.items()}
 
     def _passed(self, mesh: Mesh, step: Any, rotation: Mapping[str, Any]) -> Any:
-        """Part of its cycle that a mesh has passed since the first position [-]."""
+        """Return the fraction of its cycle that a mesh has passed since the first position [-]."""
         if self.march is None and self.period is not None:
             return step * self.period.cycles[mesh.name] % self.count / self.count
         driver = self.gears[mesh.driver]
@@ -316,12 +316,12 @@ class Train:
         return turned * driver.teeth / (2.0 * math.pi) % 1.0
 
     def levers(self, gear: str) -> dict[str, float]:
-        """Torque over a gear's shaft or spline, per unit of every flank's force [m]."""
+        """Return the torque over a gear's shaft or spline per unit of every flank's force [m]."""
         flanks = self.approaches.items()
         return {name: to.turning[gear] for name, to in flanks if gear in to.turning}
 
     def transmitted(self, gear: str, flank_force: Mapping[str, float]) -> float:
-        """Torque [N·m] that reaches a gear other than through its meshes: over its shaft or spline.
+        """Return the torque [N·m] that reaches a gear over its shaft or spline, not its meshes.
 
         Parameters
         ----------

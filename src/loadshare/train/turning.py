@@ -21,14 +21,14 @@ class Turning(NamedTuple):
     steps : int
         Number of positions.
     whole : float
-        Angle over all of them [rad].
+        Angle over all positions [rad].
     """
 
     steps: int
     whole: float
 
     def after(self, passed: Any) -> Any:
-        """Angle [rad] by which the input has turned after some positions, one count or many."""
+        """Return the angle [rad] by which the input has turned after `passed` positions."""
         return self.whole * passed / self.steps
 
 
@@ -42,7 +42,7 @@ def turning_of(
     """Return how far the input turns.
 
     In a mesh cycle the gears turn by one pitch of the gear of `cycle_gear`, or through the common
-    period of all meshes. In a march they turn through revolutions of its gear.
+    period of all meshes. In a march they turn through the given revolutions of its gear.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ def turning_of(
 
 
 def cycle_gear(gears: Mapping[str, Gear]) -> str | None:
-    """Return the gear one tooth of which is a mesh cycle.
+    """Return the gear whose pitch makes a mesh cycle.
 
-    The input gear, or else the nearest to it whose teeth are known; None if there is none.
+    It is the input gear, or else the nearest to it whose teeth are known; None if there is none.
     """
     return next((n for n, g in gears.items() if g.teeth is not None and g.relative), None)

@@ -1,14 +1,14 @@
 r"""Planetary sets: how fast every member turns, and which flanks its torque presses.
 
-In a set the speeds are those relative to the carrier c (Willis), the members' own less the
-carrier's about their axes; rigid links of any other kind are the same in a set at rest,
+In a planetary set, meshes link the speeds relative to the carrier c (Willis): the members' own
+speeds less the carrier's about their axes. Other meshes link speeds as in a set whose carrier is at
+rest, and shafts join equal speeds:
 
 .. math:: \pm r_i (\omega_i - \omega_c) = \pm r_j (\omega_j - \omega_c), \qquad \omega_a = \omega_b,
 
 each along the sense in which the member's rotation is counted, with the signs of `Mesh.counted`.
-Written as :math:`C \omega = 0` the
-torques that links pass on balance the load by the transpose, :math:`C^T f = T`. Source:
-formulation, section 12.
+Written as :math:`C \omega = 0`, the forces and torques f that links transmit balance the load by
+the transpose, :math:`C^T f = T`. Source: formulation, section 12.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from loadshare.train.seen import along, seen_from
 Ends = tuple[str, str]
 
 LOCKED = 1e-3
-"""How far speeds may contradict each other for rounding of radii, over the input's [-]."""
+"""How far speeds may contradict each other because radii are rounded, over the input's [-]."""
 NOISE = 1e-9
 """Share of the largest force, or of the input's speed, that is round-off [-]."""
 DRAWS, SPREAD = 32, 2.0
-"""How many stiffnesses of all links are tried, and the decades to either side of the roots of them:
-wide enough that a link is now next to rigid, now next to absent beside the others."""
+"""Number of draws of the links' stiffnesses, and the decades to either side over which their square
+roots are spread: wide enough that a link is almost rigid in some draws, almost absent in others."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,7 +96,7 @@ class Links:
         found, _, rank, _ = np.linalg.lstsq(matrix, due, rcond=1e-9)
         left = np.abs(matrix @ found - due)
         if left.max() > LOCKED:
-            # What has no part in the contradiction fits exactly.
+            # Rows that have no part in the contradiction are satisfied exactly.
             parts = [*self.names, *(f"{names[k]} (held)" for k in fixed)]
             holding = [part for part, off in zip(parts, left[:-1], strict=True) if off > LOCKED**2]
             text = f"{', '.join(holding[:-1])} and {holding[-1]}" if holding[1:] else holding[0]
@@ -108,19 +108,19 @@ class Links:
     def pressed(
         self, torques: Mapping[str, ArrayLike], free: Iterable[str]
     ) -> dict[str, tuple[Numbers, Flags]]:
-        """Tell which flank of every mesh loads press, and whether it may be the other one.
+        """Return which flank of every mesh loads press, and whether it may be the other one.
 
-        It may where statics leaves open how loads are shared, and some stiffnesses of the links
-        would press the one flank, others the other. Parallel branches that pass on a single load
-        press the same flanks in whatever way they share it; several loads, or power that may go
-        round a loop, need not.
+        It may be if statics leaves open how loads are shared, and some stiffnesses of the links
+        would press one flank, others the other. Parallel branches that transmit a single load press
+        the same flanks however they share it; with several loads, or power that may circulate in a
+        loop, this need not be so.
 
         Parameters
         ----------
         torques : mapping of str to array_like
             External torques [N·m], of one shape.
         free : iterable of str
-            Gears that turn, without those that the housing or the load holds.
+            Gears that neither the housing nor the load holds.
 
         Returns
         -------
@@ -137,7 +137,7 @@ class Links:
         return dict(zip(self.names, zip(signs, either, strict=True), strict=True))
 
     def open_to_stiffness(self, free: Iterable[str]) -> dict[str, bool]:
-        """Tell the force of which links statics leaves open, whatever the torques are.
+        """Return for every link whether statics leaves its force open, whatever the torques are.
 
         Parameters
         ----------
@@ -148,18 +148,18 @@ class Links:
         return dict(zip(self.names, _idle(balance, response).tolist(), strict=True))
 
     def _statics(self, free: Iterable[str]) -> tuple[list[int], Array, Array]:
-        """Gears that turn, their balance of torques, and the least forces that serve them."""
+        """Return the gears that turn, their torque balance, its pseudo-inverse (least forces)."""
         order = {name: k for k, name in enumerate(self.gears)}
         turning = [order[name] for name in free]
         balance = self.matrix[:, turning].T
         return turning, balance, np.linalg.pinv(balance, rcond=NOISE).astype(float, copy=False)
 
     def _either(self, balance: Array, response: Array, load: Array) -> Flags:
-        """Whether links may pass on loads (gears, ...) either way, (links, ...)."""
+        """Return whether links may transmit loads (gears, ...) either way, (links, ...)."""
         either = np.zeros((len(response), *load.shape[1:]), dtype=bool)
         if not _idle(balance, response).any():
             return either
-        # Loads are shared with the least energy, whatever the stiffness of each link.
+        # At each drawn set of stiffnesses, loads are shared with the least energy.
         root = 10.0 ** np.random.default_rng(0).uniform(-SPREAD, SPREAD, (DRAWS, len(response)))
         drawn = root[:, :, None] * np.linalg.pinv(balance * root[:, None, :], rcond=NOISE)
         force = np.tensordot(drawn, load, 1)
@@ -168,6 +168,6 @@ class Links:
 
 
 def _idle(balance: Array, response: Array) -> Flags:
-    """Whether forces in balance without a load may run through links: statics leaves those open."""
+    """Return which links can carry forces in balance without a load: statics leaves these open."""
     left = np.abs(np.eye(len(response)) - response @ balance)
     return np.asarray(left.max(axis=1, initial=0.0) > NOISE)
