@@ -1,7 +1,7 @@
-"""The contact problem of one meshing position: named, minimal, dimensionless.
+"""The contact problem of one position, with named coordinates and rows.
 
-A :class:`~loadshare.scene.scene.Scene` is everything the train does at one position, in SI units
-and with nothing left out. A :class:`~loadshare.contact.plan.Plan` says which of it is in play, and
+A :class:`~loadshare.scene.scene.Scene` is the whole train at one position, in SI units and with
+nothing left out. A :class:`~loadshare.contact.plan.Plan` says which parts of it are in play, and
 why the rest is not. A :class:`~loadshare.contact.programme.Programme` is what a solver sees.
 """
 

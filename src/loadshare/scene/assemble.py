@@ -1,4 +1,4 @@
-"""From elements and their numbers to a scene in SI: the same rows, gaps and laws, one by one."""
+"""Turn a structure and its loading into a scene in SI: the same rows, gaps and laws, one by one."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def scene_of(structure: Structure, situation: Situations, loading: Loading | Non
     ----------
     structure : Structure
     situation : Situations
-        Of one sample.
+        The situation of one sample.
     loading : Loading, optional
-        Its numbers, where they are at hand.
+        Its loading, if it has been computed already.
     """
     loading = loading or loading_of(structure, situation)
     columns, vectors = structure.columns, structure.vectors
@@ -80,7 +80,7 @@ def scene_of(structure: Structure, situation: Situations, loading: Loading | Non
 
 
 def _law(structure: Structure, loading: Loading, column: int) -> Law:
-    """Law of a spring or contact, in SI."""
+    """Return the law of a spring or contact, in SI."""
     force, length = structure.force, structure.length
     m = loading.tabulated[column]
     if m >= 0:
@@ -100,7 +100,7 @@ def _arc(situation: Situations, element: ArcElement, law: Law) -> ArcRow:
 def _source(
     structure: Structure, here: Situations, radial: RadialElement
 ) -> RadialLaw | RollingLaw | FollowingLaw:
-    """Law of a radial element, or what it follows from."""
+    """Return the law of a radial element, or the object from which it follows."""
     k, train = radial.number, structure.train
     if radial.kind == "ring":
         arrays = here.round_radius, here.round_stiffness, here.round_power

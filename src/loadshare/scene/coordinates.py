@@ -1,4 +1,4 @@
-"""Coordinates of a scene: which there are, and how gears move with them."""
+"""Coordinates of a scene: which there are, and how the motions of gears follow from them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Rotation:
 
 @dataclass(frozen=True, slots=True)
 class Coordinates:
-    """Coordinates of a train, and what never became one.
+    """Coordinates of a train, and those that were left out.
 
     Attributes
     ----------
@@ -39,13 +39,13 @@ class Coordinates:
     lag : ndarray, shape (gears, shafts)
         Rotation of every gear at zero coordinates, per clocking of every rigid shaft.
     displacement : mapping of gear to slice
-        Where the two displacement components of a moving gear are.
+        The two displacement components of a moving gear.
     slip : mapping of gear to slice
-        Where those of a slip are, of every spline that remembers it.
+        The two components of the slip of a spline that remembers it.
     frame : mapping of gear to ndarray, shape (2, 3)
-        In which the components are taken.
+        Unit vectors along which the components are taken.
     removed : tuple of (str, str)
-        What is no coordinate, and why.
+        Names of what is not a coordinate, and why.
     """
 
     names: tuple[str, ...]
@@ -62,11 +62,11 @@ class Coordinates:
         return len(self.names)
 
     def components(self, where: slice) -> Array:
-        """Matrix (2, n) that picks two components."""
+        """Return the matrix (2, n) that picks two components."""
         return np.asarray(np.eye(self.size)[where])
 
     def turned(self, *arms: tuple[str, float]) -> Array:
-        """Row (n,) of a sum of rotations, each times an arm [m]; a length, or an angle for 1."""
+        """Return the row (n,) of a sum of rotations times arms [m]; with arms of 1, of angles."""
         row = np.zeros(self.size)
         for gear, arm in arms:
             rotation = self.rotation[gear]
@@ -75,7 +75,7 @@ class Coordinates:
         return row
 
     def moved(self, gear: str) -> Array:
-        """Displacement of a gear as a matrix (3, n); zero for one that cannot move."""
+        """Return a gear's displacement as a matrix (3, n); zero if it cannot move."""
         matrix = np.zeros((3, self.size))
         if gear in self.displacement:
             matrix[:, self.displacement[gear]] = self.frame[gear].T
@@ -107,7 +107,7 @@ def coordinates_of(train: Train) -> Coordinates:
 def _rotations(
     train: Train, names: list[str], removed: list[tuple[str, str]]
 ) -> tuple[dict[str, Rotation], Array]:
-    """One rotation coordinate per set of gears on rigid shafts; none for sets that are held."""
+    """Return a rotation coordinate per set of gears on rigid shafts (none if held), and `lag`."""
     lag = np.zeros((len(train.gears), len(train.shafts)))
     sets: dict[str, str] = {}
     for seed in (*train.held, *train.gears):

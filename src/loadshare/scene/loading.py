@@ -1,4 +1,4 @@
-"""What varies from sample to sample, in the order and the units of the force method.
+"""The numbers that vary from sample to sample, in the order and the units of the force method.
 
 Errors, clearances, loads and compliances of many situations become loads f, gaps g and laws δ of
 the columns of :mod:`loadshare.scene.structure`. Source: formulation, section 11.
@@ -19,7 +19,7 @@ from loadshare.train.situations import Situations
 
 @dataclass(frozen=True, eq=False)
 class Loading:
-    """What varies, in the units of the force method; leading axes are S or 1.
+    """Numbers that vary, in the units of the force method; leading axes are S or 1.
 
     Attributes
     ----------
@@ -28,20 +28,21 @@ class Loading:
     load : ndarray, shape (S or 1, n)
         f.
     gap : ndarray, shape (S or 1, m)
-        g; for an arc its clearance is not here but in `clearance`.
+        g; the clearance of an arc is in `clearance` instead.
     bending, hertz : ndarray, shape (S or 1, m)
         b and c of every scalar element.
     tabulated : ndarray of int, shape (m,)
-        Number of the table of an element, −1 without.
+        Number of an element's table, −1 if it has none.
     tables : ndarray, shape (S or 1, tables, 2, points)
     nominal, shift : ndarray, shape (arcs, 3) and (S or 1, arcs, 3)
         d₀ of the arcs is their sum.
     clearance : ndarray, shape (S or 1, arcs)
     relative : ndarray, shape (arcs, 3, n)
-        Relative displacement of an arc's centres from the coordinates.
+        Matrices from the coordinates to the relative displacement of an arc's centres.
     radial : ndarray, shape (S or 1, radials, 7)
         First stiffness (K_w; 0 inside a ring), S1 (NaN for F_m/K_w), S2 or the ring's radius, F_m
-        (NaN where it follows the torque), τ/radius [1/m], stiffness beyond S2.
+        (NaN if it follows the torque), τ/radius [1/m], stiffness beyond S2, power of the force
+        there.
     carried : ndarray, shape (radials, m)
         Torque that reaches the gear of each element over its spline, per unit of each force [m].
     """
@@ -102,12 +103,12 @@ class Loading:
 
     @cached_property
     def root(self) -> Array:
-        """Cube root of the largest load of every sample, shape (S or 1,); 1 where there is none."""
+        """Cube root of the largest load of every sample, shape (S or 1,); 1 if there is none."""
         return np.cbrt(np.where(self.push > 0.0, self.push, 1.0))
 
     @cached_property
     def laws(self) -> bytes:
-        """What the structure of a set depends on: kinds of laws, compliances that do not vary."""
+        """Key of what an active set's structure depends on: kinds of laws, constant compliances."""
         first = self.radial[:, :, 0]
         constant = np.append(
             np.where(self.steady, self.bending[0], np.nan),
@@ -182,7 +183,7 @@ def _side_by_side(structure: Structure, blocks: list[Block], factor: float) -> A
             varying.append((columns, values))
         else:
             row[:, columns] = values * factor
-    # What is the same in all samples is written row by row at once.
+    # Values that are the same in all samples are written to all rows at once.
     table = np.empty((max((len(values) for _, values in varying), default=1), row.shape[1]))
     table[:] = row
     for columns, values in varying:
@@ -191,7 +192,7 @@ def _side_by_side(structure: Structure, blocks: list[Block], factor: float) -> A
 
 
 def _radials(structure: Structure, situations: Situations) -> Array:
-    """Numbers of every radial law, in the units of the force method."""
+    """Return the numbers of every radial law, in the units of the force method."""
     here, radials = situations, structure.radials
     count = max(map(len, (here.spline, here.round_radius, here.round_stiffness)))
     table = np.zeros((count, len(radials), 7))
@@ -211,7 +212,7 @@ def _radials(structure: Structure, situations: Situations) -> Array:
                 row[:, 1], row[:, 2], row[:, 3] = stick[:, k], reach[:, k], bound[:, k]
                 row[:, 4] = per_torque[:, k]
             case "friction":
-                # Level for ever.
+                # A level piece without end.
                 row[:, 2], row[:, 3], row[:, 5] = np.inf, bound[:, k], np.inf
             case _:
                 # A rigid ring.

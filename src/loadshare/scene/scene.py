@@ -1,4 +1,4 @@
-"""Everything that happens at one position, in SI: coordinates, rows and radial elements."""
+"""The contact problem of one position, in SI: coordinates, rows and radial elements."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class GearRadial(Radial):
     Attributes
     ----------
     gear : str
-        Whose displacement it limits.
+        Gear whose displacement it limits.
     """
 
     gear: str = field(kw_only=True)
@@ -45,16 +45,16 @@ class Scene(ContactProblem):
     arcs : tuple of ArcRow
     radials : tuple of GearRadial
     train, situation
-        Where it comes from.
+        What the scene was assembled from.
     springs : ndarray, shape (k, n)
         Directions of shafts and supports.
     rotation : mapping of gear to Rotation
     turned : mapping of gear to float
         Rotation at zero coordinates [rad], from clockings of rigid shafts.
     displacement : mapping of gear to slice
-        Where the two displacement components of a moving gear are.
+        The two displacement components of a moving gear.
     removed : tuple of (str, str)
-        What never became a coordinate or row, and why.
+        Names of what did not become a coordinate or row, and why.
     """
 
     radials: tuple[GearRadial, ...]
@@ -77,16 +77,16 @@ class Scene(ContactProblem):
         return self.situation.torques
 
     def force_unit(self) -> float:
-        """Force that the scene is measured by [N]: the largest external push, or 1 N at rest."""
+        """Return the unit of force of the scene [N]: the largest external push, or 1 N at rest."""
         pushes = [abs(t) / self.train.gears[g].base_radius for g, t in self.torques.items()]
         pushes.append(float(np.abs(self.situation.push).max(initial=0.0)))
         return max(pushes) or 1.0
 
     def length_unit(self) -> float:
-        """Length that the scene is measured by [m]: what flanks yield, or 1/1000 of their gaps.
+        """Return the unit of length [m]: the compression of flanks, or 1/1000 of their gaps.
 
-        Under a light load the gaps are far larger than the compressions; measured by the latter,
-        their size would overflow what a solver resolves.
+        Under a light load the gaps are far larger than the compressions; in units of the latter,
+        they would exceed the range that a solver resolves.
         """
         force = self.force_unit()
         flanks = [r for r in self.rows if r.kind == "drive flank"]
@@ -96,17 +96,17 @@ class Scene(ContactProblem):
         return max(yielded, CONTACT.of_gaps * max(abs(r.gap) for r in flanks))
 
     def first_torques(self) -> dict[str, float]:
-        """Return the whole input torque over every spline [N·m], to begin with."""
+        """Return a first guess of the torques over splines [N·m]: the whole input torque."""
         driving, gears = self.torques[self.train.input], self.train.gears
         return {r.name: driving / (gears[r.gear].ratio or 1.0) for r in self.radials}
 
     def angle(self, gear: str, x: Array) -> float:
-        """Rotation φ [rad] of a gear at the coordinates x."""
+        """Return the rotation φ [rad] of a gear at the coordinates x."""
         r = self.rotation[gear]
         return self.turned[gear] + (r.rate * float(x[r.index]) if r.index is not None else 0.0)
 
     def moved(self, gear: str, x: Array) -> Array:
-        """Displacement p (3,) [m] of a gear at the coordinates x."""
+        """Return the displacement p (3,) [m] of a gear at the coordinates x."""
         where = self.displacement.get(gear)
         if where is None:
             return np.zeros(3)

@@ -1,4 +1,4 @@
-"""Statics of elements that act: what balances a load, what holds itself, and what moves freely."""
+"""Statics of acting elements: what balances a load, self-balanced forces, unresisted moves."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Basis:
 
 
 def unresisted(directions: Array) -> Array:
-    """Orthonormal moves (n, l) across all of some directions (k, n)."""
+    """Return orthonormal moves (n, l) that are perpendicular to all of some directions (k, n)."""
     _, sizes, right = np.linalg.svd(directions, full_matrices=True)
     return np.asarray(right[_rank(sizes) :].T)
 
@@ -47,11 +47,12 @@ def _rank(sizes: Array) -> int:
 
 
 def basis_of(columns: Numbers, directions: Array) -> Basis:
-    """Return the statics of a set whose elements push along some directions (k, n)."""
+    """Return the statics of an active set whose elements push along some directions (k, n)."""
     left, sizes, right = np.linalg.svd(directions, full_matrices=True)
     rank = _rank(sizes)
     particular = left[:, :rank] / sizes[:rank] @ right[:rank]
     redundant = np.ascontiguousarray(left[:, rank:])
-    # Of an element that the load alone determines: a soft shaft winds by more than round-off bears.
+    # Rows of elements that the load alone determines are exactly 0: a soft shaft's large wind-up
+    # would magnify their round-off.
     redundant[np.abs(redundant).max(axis=1, initial=0.0) <= STATICS.nothing] = 0.0
     return Basis(columns, directions, particular, redundant, right[rank:].T)

@@ -6,7 +6,7 @@ Springs, flanks, stops, ring faces and radial elements all push along fixed dire
 
 with forces μ, coordinates x, external loads f, gaps g and compressions δ. Geometry alone fixes A,
 so it is reduced once per train; errors, clearances, loads and compliances only enter f, g and the
-laws. On a set of elements that act, the forces are
+laws. On an active set, the forces are
 
 .. math:: \mu = P f + N z, \qquad A^T P = 1,\; A^T N = 0,
 
@@ -39,16 +39,16 @@ from loadshare.train.train import Train
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """Where each kind of element has its columns.
+    """Columns of each kind of element.
 
     Attributes
     ----------
     shafts, supports, bends : slice
         Springs: elastic shafts, elastic supports, shafts of splines that remember their slip.
     flanks, stops, arcs : slice
-        Contacts; those of arcs turn with the coordinates.
+        Contacts; the directions of arcs turn with the coordinates.
     radials : slice
-        Two of every radial element.
+        Two columns of every radial element.
     """
 
     shafts: slice
@@ -61,7 +61,7 @@ class Columns:
 
     @classmethod
     def of(cls, counts: Iterable[int]) -> Columns:
-        """Put kinds of so many columns after one another."""
+        """Put kinds of elements with these numbers of columns one after another."""
         ends = list(accumulate(counts, initial=0))
         return cls(*(slice(*pair) for pair in pairwise(ends)))
 
@@ -95,9 +95,9 @@ class ArcElement:
     name : str
     ring : DrumRing
     drum, side : int
-        Number of the drum; which of its neighbours.
+        Number of the drum, and of its neighbour.
     relative : ndarray, shape (3, n)
-        Relative displacement of the two centres from the coordinates.
+        Matrix from the coordinates to the relative displacement of the two centres.
     """
 
     name: str
@@ -109,13 +109,13 @@ class ArcElement:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RadialElement:
-    """A spline or a round ring, or with memory a part of a spline.
+    """A spline or a round ring, or one part of a spline with memory.
 
     Attributes
     ----------
     name, gear : str
     kind : {"ring", "spline", "friction", "clearance"}
-        With memory a spline is its friction and its clearance.
+        A spline with memory is two elements, its friction and its clearance.
     number : int
         Of the round ring or spline.
     matrix : ndarray, shape (2, n)
@@ -141,14 +141,15 @@ class Structure:
     train : Train
     coordinates : Coordinates
     columns : Columns
-        In this order.
+        Columns of the elements, in this order.
     vectors : ndarray, shape (m, n)
-        A; rows of unit norm for springs, as they are for contacts. Arcs are taken at rest.
+        A; rows of springs are scaled to unit norm, those of contacts are not. Arcs are taken at
+        rest.
     names : tuple of str, length m
     kinds : tuple of str, length m
         "shaft", "support", "bending", "drive flank", "coast flank", "stop", "arc" or "radial".
     shafts : tuple of (int, float)
-        Number of every elastic shaft, and how many radians its wind-up is per unit.
+        Number of every elastic shaft, and its wind-up in radians per unit of its column.
     supports : tuple of (int, int)
         Number of the gear of every elastic support, and its axis.
     flanks : tuple of (int, Mesh, bool)
@@ -156,9 +157,9 @@ class Structure:
     arcs : tuple of ArcElement
     radials : tuple of RadialElement
     opposed : tuple of (int, int)
-        Numbers of the contacts that are the opposed arcs of one rigid ring. A float that rolls
-        between them moves across both; faces of both at once would wedge it in, unless the
-        neighbours give way.
+        Numbers of the contacts that are the opposed arcs of one ring, if its neighbours do not
+        move. A float that rolls between them moves across both; rigid faces of both at once would
+        wedge it in.
     force, length : float
         Units [N], [m], rounded to powers of 8 and of 2: scaling by them is exact, cube roots
         included, so that answers do not depend on them.
@@ -200,7 +201,7 @@ class Structure:
         return len(self.names[self.columns.contacts])
 
     def radial_column(self, j: int) -> int:
-        """First of the two columns of a radial element."""
+        """Return the first of the two columns of a radial element."""
         return int(self.columns.radials.start) + 2 * j
 
     @property
@@ -210,7 +211,7 @@ class Structure:
 
     @cached_property
     def removed(self) -> tuple[tuple[str, str], ...]:
-        """What never became a coordinate or an element, and why."""
+        """Names of what did not become a coordinate or an element, and why."""
         train = self.train
         flanks = [m.flank_name(False) for m in train.meshes.values() if math.isinf(m.backlash)]
         splines = [s.name for s in train.splines.values() if s.friction_force == 0.0]
@@ -275,7 +276,7 @@ class Structure:
 
     @cached_property
     def nominal(self) -> Array:
-        """Way of every arc from the neighbour's centre to its own at rest, shape (arcs, 3) [m]."""
+        """Vectors from the neighbours' centres to the arcs' own, at rest, shape (arcs, 3) [m]."""
         gears, rings = self.train.gears, [(a.ring, a.ring.neighbours[a.side]) for a in self.arcs]
         ways = [(gears[ring.gear], gears[neighbour]) for ring, neighbour in rings]
         found = [transverse(one.centre - other.centre, one.axis) for one, other in ways]
@@ -283,14 +284,14 @@ class Structure:
 
     @cached_property
     def relative(self) -> Array:
-        """Relative displacement of the arcs' centres from the coordinates, shape (arcs, 3, n)."""
+        """Relative displacement of the arcs' centres by coordinate, shape (arcs, 3, n)."""
         return np.array([a.relative for a in self.arcs]).reshape(-1, 3, self.size)
 
     @cached_property
     def pushed(self) -> Array:
         """Load on the coordinates per force on the gears, shape (3 gears, n).
 
-        A pin passes what pushes its planet on to the carrier.
+        A pin transmits the force on its planet to the carrier.
         """
         at, gears = self.coordinates, self.train.gears
         found = []
@@ -303,7 +304,7 @@ class Structure:
         return np.concatenate(found)
 
     def gaps_of_flanks(self, situations: Situations) -> Array:
-        """Gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
+        """Return the gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
         flat = situations.offset.reshape(len(situations.offset), -1)
         is_small = len(flat) < STATICS.samples or self.nearer.size <= STATICS.dense
         nearer = self.nearer if is_small else self._nearer_sparse
@@ -314,7 +315,7 @@ class Structure:
 
     @cached_property
     def _nearer_sparse(self) -> Any:
-        """The same without its zeros; SciPy has no types."""
+        """`nearer` as a sparse matrix; `Any`, since SciPy has no types."""
         from scipy.sparse import csr_array
 
         return csr_array(self.nearer)
@@ -326,11 +327,11 @@ class Structure:
 
     @cached_property
     def cache(self) -> dict[tuple[Any, ...], Any]:
-        """What an engine remembers of a set."""
+        """Quantities that engines keep for active sets."""
         return {}
 
     def kept(self, key: tuple[Any, ...], make: Callable[[], Any]) -> Any:
-        """Return what an engine needs of a set, made when it is first asked for."""
+        """Return a quantity that an engine needs for an active set, computed on first use."""
         found = self.cache.get(key)
         if found is None:
             found = make()
@@ -344,7 +345,7 @@ class Structure:
         return {}
 
     def basis(self, states: States) -> Basis:
-        """Return the statics of a set, computed once.
+        """Return the statics of an active set, computed once.
 
         Parameters
         ----------
@@ -447,7 +448,7 @@ def structure_of(train: Train) -> Structure:
 
 
 def _flank(at: Coordinates, train: Train, mesh: Mesh, drive: bool) -> tuple[str, str, Array]:
-    """Name, kind and row of a flank."""
+    """Return name, kind and row of a flank."""
     name = mesh.flank_name(drive)
     to = train.approaches[name]
     row = at.turned(*to.turning.items())
@@ -457,7 +458,7 @@ def _flank(at: Coordinates, train: Train, mesh: Mesh, drive: bool) -> tuple[str,
 
 
 def _radials(train: Train, at: Coordinates) -> Iterator[RadialElement]:
-    """Yield round rings, then splines, each whole, or with memory as friction and clearance."""
+    """Yield round rings, then splines, each as one element or, with memory, as two."""
     origin = np.zeros(2)
     for k, ring in enumerate(train.rounds):
         moved = at.components(at.displacement[ring.gear])

@@ -1,4 +1,4 @@
-"""Units of force and length that suit a train, so that all numbers of a scene are near one."""
+"""Units of force and length that suit a train, so that all numbers of a scene are of order one."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
 
 
 def units_of(structure: Structure, here: Situations) -> tuple[float, float]:
-    """Units of force [N] and length [m] that suit a train with these elements.
+    """Return the units of force [N] and length [m] that suit a train with these elements.
 
     Parameters
     ----------
     structure : Structure
     here : Situations
-        Of that train or of one of its shape, at its first position.
+        Situation of that train or of one of the same shape, at its first position.
     """
     force, length = _measures(structure, here)
     return 8.0 ** round(math.log(force, 8.0)), 2.0 ** round(math.log2(length))
 
 
 def _measures(structure: Structure, here: Situations) -> tuple[float, float]:
-    """Force and length that a scene is measured by (see `Scene`)."""
+    """Return typical force and length of a scene (see `Scene`)."""
     train, flanks = here.train, [(m, drives) for m, _, drives in structure.flanks]
     radius = [g.base_radius for g in train.gears.values()]
     force = float((np.abs(here.torque[0]) / radius).max(initial=0.0))
