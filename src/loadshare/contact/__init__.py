@@ -1,4 +1,4 @@
-"""Contact problems without any gear: laws, radial graphs, arcs; programmes, and what solves them.
+"""Contact problems without any gear: laws, radial graphs, arcs; programmes and their solvers.
 
 A :class:`ContactProblem` is a set of springs, loads and contacts; :func:`solve_contact` finds and
 judges its equilibrium. A :class:`~loadshare.contact.plan.Plan` says which contacts are in play, a
@@ -37,7 +37,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import what solves only when it is asked for: trains need the laws alone."""
+    """Import what solves only on demand: trains need the laws alone."""
     if name in ("ContactAnswer", "residuals", "solve_contact"):
         return getattr(import_module("loadshare.contact.answer"), name)
     raise AttributeError(f"module 'loadshare.contact' has no attribute {name!r}")

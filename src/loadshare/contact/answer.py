@@ -1,4 +1,4 @@
-"""Contact problems that are written explicitly: solved, and judged from the arrays alone."""
+"""Solve contact problems that are written explicitly, and judge answers from the arrays alone."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from loadshare.settings import CONTACT
 
 @dataclass(frozen=True, slots=True)
 class Residuals:
-    """What a claimed answer leaves of the equations, in forces and lengths of the problem.
+    """Residuals of a claimed answer, in forces and lengths of the problem.
 
     Attributes
     ----------
     balance : float
-        Of forces along the coordinates.
+        Largest unbalanced force along a coordinate.
     law : float
-        Between what contacts and graphs yield and what their laws say; overlap of open contacts.
+        Largest deviation of a contact or graph from its law, or overlap of an open contact.
     sign : float
-        Forces that pull.
+        Largest pull of a contact.
     """
 
     balance: float
@@ -44,7 +44,7 @@ class Residuals:
 
     @property
     def worst(self) -> float:
-        """The largest; NaN counts as infinite."""
+        """The largest residual; NaN counts as infinite."""
         every = (self.balance, self.law, self.sign)
         return max((v if v == v else np.inf) for v in every)
 
@@ -62,9 +62,9 @@ class ContactAnswer(Comparable):
     pull : mapping of radial element to ndarray, shape (2,)
         Force along its offset.
     undetermined : frozenset of str
-        Coordinates that the forces leave open; the place given is one of many.
+        Coordinates that the forces leave open; `place` has one of many possible values.
     residuals : Residuals
-        Found from the problem and the figures above, not from any solver.
+        Computed from the problem and the figures above, not by any solver.
     """
 
     problem: ContactProblem
@@ -90,9 +90,9 @@ def solve_contact(
     ----------
     problem : ContactProblem
     solver : {"clarabel", "osqp", "cvxpy"}
-        What identifies the active set, which is then solved exactly.
+        Back-end that identifies the active set, which is then solved exactly.
     method : {"newton", "picard", "power"}
-        How nonlinear laws are settled.
+        How nonlinear laws are treated.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def solve_contact(
     Raises
     ------
     ValueError
-        If the arrays do not belong together; the message names them.
+        If the arrays do not fit together; the message names them.
     Refused
         If no equilibrium was found.
     """
@@ -172,11 +172,11 @@ def residuals(
 def _force_scale(
     problem: ContactProblem, x: Array, force: Mapping[str, float], laws: Mapping[str, RadialLaw]
 ) -> float:
-    """Force that a claim is measured by: the largest of loads and of what yields where it is.
+    """Return the force that a claim is measured by: the largest load or visible elastic force.
 
-    A force that does not show in its place does not count: reactions of rigid limits could be
-    arbitrarily large and would hide what is out of balance. So could forces of what hardly yields,
-    within the lengths that a claim may be off.
+    A force that no displacement confirms does not count: reactions of rigid limits could be
+    arbitrarily large and would hide an imbalance. So could forces of elements that hardly yield,
+    within the lengths by which a claim may be off.
     """
     yields = CONTACT.yields * problem.length_unit()
     rounding = problem.size * np.finfo(float).eps * np.abs(x)
@@ -188,7 +188,7 @@ def _force_scale(
 
 
 def _shown(row: Row, force: float, x: Array, yields: float) -> float:
-    """Least force of a contact that its claim and its place agree on, up to a length."""
+    """Return the least force of a contact on which claim and place agree, up to a length."""
     if not force > 0.0:
         return 0.0
     compressed = min(row.law.compression(force), float(row.vector @ x) - row.gap) - yields
@@ -196,9 +196,10 @@ def _shown(row: Row, force: float, x: Array, yields: float) -> float:
 
 
 def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: float) -> float:
-    """Distance of a radial element from its graph, in forces and lengths of the problem.
+    """Return a radial element's distance from its graph, in forces and lengths of the problem.
 
-    Beside that, what of its force does not point along the offset, at rest in any direction.
+    It is at least the part of its force that does not point along the offset; without an offset the
+    force may have any direction.
     """
     radius, size = float(np.linalg.norm(offset)), float(np.linalg.norm(pull))
     across = 0.0
@@ -209,17 +210,17 @@ def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: 
 
 
 def _nowhere(problem: ContactProblem, place: Mapping[str, float]) -> list[str]:
-    """Return coordinates so far away that their last digit is longer than the problem.
+    """Return coordinates so large that their last digit exceeds the problem's unit of length.
 
-    Where the load is exactly the friction along a way that nothing else resists, forces balance
-    ever better the farther a body goes, and nowhere on the way.
+    If the load is exactly the friction along a move that nothing else resists, forces balance ever
+    better the farther a body moves, but never exactly.
     """
     far = problem.length_unit() / np.finfo(float).eps
     return [name for name, value in place.items() if abs(value) > far]
 
 
 def _answer(problem: ContactProblem, settled: Settled) -> ContactAnswer:
-    """Turn what was settled into an answer and judge it."""
+    """Turn the outcome of the outer loop into an answer and judge it."""
     force = {r.name: max(settled.forces.get(r.name, 0.0), 0.0) for r in problem.rows_at(settled.x)}
     pull = settled.pulls(problem)
     place = dict(zip(problem.coordinates, settled.x.tolist(), strict=True))

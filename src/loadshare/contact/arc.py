@@ -46,16 +46,16 @@ class Arc:
         return np.asarray(self.nominal + self.shift)
 
     def normal(self, relative: Array) -> Array:
-        """Unit outward push on the body at the relative displacement Δ (3,) [m]."""
+        """Return the unit outward push on the body at the relative displacement Δ (3,) [m]."""
         d = self.nominal if self.beyond(relative) else self.start + relative
         return d / math.sqrt(float(d @ d))
 
     def beyond(self, relative: Array) -> bool:
-        """Whether Δ (3,) [m] leads past the neighbour, where no body can be."""
+        """Return whether Δ (3,) [m] leads past the neighbour, where no body can be."""
         return not float(self.nominal @ (self.start + relative)) > 0.0
 
     def margin(self, relative: Array) -> float:
-        """Distance beyond the arc [m], |d₀ + Δ| − a + c_x, free of cancellation for small Δ.
+        """Return the distance beyond the arc [m], |d₀ + Δ| − a + c_x, accurate for small Δ.
 
         At rest and without errors it is the clearance, to the last digit.
         """
@@ -65,18 +65,18 @@ class Arc:
         return float(rolled(self.nominal, moved)[2]) + self.clearance
 
     def face(self, relative: Array) -> tuple[Array, float]:
-        """Tangent half-plane at Δ: unit normal n (3,) and bound g [m] of n·Δ ≥ −g."""
+        """Return the tangent half-plane at Δ: unit normal n (3,) and bound g [m] of n·Δ ≥ −g."""
         n = self.normal(relative)
         return n, self.margin(relative) - float(n @ relative)
 
 
 def rolled(nominal: Array, moved: Array) -> tuple[Array, Array, Array]:
-    """Ways between centres, their lengths, and by how much these grew [m], free of cancellation.
+    """Return vectors between centres, their lengths, and the growth of these without cancellation.
 
     Parameters
     ----------
     nominal, moved : ndarray, shape (…, 3)
-        Way at rest, and what is added to it [m].
+        Vector at rest, and the displacement added to it [m].
     """
     d = nominal + moved
     length, before = np.sqrt((d * d).sum(axis=-1)), np.sqrt((nominal * nominal).sum(axis=-1))

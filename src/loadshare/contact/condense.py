@@ -1,7 +1,7 @@
-"""Coordinates that only springs touch, condensed out once per problem (formulation, section 11).
+"""Condense coordinates that only springs touch, once per problem (formulation, section 11).
 
-A coordinate in no contact row and no radial element follows linearly from the others: a flange
-between two torsion shafts, say. It need not be in any programme.
+A coordinate in no contact row and no radial element, such as a flange between two torsion shafts,
+follows linearly from the others. It need not be in any programme.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which rigid limits cannot hold together, if any."""
+"""Find rigid limits that contradict one another."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class Overlap:
     Attributes
     ----------
     size : float
-        By how much, in the unit of lengths; negative where all have room.
+        The largest overlap there, in the unit of length; negative if all rows leave room.
     place : ndarray, shape (size,)
         In that unit.
     names : tuple of str
-        Rows that leave it no room.
+        Rows that determine it.
     """
 
     size: float
@@ -44,16 +44,15 @@ def least_overlap(rows: Sequence[Row], size: int, unit: float) -> Overlap | None
 
     .. math:: \min_{x, t} t \quad \text{s.t.}\; a_e\cdot x - t \le g_e
 
-    Where it is positive the rows contradict one another, and those with a multiplier are those that
-    do.
+    If it is positive the rows contradict one another, namely those with a multiplier.
 
     Parameters
     ----------
     rows : sequence of Row
     size : int
-        Coordinates.
+        Number of coordinates.
     unit : float
-        Of lengths [m].
+        Unit of length [m].
     """
     from scipy.optimize import linprog
 
@@ -73,7 +72,7 @@ def least_overlap(rows: Sequence[Row], size: int, unit: float) -> Overlap | None
 
 
 def is_rigid(row: Row) -> bool:
-    """Whether nothing yields at a row."""
+    """Return whether nothing yields at a row."""
     return isinstance(row.law, PowerLaw) and row.law.is_rigid
 
 
@@ -86,14 +85,15 @@ def rounds_of(problem: ContactProblem) -> Rounds:
 def squeezing(
     rows: Sequence[Row], rounds: Rounds, size: int, unit: float, overlap: float
 ) -> tuple[str, ...]:
-    r"""Return the limits that leave no place; empty if all can hold.
+    r"""Return the limits that contradict one another; empty if all can hold.
 
-    They are those of the least overlap t of any displacement (see `least_overlap`), with
+    They determine the least overlap t of any displacement (see `least_overlap`), to which round
+    limits j add
 
     .. math:: \lVert P_j x - m_j\rVert - t \le R_j
 
-    of round limits j besides. These count by tangents, which leave more room, so that a positive
-    overlap is one all the same.
+    Tangents stand for these limits. They leave more room, so that a positive overlap is a proof all
+    the same.
 
     Parameters
     ----------
@@ -101,11 +101,11 @@ def squeezing(
         Rigid ones.
     rounds : list of (Radial, float)
     size : int
-        Coordinates.
+        Number of coordinates.
     unit : float
-        Of lengths [m], enlarged where a gap is larger.
+        Unit of length [m], enlarged if a gap is larger.
     overlap : float
-        In that unit, what counts as round-off.
+        Overlap in that unit that counts as round-off.
     """
     rows = [*rows, *(_tangent(r, reach, along) for r, reach in rounds for along in AXES)]
     if not rows:
@@ -130,7 +130,7 @@ def squeezing(
 
 
 def _tangent(radial: Radial, reach: float, along: Array) -> Row:
-    """Half-plane that holds a round limit, where that meets a direction (2,)."""
+    """Return the tangent half-plane that contains a round limit, in a direction (2,)."""
     return Row(
         radial.name,
         "stop",
@@ -143,11 +143,11 @@ def _tangent(radial: Radial, reach: float, along: Array) -> Row:
 def conflict(problem: ContactProblem) -> tuple[str, ...]:
     """Return the rigid limits that contradict one another; empty if all can hold.
 
-    Arcs leave room that turns with the place; they are not judged here.
+    Arcs are not judged here: the half-plane that they leave turns with the displacement.
     """
     rows = []
     for row in filter(is_rigid, problem.rows):
         norm = float(np.linalg.norm(row.vector))
         rows.append(replace(row, vector=row.vector / norm, gap=row.gap / norm))
-    # The programme is solved to some 1e-9 of the unit: less than that is no proof.
+    # The programme is solved to some 1e-9 of the unit: a smaller overlap proves nothing.
     return squeezing(rows, rounds_of(problem), problem.size, 0.0, PLACES.pushed)

@@ -1,4 +1,4 @@
-"""The true potential energy of a plan: what the Newton form descends."""
+"""The true potential energy of a plan, which the Newton form of the outer loop lowers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from loadshare.contact.radial import RadialLaw
 
 
 def potential(problem: ContactProblem, plan: Plan, laws: dict[str, RadialLaw], x: Array) -> float:
-    """½xᵀHx − fᵀx + Σ U + Σ W [J] of what is in play, rigid contacts taken as satisfied."""
+    """Return ½xᵀHx − fᵀx + Σ U + Σ W [J] of all in play, rigid contacts taken as satisfied."""
     total = float(0.5 * x @ problem.stiffness @ x - problem.load @ x)
     for row in problem.rows_at(x):
         role = plan.rows[row.name]

@@ -1,9 +1,9 @@
-"""The exact solve on an identified active set, and the exchange of what was wrongly identified.
+"""The exact solve on an identified active set, and the exchange of wrongly identified elements.
 
-An interior-point answer says roughly where every contact and every radial graph is. Here that
-set is fixed, the remaining (smooth) equations are solved to round-off by Newton's method, the signs
-are checked, and rows or places whose sign is wrong are exchanged. Kinks therefore never depend on a
-small interior-point number.
+An interior-point answer tells roughly which contacts are closed and where radial elements are on
+their graphs. Here this active set is fixed, the remaining (smooth) equations are solved to
+round-off by Newton's method, the signs are checked, and rows or graph states with a wrong sign are
+exchanged. Kinks therefore never depend on a small interior-point number.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ class GraphState:
 
 @dataclass(frozen=True, slots=True)
 class ActiveSet:
-    """Closed rows and the places of the radial elements."""
+    """Closed rows, and the states of the radial elements on their graphs."""
 
     closed: tuple[bool, ...]
     graph_states: tuple[GraphState, ...]
 
     def fits(self, programme: Programme) -> bool:
-        """Whether the set speaks of the rows and graphs of this programme."""
+        """Return whether the set fits the rows and graphs of a programme."""
         graphs = [len(cone.law.pieces) for cone in programme.cones]
         return (
             len(self.closed) == len(programme.gaps)
@@ -53,7 +53,7 @@ class ActiveSet:
 
 
 def first_guess(programme: Programme) -> ActiveSet:
-    """Assumed rows closed, everything else open and on its first piece."""
+    """Return the set with assumed rows closed, all others open, graphs on their first part."""
     start = (GraphState(0, corner=cone.law.step(0)[1] > 0.0) for cone in programme.cones)
     return ActiveSet(tuple(bool(c) for c in programme.assumed_closed), tuple(start))
 
@@ -62,7 +62,7 @@ def identify(programme: Programme, point: Point) -> ActiveSet:
     """Read the active set from an approximate answer.
 
     A row is closed if its force, turned into a length by the row's compliance, exceeds its gap. A
-    radial element is put where its graph is nearest.
+    radial element is put on the nearest part of its graph.
     """
     forces = np.maximum(point.forces, 0.0)
     compressed = programme.linear * forces + programme.hertz * np.cbrt(forces) ** 2
@@ -86,25 +86,26 @@ def solve_exact(
 ) -> tuple[Point, ActiveSet] | None:
     """Solve on an active set and exchange until every sign is right.
 
-    All wrong signs are exchanged at once; when a set comes back, one at a time by least index,
-    which ends for a positive definite programme.
+    All wrong signs are exchanged at once; once a set recurs, one at a time by least index, which
+    terminates for a positive definite programme.
 
     Parameters
     ----------
     programme : Programme
     guess : ActiveSet
     start : Point, optional
-        Where Newton's method begins; it matters only for curved places (radial graphs, Hertz laws).
+        Where Newton's method begins; it matters only for nonlinear parts (radial graphs, Hertz
+        laws).
     rounds : int
         Exchanges allowed; 0 allows as many as the programme's size justifies.
     work : Work, optional
-        Newton steps allowed; as many as it takes by default.
+        Newton steps allowed; unlimited by default.
     stay : bool
-        Leave coordinates that a set does not determine where they are; by default they go to their
-        least norm, where contacts that carry nothing may be violated.
+        Leave coordinates that a set does not determine where they are; by default they take their
+        least norm, which may violate contacts that carry nothing.
     shared : bool
-        Leave forces that a set does not determine as `start` shares them; by default they go to
-        their least norm, where friction may hold more than it can.
+        Leave forces that a set does not determine as `start` shares them; by default they take
+        their least norm, at which friction may exceed its bound.
 
     Returns
     -------
@@ -132,7 +133,7 @@ def solve_exact(
             one_only = True
             better = _exchange(programme, active, point, one_only)
         elif better in seen and not settled:
-            # Newton's steps end nowhere where what counts as slipping does not move at all.
+            # Newton's method does not converge if an element that counts as slipping does not move.
             better = next((s for s in _held_again(programme, better) if s not in seen), better)
         seen.add(better)
         active, start = better, point
@@ -140,10 +141,10 @@ def solve_exact(
 
 
 def _balances(programme: Programme, point: Point) -> bool:
-    """Whether forces balance to what a claim may leave.
+    """Return whether forces balance within the tolerance of a claim.
 
-    The force of what slips has no direction where others hold it at its centre: there Newton's
-    steps end anywhere.
+    The force of a slipping element has no direction if others hold it at its centre: Newton's
+    method may then end anywhere.
     """
     pushed = [programme.load, -programme.stiffness @ point.x, -programme.rows.T @ point.forces]
     pushed += [-c.matrix.T @ f for c, f in zip(programme.cones, point.cone_forces, strict=True)]
@@ -152,10 +153,11 @@ def _balances(programme: Programme, point: Point) -> bool:
 
 
 def _held_again(programme: Programme, active: ActiveSet) -> Iterator[ActiveSet]:
-    """Put elements that slip from the first back where friction holds them: all, then each alone.
+    """Yield sets in which elements that slip from the first stick again: all, then each alone.
 
-    Under exactly its friction a disc is in equilibrium at rest too, and nothing says how far it
-    slips. Of two that hold the same body at different places only one can be at rest.
+    Under a force of exactly its friction, an element is also in equilibrium at rest, and nothing
+    determines how far it slips. Of two that hold the same body at different places only one can be
+    at rest.
     """
     states = active.graph_states
     slipping = [
@@ -172,7 +174,7 @@ def _held_again(programme: Programme, active: ActiveSet) -> Iterator[ActiveSet]:
 
 
 def at_rest(programme: Programme) -> Point:
-    """Return the point where nothing has moved and nothing pushes."""
+    """Return the point without any displacement or force."""
     return Point(
         np.zeros(programme.stiffness.shape[0]),
         np.zeros(len(programme.gaps)),
@@ -188,10 +190,10 @@ def _solve_fixed(
     stay: bool,
     shared: bool,
 ) -> tuple[Point, bool] | None:
-    """Newton's method on the smooth equations of an active set; a point, and whether it settled.
+    """Solve the smooth equations of an active set by Newton's method; return if it settled too.
 
-    On a wrong active set the equations may have no solution; where the steps lead still shows what
-    to exchange.
+    On a wrong active set the equations may have no solution; the point that the steps reach still
+    shows what to exchange.
     """
     x, forces, cone_forces = start.x, start.forces, start.cone_forces
     curved = bool(programme.cones) or bool(programme.hertz.any())
@@ -217,7 +219,7 @@ def _solve_fixed(
 def _newton_system(
     programme: Programme, active: ActiveSet, at: Point, stay: bool, shared: bool
 ) -> Point | None:
-    """One Newton step, in the absolute form that a linear problem solves at once."""
+    """Take one Newton step, in the absolute form that solves a linear problem at once."""
     size = programme.stiffness.shape[0]
     closed = np.array(active.closed, dtype=bool)
     stiffness, load = programme.stiffness.copy(), programme.load.copy()
@@ -272,12 +274,12 @@ def _newton_system(
 
 
 def _nearest_share(stresses: Array, wanted: Array) -> Array:
-    """Combine forces that balance one another, as near as they come to what is wanted."""
+    """Return the combination of self-balanced forces that is nearest to what is wanted."""
     return np.asarray(stresses @ np.linalg.lstsq(stresses, wanted, rcond=None)[0])
 
 
 def _row_tangents(programme: Programme, forces: Array) -> tuple[Array, Array]:
-    """Tangent compliances and gaps of the rows at the current forces."""
+    """Return tangent compliances and gaps of the rows at the current forces."""
     if not programme.hertz.any():
         return programme.linear, programme.gaps
     root = np.cbrt(np.maximum(forces, CONTACT.least_force))
@@ -288,7 +290,7 @@ def _row_tangents(programme: Programme, forces: Array) -> tuple[Array, Array]:
 
 
 def _piece_force(cone: Cone, graph_state: GraphState, offset: Array) -> Array:
-    """Force of a radial element on a piece, as a vector along its offset."""
+    """Return the force of a radial element on a piece, as a vector along its offset."""
     piece = cone.law.pieces[graph_state.piece]
     begin = cone.law.start(graph_state.piece)
     radius = _size(offset)
@@ -300,7 +302,7 @@ def _piece_force(cone: Cone, graph_state: GraphState, offset: Array) -> Array:
 def _cone_tangent(
     cone: Cone, graph_state: GraphState, x: Array, force: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Tangent (2, 2), force at x (2,), multiplier directions (d, 2) and their bounds (d,)."""
+    """Return tangent (2, 2), force at x (2,), multiplier directions (d, 2) and their bounds."""
     offset = cone.offset(x)
     radius = _size(offset)
     if graph_state.corner:
@@ -324,14 +326,14 @@ def _cone_tangent(
     along = offset / radius
     size = piece.force + piece.stiffness * (radius - begin)
     tangent = piece.stiffness * (along[:, None] * along)
-    # Beyond the piece the true tangent across the radius is too soft to find the way back.
+    # Beyond the piece the true tangent across the radius is too soft for Newton's method to return.
     near = min(radius, begin + piece.length)
     tangent = tangent + max(size, 0.0) / near * (_BOTH - along[:, None] * along)
     return tangent, size * along, _NONE, np.zeros(0)
 
 
 def _size(vector: Array) -> float:
-    """Length of a vector, without what `numpy.linalg.norm` asks first."""
+    """Return the length of a vector, without the checks of `numpy.linalg.norm`."""
     return math.sqrt(vector @ vector)
 
 
@@ -341,7 +343,7 @@ def _direction(force: Array) -> Array:
 
 
 def _exchange(programme: Programme, active: ActiveSet, point: Point, one_only: bool) -> ActiveSet:
-    """Flip rows with the wrong sign and move radial elements off places they have left."""
+    """Flip rows with the wrong sign and move radial elements off states that they have left."""
     force_band = CONTACT.sign + CONTACT.sign_of_size * float(np.abs(point.forces).max(initial=0.0))
     length_band = CONTACT.sign + CONTACT.sign_of_size * float(np.abs(point.x).max(initial=0.0))
     wrong: list[tuple[float, int]] = []
@@ -373,7 +375,7 @@ def _exchange(programme: Programme, active: ActiveSet, point: Point, one_only: b
 def _misplaced(
     cone: Cone, graph_state: GraphState, point: Point, j: int, force_band: float, length_band: float
 ) -> tuple[float, GraphState]:
-    """By how many bands a radial element is off its place, and where it should be instead."""
+    """Return by how many bands a radial element is off its graph state, and its proper state."""
     law, k = cone.law, graph_state.piece
     offset = cone.offset(point.x)
     if graph_state.corner:

@@ -1,4 +1,4 @@
-"""What a solve can find instead of an answer, and how long it may look."""
+"""How a solve can end without an answer, and how much work it may do."""
 
 import math
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ class Unsolved(RuntimeError):  # noqa: N818 -- a finding, not a fault
 
 @dataclass(slots=True)
 class Work:
-    """Newton steps of exact solves that are left to those who look for one answer."""
+    """Newton steps that exact solves may still take in the search for one answer."""
 
     left: float = math.inf
 
     def step(self) -> None:
-        """Take one.
+        """Count one step.
 
         Raises
         ------

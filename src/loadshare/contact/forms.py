@@ -1,6 +1,6 @@
-r"""A programme in the forms that others solve: QP, linear complementarity, cones, CVXPY.
+r"""A programme in the forms that other solvers take: QP, linear complementarity, cones, CVXPY.
 
-Each form knows its variables by name and reads an answer back as a point of the programme. All are
+Each form names its variables and reads an answer back as a point of the programme. All are
 dimensionless. The quadratic form is
 
 .. math:: \min_z \; \tfrac12 z^\mathsf{T} P z + q^\mathsf{T} z
@@ -44,7 +44,7 @@ class QuadraticForm:
     lower, upper : ndarray, shape (r,)
         l (−∞ where there is none) and u.
     variables : tuple of str
-        Coordinates, then what every compliant contact yields, over √b.
+        Coordinates, then the compression of every compliant contact over √b.
     rows : tuple of str
         Contacts in the order of A.
     """
@@ -67,7 +67,7 @@ class QuadraticForm:
 class ComplementarityForm:
     """A programme without radial elements and Hertz laws as a linear complementarity problem.
 
-    Where springs hold every coordinate the unknowns z are the forces alone, and M is a compliance
+    If springs hold every coordinate, the unknowns z are the forces alone, and M is a compliance
     matrix; otherwise z holds positive and negative parts of the coordinates, then the forces.
 
     Attributes
@@ -103,7 +103,7 @@ def quadratic_form(programme: Programme) -> QuadraticForm:
     Raises
     ------
     ValueError
-        If it has radial elements or Hertz laws, which no QP has; the message names them.
+        If it has radial elements or Hertz laws, which a QP cannot express; the message names them.
     """
     _only_linear(programme, "a QP")
     form = conic_form(programme)
@@ -127,7 +127,7 @@ def quadratic_form(programme: Programme) -> QuadraticForm:
 def complementarity_form(programme: Programme) -> ComplementarityForm:
     """Write a programme as a linear complementarity problem.
 
-    Contacts that are taken as closed become contacts that may open: their sign was verified.
+    Contacts that are assumed closed become contacts that may open: their sign has been verified.
 
     Raises
     ------

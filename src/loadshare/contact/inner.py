@@ -1,4 +1,4 @@
-"""One programme solved: by an active set that still holds, or a back-end and the exact solve."""
+"""Solve one programme: on an active set that still holds, or by a back-end and the exact solve."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from loadshare.contact.proximal import solve_proximal
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Inner:
-    """Answer of one programme, its active set, and how it came about."""
+    """Answer of one programme, its active set, and how it was found."""
 
     point: Point
     active: ActiveSet | None
@@ -36,7 +36,7 @@ def solve_programme(
     warm : Inner or None
         Answer of a neighbouring programme (the pass before); its active set is tried first.
     polish : bool
-        Solve exactly on the identified active set.
+        Whether to solve exactly on the identified active set.
     work : Work, optional
         See `solve_exact`.
 
@@ -84,11 +84,11 @@ def solve_near(programme: Programme, point: Point) -> tuple[Point, ActiveSet]:
 def _from_rough(
     programme: Programme, rough: Point, work: Work | None
 ) -> tuple[Point, ActiveSet, str]:
-    """Solve exactly, given an answer of a few digits; also tell how.
+    """Solve exactly, given an answer of a few digits; also return how.
 
-    Coordinates that forces leave open go to their least norm. Where contacts that carry nothing
-    close and open there without end, they stay where the answer has them: an interior point stands
-    clear of such contacts.
+    Coordinates that forces leave open take their least norm. If contacts that carry nothing close
+    and open there without end, these coordinates stay where the answer has them: an interior point
+    keeps clear of such contacts.
     """
     guess = identify(programme, rough)
     exact = solve_exact(programme, guess, rough, work=work)

@@ -1,4 +1,4 @@
-"""Symmetric saddle-point systems solved to round-off, rank defects settled by least norm."""
+"""Symmetric saddle-point systems, solved to round-off; rank defects are settled by least norm."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from loadshare.settings import CONTACT
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solved:
-    """Solution of a system, and what it leaves free.
+    """Solution of a system, and what it leaves open.
 
     Attributes
     ----------
     values : ndarray, shape (N,)
     moves : ndarray, shape (size, f)
-        Directions in which its coordinates are free.
+        Directions in which the coordinates are free.
     stresses : ndarray, shape (N - size, s)
         Forces that balance one another and move nothing.
     """
@@ -43,7 +43,7 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
     Returns
     -------
     Solved or None
-        None if the system contradicts itself or lies beyond all numbers.
+        None if the system contradicts itself or its numbers are not finite.
     """
     from scipy.linalg import lapack
 
@@ -71,7 +71,7 @@ def _determined(values: Array, size: int) -> Solved:
 
 
 def _equilibrate(matrix: Array) -> Array:
-    """Symmetric scaling that brings every row's largest entry near 1."""
+    """Return a symmetric scaling that brings every row's largest entry near 1."""
     scale = np.ones(len(matrix))
     for _ in range(CONTACT.equilibrated):
         largest = np.abs(matrix * scale[:, None] * scale).max(axis=1)

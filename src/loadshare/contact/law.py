@@ -21,25 +21,25 @@ from loadshare.settings import CONTACT
 
 @runtime_checkable
 class Law(Protocol):
-    """What every compliance law answers."""
+    """Interface of every compliance law."""
 
     def compression(self, force: float) -> float:
-        """Compression [m] under `force` [N]."""
+        """Return the compression [m] under `force` [N]."""
 
     def force(self, compression: float) -> float:
-        """Force [N] that gives `compression` [m]; 0 for an open contact."""
+        """Return the force [N] that gives `compression` [m]; 0 for an open contact."""
 
     def secant(self, force: float) -> float:
-        """Secant compliance δ/F [m/N]; its limit at F = 0 may be infinite."""
+        """Return the secant compliance δ/F [m/N]; its limit at F = 0 may be infinite."""
 
     def tangent(self, force: float) -> tuple[float, float]:
-        """Tangent compliance [m/N] and the offset [m] of the tangent line at `force`."""
+        """Return the tangent compliance [m/N] and the offset [m] of the tangent line at `force`."""
 
     def complementary(self, force: float) -> float:
-        """Complementary energy ∫δ dF [J]."""
+        """Return the complementary energy ∫δ dF [J]."""
 
     def energy(self, compression: float) -> float:
-        """Strain energy ∫F dδ [J]; 0 for an open contact."""
+        """Return the strain energy ∫F dδ [J]; 0 for an open contact."""
 
     def scaled(self, force_unit: float, length_unit: float) -> Law:
         """Return the same law for F in units of `force_unit` and δ in units of `length_unit`."""
@@ -75,13 +75,13 @@ class PowerLaw:
         return self.b == 0.0 and self.c == 0.0
 
     def compression(self, force: float) -> float:
-        """Compression bF + cF^(2/3) [m]."""
+        """Return the compression bF + cF^(2/3) [m]."""
         if self.c == 0.0:
             return self.b * force
         return self.b * force + self.c * math.cbrt(force) ** 2
 
     def force(self, compression: float) -> float:
-        """Force [N]: the root of b y³ + c y² = δ, y = F^(1/3).
+        """Return the force [N]: the root of b y³ + c y² = δ, y = F^(1/3).
 
         Both single-term roots are upper bounds, and the cubic is convex and increasing, so Newton's
         method descends monotonically from the smaller bound and stops at round-off.
@@ -107,13 +107,13 @@ class PowerLaw:
         return y**3
 
     def secant(self, force: float) -> float:
-        """Secant compliance b + cF^(-1/3) [m/N]."""
+        """Return the secant compliance b + cF^(-1/3) [m/N]."""
         if self.c == 0.0:
             return self.b
         return self.b + self.c / math.cbrt(force) if force > 0.0 else math.inf
 
     def tangent(self, force: float) -> tuple[float, float]:
-        """Tangent compliance b + ⅔cF^(-1/3) [m/N] and offset ⅓cF^(2/3) [m]."""
+        """Return the tangent compliance b + ⅔cF^(-1/3) [m/N] and its offset ⅓cF^(2/3) [m]."""
         if self.c == 0.0:
             return self.b, 0.0
         root = math.cbrt(force)
@@ -122,11 +122,11 @@ class PowerLaw:
         return self.b + 2.0 / 3.0 * self.c / root, self.c * root**2 / 3.0
 
     def complementary(self, force: float) -> float:
-        """½bF² + ⅗cF^(5/3) [J]."""
+        """Return ½bF² + ⅗cF^(5/3) [J]."""
         return 0.5 * self.b * force**2 + 0.6 * self.c * math.cbrt(force) ** 5
 
     def energy(self, compression: float) -> float:
-        """Conjugate of the complementary energy, Fδ − U*(F) [J]."""
+        """Return the conjugate of the complementary energy, Fδ − U*(F) [J]."""
         if compression <= 0.0 or self.is_rigid:
             return 0.0
         force = self.force(compression)
@@ -140,7 +140,7 @@ class PowerLaw:
 
 
 def roots(b: Array, c: Array, compression: Array) -> Array:
-    """F^(1/3) of many contacts with c > 0 that are compressed, from above as in `PowerLaw.force`.
+    """Return F^(1/3) of many compressed contacts with c > 0, from above as in `PowerLaw.force`.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ RIGID = PowerLaw(0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class TableLaw:
-    """A law given by points, straight between them and beyond the last one.
+    """A law given by points, linear between them and beyond the last one.
 
     Parameters
     ----------
@@ -183,35 +183,35 @@ class TableLaw:
         )
 
     def _piece(self, values: tuple[float, ...], at: float) -> tuple[float, float, float]:
-        """Start force, start compression and compliance of the piece that holds `at`."""
+        """Return start force, start compression and compliance of the piece that holds `at`."""
         k = min(max(bisect_right(values, at) - 1, 0), len(values) - 2)
         df = self.forces[k + 1] - self.forces[k]
         dd = self.compressions[k + 1] - self.compressions[k]
         return self.forces[k], self.compressions[k], dd / df
 
     def compression(self, force: float) -> float:
-        """Interpolated compression [m]."""
+        """Return the interpolated compression [m]."""
         f0, d0, slope = self._piece(self.forces, force)
         return d0 + slope * (force - f0)
 
     def force(self, compression: float) -> float:
-        """Interpolated force [N]."""
+        """Return the interpolated force [N]."""
         if compression <= 0.0:
             return 0.0
         f0, d0, slope = self._piece(self.compressions, compression)
         return f0 + (compression - d0) / slope
 
     def secant(self, force: float) -> float:
-        """Secant compliance [m/N]."""
+        """Return the secant compliance [m/N]."""
         return self.compression(force) / force if force > 0.0 else self.tangent(0.0)[0]
 
     def tangent(self, force: float) -> tuple[float, float]:
-        """Compliance [m/N] of the piece at `force` and the offset [m] of its line."""
+        """Return the compliance [m/N] of the piece at `force` and the offset [m] of its line."""
         f0, d0, slope = self._piece(self.forces, force)
         return slope, d0 - slope * f0
 
     def complementary(self, force: float) -> float:
-        """∫δ dF [J], exact for the straight pieces."""
+        """Return ∫δ dF [J], exact for the straight pieces."""
         total = 0.0
         for f0, f1 in pairwise((*self.forces[:-1], math.inf)):
             upper = min(force, f1)
@@ -221,7 +221,7 @@ class TableLaw:
         return total
 
     def energy(self, compression: float) -> float:
-        """Fδ − U*(F) [J]."""
+        """Return Fδ − U*(F) [J]."""
         force = self.force(compression)
         return force * max(compression, 0.0) - self.complementary(force)
 

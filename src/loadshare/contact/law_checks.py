@@ -1,4 +1,4 @@
-"""What is wrong with a law that was written by hand: it would push what it does not touch."""
+"""Faults of a law that was written by hand, with which a contact could push without touching."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from loadshare.settings import LAWS
 
 
 def law_faults(law: object) -> Iterator[str]:
-    """Yield why the laws of this package are none of a compression that grows with its force.
+    """Yield why a law of this package is not a compression that grows with its force.
 
     Parameters
     ----------
     law : object
-        Others are not looked at.
+        Laws that are not of this package are not checked.
     """
     match law:
         case PowerLaw(b, c):

@@ -1,9 +1,9 @@
-"""Which coordinates the forces of an answer leave open.
+"""Find the coordinates that the forces of an answer leave open.
 
-Places with the same forces are a convex set. Springs, contacts that carry and graphs where they
-rise or step hold what they act on; contacts that just touch, and the ends of level pieces, let it
-go away from them only. Ends that nothing can leave, such as two stops that face one another, hold
-as well.
+Places with the same forces form a convex set. Springs, contacts that carry, and graphs on a rising
+piece or a step hold what they act on; contacts that just touch, and the ends of level pieces, only
+let it move away from them. Ends that nothing can leave, such as two stops that face one another,
+hold as well.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ class Round(NamedTuple):
 
 
 class Held(NamedTuple):
-    """What contacts and radial elements hold where forces stay as they are.
+    """Limits of contacts and radial elements on moves that leave all forces as they are.
 
     Attributes
     ----------
     ties : list of ndarray, shape (n,)
-        Along which nothing moves.
+        Directions along which nothing moves.
     limits : list of (ndarray, shape (n,), float)
-        What must not close further, and how far it may.
+        Directions of approach, and how far each may still close.
     arcs : list of ArcRow
-        That carry nothing.
+        Arcs that carry nothing.
     rounds : list of Round
     """
 
@@ -49,7 +49,7 @@ class Held(NamedTuple):
 
 
 class _End(NamedTuple):
-    """An end of moves: none leads along it, and what it holds if none leads away from it."""
+    """An end of moves: none goes along `along`; if none goes away, it holds all of `holds`."""
 
     along: Array
     holds: Array
@@ -62,18 +62,18 @@ def held_by(
     pulls: Mapping[str, Array],
     laws: Mapping[str, RadialLaw],
 ) -> Held:
-    """Return what the forces of an answer hold.
+    """Return what limits moves that leave the forces of an answer as they are.
 
     Parameters
     ----------
     problem : ContactProblem
     x : ndarray, shape (n,)
-        Its place.
+        Coordinates of the answer.
     forces : mapping of row or arc to float
     pulls : mapping of radial element to ndarray, shape (2,)
         Force along its offset.
     laws : mapping of radial element to RadialLaw
-        At the torques that are transmitted.
+        Laws at the transmitted torques.
     """
     every = [*(abs(f) for f in forces.values()), *(math.hypot(*p) for p in pulls.values())]
     carries = PLACES.carries * max([problem.force_unit(), *every])
@@ -82,12 +82,12 @@ def held_by(
         if forces.get(row.name, 0.0) > carries:
             found.ties.append(row.vector)
         else:
-            # What counts as no force may be far into a soft contact.
+            # A force that counts as none may still compress a soft contact far.
             end = row.gap + row.law.compression(max(forces.get(row.name, 0.0), 0.0))
             found.limits.append((row.vector, max(end - float(row.vector @ x), 0.0)))
     for arc in problem.arcs:
         if forces.get(arc.name, 0.0) > carries:
-            # Moved along it, it would push another way.
+            # Moved along the arc, the body would be pushed in another direction.
             found.ties.extend(arc.relative)
         else:
             end = arc.arc.clearance + arc.law.compression(max(forces.get(arc.name, 0.0), 0.0))
@@ -97,7 +97,7 @@ def held_by(
         size = float(np.linalg.norm(pull))
         level = law.level(size, carries)
         if level is None or (size <= carries and level[1] <= 0.0):
-            # Without play a disc is a point.
+            # A disc without clearance is a point.
             found.ties.extend(radial.matrix)
         elif size <= carries:
             found.rounds.append(Round(radial, level[1]))
@@ -120,7 +120,7 @@ def left_open(
     ----------
     problem : ContactProblem
     x : ndarray, shape (n,)
-        Place of an answer.
+        Coordinates of an answer.
     force : mapping of row or arc to float
     pull : mapping of radial element to ndarray, shape (2,)
     """
@@ -135,7 +135,7 @@ def left_open(
         if reach <= near:
             ties += [*radial.matrix]
         elif float(np.linalg.norm(offset)) >= reach - near:
-            # The edge is round: who cannot leave it cannot move along it either.
+            # The edge is round: an offset that cannot leave it cannot move along it either.
             ends.append(_End(offset @ radial.matrix, radial.matrix))
     moves = _unresisted(ties, problem.size)
     while ends and moves.size:
@@ -153,7 +153,7 @@ def left_open(
 
 
 def _unresisted(ties: Sequence[Array], size: int) -> Array:
-    """Moves (n, k) that none of the rows resists, an orthonormal basis."""
+    """Return an orthonormal basis (n, k) of moves that none of the rows resists."""
     rows = of_unit_norm(np.array(ties).reshape(-1, size))
     _, values, right = np.linalg.svd(rows, full_matrices=True)
     rank = int((values > CONTACT.loose * values.max(initial=0.0)).sum())
@@ -161,9 +161,9 @@ def _unresisted(ties: Sequence[Array], size: int) -> Array:
 
 
 def _left_behind(ends: Sequence[_End], moves: Array) -> list[bool]:
-    """Whether a move that keeps to all ends leads away from each.
+    """Return whether moves that respect all ends can go away from each.
 
-    Moves that keep to the ends are a cone, so that one of them leads away from all ends that can be
+    Moves that respect the ends form a cone, so that one of them goes away from all ends that can be
     left at all.
     """
     from scipy.optimize import linprog

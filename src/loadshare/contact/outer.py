@@ -1,4 +1,4 @@
-"""The outer loop: mesh laws, ring faces and friction bounds settle together.
+"""The outer loop, in which mesh laws, ring faces and friction bounds settle together.
 
 *Picard* replaces each law by its secant compliance at the last force, *Newton* by its tangent. Both
 stop when, at the answer of a programme, the laws, the ring faces and the friction bounds that the
@@ -7,8 +7,8 @@ and loads of the case. Source: formulation, section 7.
 
 A tangent at vanishing force has infinite compliance, so a Newton step is taken at the force that
 belongs to the *displacement* (which is finite and positive for a compressed flank), and a step that
-does not lessen the misfit is shortened until the true energy, which is convex, falls. That is what
-makes light load converge.
+does not reduce the misfit is shortened until the true energy, which is convex, falls. This makes
+light loads converge.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Settled:
     iterations: tuple[Iteration, ...]
 
     def pulls(self, problem: ContactProblem) -> dict[str, Array]:
-        """Force of every radial element along its offset, whether it was in play or not."""
+        """Return the force of every radial element along its offset, whether in play or not."""
         idle = [r for r in problem.radials if r.name not in self.radial_forces]
         first = {r.name: self.laws[r.name].pieces[0].stiffness for r in idle}
         return self.radial_forces | {r.name: first[r.name] * r.offset(self.x) for r in idle}
@@ -66,7 +66,7 @@ class Settled:
 
 @dataclass(slots=True)
 class _State:
-    """Where the loop linearises next."""
+    """Point at which the loop linearises next."""
 
     x: Array
     forces: dict[str, float]
@@ -91,16 +91,16 @@ def settle(
     options : Options
     method : str
     work : Work, optional
-        Newton steps allowed; as many as it takes by default.
+        Newton steps allowed; unlimited by default.
 
     Raises
     ------
     Unsolved
-        If a programme has no answer, or the loop does not arrive within the allowed iterations.
+        If a programme has no answer, or the loop does not settle within the allowed iterations.
     ValueError
-        If a spline's law would drop at the torque it carries.
+        If a spline's force would drop at the torque that it carries.
     """
-    # Every contact under the force unit, every spline under the whole input torque.
+    # Begin with every contact under the force unit, every spline under the whole input torque.
     pushes = dict.fromkeys(problem.laws, problem.force_unit())
     state = _State(np.zeros(problem.size), pushes, problem.first_torques())
     warm: Inner | None = None
@@ -152,8 +152,8 @@ def _extrapolated(
 ) -> tuple[Array, Array | None]:
     """Return where faces are renewed next, and the move along the arcs for the pass after it.
 
-    Where arcs take nearly all stiffness across them, each pass along them is a fixed part of the
-    one before, and nearly as long: what is left of such passes is a geometric series.
+    Where arcs take away nearly all stiffness across them, each pass moves along them by a fixed
+    ratio, nearly 1, of the pass before: the remaining moves are a geometric series.
     """
     move = np.concatenate([[0.0], *(arc.relative @ (x - before) for arc in problem.arcs)])
     if last is None:
@@ -171,7 +171,7 @@ def _extrapolated(
 def _compliances(
     problem: ContactProblem, forces: dict[str, float], method: str
 ) -> dict[str, tuple[float, float]]:
-    """Linear replacements of the laws: secants through the origin (Picard) or tangents (Newton)."""
+    """Return linear replacements of the laws: secants through 0 (Picard) or tangents (Newton)."""
     if method == "picard":
         return {n: (law.secant(forces[n]), 0.0) for n, law in problem.laws.items()}
     return {n: law.tangent(forces[n]) for n, law in problem.laws.items()}
@@ -180,10 +180,10 @@ def _compliances(
 def lines_of_laws(
     problem: ContactProblem, forces: Mapping[str, float], least: float
 ) -> dict[str, tuple[float, float]]:
-    """Compliances of the laws of all rows and arcs at some forces, and their offsets.
+    """Return compliances and offsets of the laws of all rows and arcs at some forces.
 
-    Tangents; of what carries nothing the secant up to the least force: by a tangent there, two
-    bodies that no force brings together could overlap.
+    They are those of tangents; contacts that carry nothing get the secant up to the least force,
+    since a tangent there would let two bodies overlap that no force presses together.
     """
     return {
         n: law.tangent(forces[n]) if forces[n] else (law.secant(least), 0.0)
@@ -199,7 +199,7 @@ def _forces(names: tuple[str, ...], point: Point, units: Units) -> dict[str, flo
 def _law_misfit(
     problem: ContactProblem, at: Linearisation, forces: dict[str, float], method: str
 ) -> float:
-    """Largest difference between a law and what replaced it, at the forces found [deflections]."""
+    """Return the largest difference of laws from their replacements, at `forces` [deflections]."""
     worst = 0.0
     for row in problem.rows:
         force = abs(forces.get(row.name, 0.0))
@@ -214,7 +214,7 @@ def _law_misfit(
 def _wall_misfit(
     problem: ContactProblem, laws: dict[str, RadialLaw], x: Array, before: Array
 ) -> float:
-    """Largest difference between a bearing's law and its tangent, where it is [deflections]."""
+    """Return the largest difference of a bearing's law from its tangent, at x [deflections]."""
     worst = 0.0
     for radial in problem.radials:
         if isinstance(radial.source, RollingLaw):
@@ -230,7 +230,7 @@ def _wall_misfit(
 def _face_misfit(
     problem: ContactProblem, plan: Plan, at: Linearisation, x: Array, forces: dict[str, float]
 ) -> float:
-    """Largest difference between arcs and the faces that replaced them [deflections, loads]."""
+    """Return the largest difference of arcs from the faces replacing them [deflections, loads]."""
     worst = 0.0
     for arc in problem.arcs:
         if plan.rows[arc.name] is Role.OPEN:
@@ -251,7 +251,7 @@ def _face_misfit(
 def _friction_misfit(
     problem: ContactProblem, used: dict[str, float], found: dict[str, float]
 ) -> float:
-    """Largest change of a friction bound that follows the torque [loads]."""
+    """Return the largest change of a friction bound that follows the torque [loads]."""
     changes = [abs(r.friction_change(used[r.name], found[r.name])) for r in problem.radials]
     return max(changes, default=0.0) / problem.force_unit()
 
@@ -278,7 +278,7 @@ def _next_forces(
     x: Array,
     method: str,
 ) -> dict[str, float]:
-    """Forces at which the laws are linearised next."""
+    """Return the forces at which the laws are linearised next."""
     unit = problem.force_unit()
     forces = dict(before)
     for row in problem.rows:
@@ -299,12 +299,12 @@ def _next_forces(
 
 
 def _stalled(history: list[Iteration]) -> bool:
-    """Whether the misfit has stopped falling."""
+    """Return whether the misfit has stopped falling."""
     return len(history) > 3 and history[-1].misfit >= 0.5 * min(h.misfit for h in history[-4:-1])
 
 
 def _stuck(history: list[Iteration]) -> bool:
-    """Whether the misfit has not been halved for long."""
+    """Return whether the misfit has not been halved for many passes."""
     if len(history) <= CONTACT.stuck:
         return False
     least = min(h.misfit for h in history[: -CONTACT.stuck])

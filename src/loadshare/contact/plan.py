@@ -1,8 +1,8 @@
 """Which parts of a contact problem are in play, and the programme that follows.
 
 A plan starts from what a loaded train most likely does: drive flanks carry load, everything else is
-idle. What turns out otherwise is put in play and the problem is solved again (*Leave
-out, then check* in the design notes). Source: formulation, section 11.
+idle. Elements that turn out otherwise are put in play, and the problem is solved again (*Leave out,
+then check* in the design notes). Source: formulation, section 11.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Plan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Linearisation:
-    """Where the outer loop is.
+    """Point at which the outer loop linearises.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Linearisation:
     radial_laws : mapping of radial name to RadialLaw
         Laws at the current torques.
     wide : bool
-        Set the faces of arcs back by their sagitta, as long as x is no iterate yet.
+        Whether faces of arcs are set back by their sagitta, as long as x is not yet an iterate.
     """
 
     x: Array
@@ -87,7 +87,7 @@ class Linearisation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Units:
-    """How a programme's numbers turn back into SI.
+    """Factors that turn a programme's numbers back into SI.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class Units:
     row_norms : ndarray, shape (m,)
         Norms of the SI rows: a row's force is F̂ · force / norm.
     condensation : Condensation
-        All coordinates from those of the programme.
+        Gives all coordinates from those of the programme.
     """
 
     force: float
@@ -116,7 +116,7 @@ def programme(
     plan : Plan
     at : Linearisation
     exact_hertz : bool
-        Keep b + c laws as they are (the power-cone form) instead of linearising them.
+        Whether to keep b + c laws as they are (the power-cone form) instead of linearising them.
 
     Returns
     -------

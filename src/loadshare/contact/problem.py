@@ -6,8 +6,8 @@ r"""A contact problem: springs, loads, unilateral contacts, arcs, radial element
         + \sum_j W_j(\lVert P_j x - m_j \rVert)
 
 U is the energy of a contact that only pushes, W that of a radial element; arcs are contacts whose
-row turns with x. Units are those of whoever writes it, as long as they belong together: a train's
-scene has coordinates in metres and forces in newtons. Source: formulation, sections 4 to 6.
+row turns with x. Any consistent units will do: a train's scene has coordinates in metres and forces
+in newtons. Source: formulation, sections 4 to 6.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Row:
     ----------
     name : str
     kind : str
-        What it is: "drive flank", "coast flank", "stop", "arc", or any word.
+        "drive flank", "coast flank", "stop", "arc", or any other word.
     vector : ndarray, shape (n,)
         a.
     gap : float
@@ -63,10 +63,10 @@ class ArcRow:
     name : str
     arc : Arc
     relative : ndarray, shape (3, n)
-        Relative displacement of the two centres from the coordinates.
+        Matrix from the coordinates to the relative displacement of the two centres.
     law : Law
     sagitta : float
-        Room that the arc leaves beyond its face at rest, at the end of the float.
+        Distance that the arc leaves beyond its face at rest, at the end of the float.
     """
 
     name: str
@@ -79,10 +79,10 @@ class ArcRow:
         _as_floats(self, "relative")
 
     def row(self, x: Array, wide: bool = False) -> Row:
-        """Tangent face at the coordinates x: −n·Δ ≤ g.
+        """Return the tangent face at the coordinates x: −n·Δ ≤ g.
 
-        A wide face is set back by the sagitta, so that all of the float lies inside. Faces at rest
-        of two opposite arcs can wedge a float in that the arcs themselves let pass.
+        A wide face is set back by the sagitta, so that all of the float lies inside. Two opposite
+        arcs may let a float pass that their faces at rest would wedge in.
         """
         normal, bound = self.arc.face(self.relative @ x)
         bound += self.sagitta if wide else 0.0
@@ -95,13 +95,13 @@ class FollowingLaw(Protocol):
 
     @property
     def friction_force(self) -> float | None:
-        """Friction where it is fixed; None where it follows the torque."""
+        """Friction if it is fixed; None if it follows the torque."""
 
     def law(self, torque: float) -> RadialLaw:
-        """Law at a torque."""
+        """Return the law at a torque."""
 
     def bound(self, torque: float) -> float:
-        """Friction at a torque."""
+        """Return the friction at a torque."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,7 +138,7 @@ class Radial:
 
     @property
     def at_rest(self) -> RadialLaw | None:
-        """Law without torque; None where it has no meaning, which solving reports."""
+        """Law without torque; None if it is not valid, which solving reports."""
         try:
             return self.law(0.0)
         except ValueError:
@@ -146,37 +146,37 @@ class Radial:
 
     @property
     def lengths(self) -> tuple[float, ...]:
-        """Finite extents of the pieces of that law [m]."""
+        """Finite lengths of the pieces of `at_rest` [m]."""
         pieces = self.at_rest.pieces if self.at_rest else ()
         return tuple(p.length for p in pieces if p.length < np.inf)
 
     def torque(self, forces: Mapping[str, float]) -> float:
-        """Torque over the element; a row that is not named carries nothing."""
+        """Return the torque over the element; a row that is not named carries nothing."""
         return sum(lever * forces.get(name, 0.0) for name, lever in self.levers.items())
 
     def offset(self, x: Array) -> Array:
-        """Way from its centre at coordinates x, (2,) [m]."""
+        """Return the vector from its centre at coordinates x, (2,) [m]."""
         return np.asarray(self.matrix @ x - self.centre)
 
     def radius(self, x: Array) -> float:
-        """How far it is from its centre at coordinates x [m]."""
+        """Return the distance from its centre at coordinates x [m]."""
         return float(np.linalg.norm(self.offset(x)))
 
     def law(self, torque: float, x: Array | None = None) -> RadialLaw:
-        """Law at a torque over the element; what is a power touches it at coordinates x."""
+        """Return the law at a torque over the element; for a power law, its tangent at x."""
         if isinstance(self.source, RollingLaw):
             return self.source.touching(0.0 if x is None else self.radius(x))
         return self.source if isinstance(self.source, RadialLaw) else self.source.law(torque)
 
     def friction_change(self, before: float, after: float) -> float:
-        """Change of the friction from one torque to another."""
+        """Return the change of the friction from one torque to another."""
         if isinstance(self.source, RadialLaw | RollingLaw) or not self.follows_torque:
             return 0.0
         return self.source.bound(after) - self.source.bound(before)
 
 
 def _symmetric(stiffness: Any) -> Any:
-    """Return a matrix whose halves differ by round-off, as those of a product BᵀKB do, as one."""
+    """Make a matrix symmetric whose halves differ by round-off, as those of a product BᵀKB."""
     if not isinstance(stiffness, np.ndarray) or stiffness.shape != stiffness.T.shape:
         return stiffness
     with np.errstate(invalid="ignore"):
@@ -195,7 +195,7 @@ class ContactProblem:
     coordinates : tuple of str
         Names.
     stiffness : ndarray, shape (n, n)
-        H, of springs; symmetric but for round-off, which is taken off.
+        H, of springs; symmetric up to round-off, which is removed.
     load : ndarray, shape (n,)
         f.
     rows : tuple of Row
@@ -222,12 +222,12 @@ class ContactProblem:
         return len(self.coordinates)
 
     def check(self) -> None:
-        """Check that the arrays belong together.
+        """Check that the arrays fit together.
 
         Raises
         ------
         ValueError
-            With all problems, one a line.
+            If they do not; the message has all problems, one per line.
         """
         n = self.size
         wrong = [] if n else ["coordinates: there is none"]
@@ -267,7 +267,7 @@ class ContactProblem:
             raise ValueError("\n".join(wrong))
 
     def _arrays(self) -> Iterator[tuple[str, Any, tuple[int, ...]]]:
-        """Yield what holds numbers: its name, the numbers, and the shape that they should have."""
+        """Yield every array of numbers: its name, the array, and the shape that it should have."""
         n = self.size
         yield "stiffness", self.stiffness, (n, n)
         yield "load", self.load, (n,)
@@ -300,19 +300,19 @@ class ContactProblem:
         return {r.name: r.law for r in self.rows} | {a.name: a.law for a in self.arcs}
 
     def rows_at(self, x: Array, wide: bool = False) -> tuple[Row, ...]:
-        """All rows, arcs replaced by their faces at x, wide or tangent."""
+        """Return all rows, arcs replaced by their faces at x, wide or tangent."""
         return self.rows + tuple(a.row(x, wide) for a in self.arcs)
 
     def force_unit(self) -> float:
-        """Force that the problem is measured by: the largest load.
+        """Return the unit of force of the problem: the largest load.
 
-        Without any, what springs and contacts push where they yield by as much as contacts overlap
-        at rest or, where none overlaps, by the largest gap; 1 where nothing has a size.
+        Without loads it is the force of springs and contacts that yield by the overlap of contacts
+        at rest or, if none overlaps, by the largest gap; 1 if nothing has a size.
         """
         return float(np.abs(self.load).max(initial=0.0)) or self._unloaded() or 1.0
 
     def _unloaded(self) -> float:
-        """Force of the size of those that gaps alone bring about; 0 where nothing has a size."""
+        """Return a typical force that gaps alone cause; 0 if nothing has a size."""
         rest = np.zeros(self.size)
         room = [r.gap for r in self.rows] + [a.arc.margin(a.relative @ rest) for a in self.arcs]
         graphs = [(r.radius(rest), r.at_rest) for r in self.radials]
@@ -329,16 +329,16 @@ class ContactProblem:
         return float(np.median([f for f in forces if 0.0 < f < np.inf] or [0.0]))
 
     def _gaps(self) -> list[float]:
-        """Gaps of contacts, clearances of arcs, extents of graphs."""
+        """Return gaps of contacts, clearances of arcs and lengths of graphs."""
         gaps = [abs(r.gap) for r in self.rows] + [a.arc.clearance for a in self.arcs]
         return gaps + [length for r in self.radials for length in r.lengths]
 
     def length_unit(self) -> float:
-        """Length that the problem is measured by.
+        """Return the unit of length of the problem.
 
-        What contacts and springs yield under the force unit, or 1/1000 of the gaps, whichever is
-        larger: measured by compressions that are far smaller than the gaps, the size of the gaps
-        would overflow what a solver resolves.
+        It is the compression of contacts and springs under the force unit, or 1/1000 of the gaps if
+        that is larger: in units of compressions that are far smaller, the gaps would exceed the
+        range that a solver resolves.
         """
         force = self.force_unit()
         yielded = [r.law.compression(force) for r in self.rows]
@@ -347,7 +347,7 @@ class ContactProblem:
         return max(soft, CONTACT.of_gaps * max(self._gaps(), default=0.0)) or 1.0
 
     def first_torques(self) -> dict[str, float]:
-        """Torques over radial elements that follow them, to begin with."""
+        """Return a first guess of the torques over radial elements that follow them."""
         force = self.force_unit()
         return {r.name: force * max(map(abs, r.levers.values()), default=0.0) for r in self.radials}
 
@@ -361,7 +361,7 @@ def _as_floats(part: object, *names: str) -> None:
 def of_unit_norm(rows: Array) -> Array:
     """Return the rows (k, n) that are not zero, each divided by its norm, whatever its size."""
     _, exponent = np.frexp(np.abs(rows).max(axis=1, initial=0.0))
-    # Squares of the entries may lie beyond all numbers; a power of two takes no digit.
+    # Squares of the entries may overflow; scaling by a power of two is exact.
     rows = np.ldexp(rows, -exponent[:, None])
     norm = np.linalg.norm(rows, axis=1, keepdims=True)
     there = norm[:, 0] > 0.0

@@ -35,7 +35,7 @@ class Cone:
     law: RadialLaw
 
     def offset(self, x: Array) -> Array:
-        """Px − m, shape (2,)."""
+        """Return Px − m, shape (2,)."""
         return np.asarray(self.matrix @ x - self.centre)
 
 
@@ -46,13 +46,13 @@ class Programme:
     Attributes
     ----------
     coordinates : tuple of str
-        Names of the x.
+        Names of the components of x.
     stiffness : ndarray, shape (n, n)
         H.
     load : ndarray, shape (n,)
         f.
     names : tuple of str
-        Of the rows.
+        Names of the rows.
     rows : ndarray, shape (m, n)
         a, of unit norm.
     gaps : ndarray, shape (m,)

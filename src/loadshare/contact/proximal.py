@@ -1,4 +1,4 @@
-r"""The proximal method of multipliers: for programmes whose active set cannot be read off.
+r"""The proximal method of multipliers, for programmes whose active set cannot be read off.
 
 Rigid contacts that oppose each other, contacts on the verge, and coordinates that only contacts
 hold make the exact active-set equations singular. Here every pass adds a small stiffness and a
@@ -41,9 +41,9 @@ def solve_proximal(
     Raises
     ------
     Unsolved
-        If the passes run away or find no active set.
+        If the passes diverge or find no active set.
     """
-    # Where forces are not unique, passes that begin without any end near the smallest ones.
+    # If forces are not unique, passes that begin without forces end near the smallest ones.
     at = at_rest(programme) if start is None else replace(at_rest(programme), x=start.x)
     active = first_guess(programme)
     drift, run, stretch = at, np.inf, 0.0
@@ -63,7 +63,8 @@ def solve_proximal(
             if _arrived(point, at, pull):
                 return point, now
         drift = Point(point.x - at.x, point.forces - at.forces, point.cone_forces)
-        # What only a small load drives runs at a constant pace: longer and longer strides.
+        # A coordinate that only a small load drives moves at a constant pace: take ever longer
+        # strides.
         pace = float(np.abs(drift.x).max(initial=0.0))
         stretch = 4.0 * stretch + 1.0 if now == active and pace > 0.5 * run else 0.0
         at, active, run = replace(point, x=point.x + stretch * drift.x), now, pace
@@ -81,7 +82,7 @@ def _pulled(programme: Programme, at: Point, pull: float) -> Programme:
 
 
 def _arrived(point: Point, before: Point, pull: float) -> bool:
-    """Whether what the pull adds to balances and gaps is round-off."""
+    """Return whether the pull's contribution to balances and gaps is round-off."""
 
     def largest(values: Array) -> float:
         return float(np.abs(values).max(initial=0.0))

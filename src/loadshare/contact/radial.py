@@ -31,7 +31,7 @@ class Piece:
     stiffness : float
         Its slope [N/m]; 0 for a level piece.
     length : float
-        Its extent in radius [m]; infinite for a last piece without end.
+        Its length in radius [m]; infinite for a last piece without end.
     name : str
         What an engineer calls it: "stick", "slip", "stop", "inside".
     """
@@ -53,11 +53,11 @@ class Part(NamedTuple):
     Attributes
     ----------
     state : object
-        State of an element that is on it.
+        State of an element that is on this part.
     begin, end : float
         Radii [m].
     low, high : float
-        Forces at the first of them [N].
+        Forces at `begin` [N].
     slope : float
         [N/m].
     """
@@ -70,14 +70,14 @@ class Part(NamedTuple):
     slope: float
 
     def off(self, radius: float, force: float) -> tuple[float, float]:
-        """How far a radius [m] and a force [N] are from it."""
+        """Return how far a radius [m] and a force [N] are from this part."""
         inner = min(max(radius, self.begin), self.end)
         rise = self.slope * (inner - self.begin) if self.slope else 0.0
         return radius - inner, force - min(max(force, self.low + rise), self.high + rise)
 
 
 def nearest(parts: Iterable[Part], radius: float, force: float) -> Any:
-    """State of the part of a graph that is nearest to a radius and a force, both without units."""
+    """Return the state of the part of a graph nearest to a radius and a force without units."""
     return min(parts, key=lambda part: math.hypot(*part.off(radius, force))).state
 
 
@@ -91,7 +91,7 @@ class RadialLaw:
     pieces: tuple[Piece, ...]
 
     def start(self, piece: int) -> float:
-        """Radius [m] at which a piece begins."""
+        """Return the radius [m] at which a piece begins."""
         return math.fsum(p.length for p in self.pieces[:piece])
 
     @property
@@ -106,13 +106,13 @@ class RadialLaw:
         return last.force if last.stiffness == 0.0 and math.isinf(last.length) else math.inf
 
     def step(self, corner: int) -> tuple[float, float]:
-        """Force interval [N] of the step before piece `corner`; after the last, of the stop."""
+        """Return the force interval [N] of the step before piece `corner`, or of the final stop."""
         low = self.pieces[corner - 1].end_force if corner > 0 else 0.0
         high = self.pieces[corner].force if corner < len(self.pieces) else math.inf
         return low, high
 
     def parts(self) -> Iterator[Part]:
-        """Yield the pieces, then the steps before and after them, each by number and kind."""
+        """Yield the pieces, then the steps between and after them, by number and kind."""
         for k, piece in enumerate(self.pieces):
             begin = self.start(k)
             force, end = piece.force, begin + piece.length
@@ -123,7 +123,7 @@ class RadialLaw:
                 yield Part((k, True), self.start(k), self.start(k), low, high, 0.0)
 
     def level(self, force: float, band: float) -> tuple[float, float] | None:
-        """Radii [m] between which the graph admits a force, up to `band` [N]; None for one only."""
+        """Return radii [m] between which a force acts, within `band` [N]; None if at one only."""
         at = [
             k
             for k, piece in enumerate(self.pieces)
@@ -132,7 +132,7 @@ class RadialLaw:
         return (self.start(at[0]), self.start(at[-1] + 1)) if at else None
 
     def least(self, radius: float) -> float:
-        """Least force [N] that the graph admits at a radius [m]; of a rigid stop, at its edge."""
+        """Return the least force [N] that the graph admits at a radius [m]; past a stop, at it."""
         force, left = 0.0, radius
         for piece in self.pieces:
             if left <= 0.0:
@@ -142,7 +142,7 @@ class RadialLaw:
         return force
 
     def energy(self, radius: float) -> float:
-        """∫F dR [J] up to `radius` [m]; beyond a rigid stop, what its edge costs."""
+        """Return ∫F dR [J] up to `radius` [m], or to the rigid stop if that comes first."""
         total, left = 0.0, radius
         for piece in self.pieces:
             inner = min(left, piece.length)
@@ -170,7 +170,7 @@ class RadialLaw:
 def spline_law(
     bending_stiffness: float, stick_limit: float | None, clearance: float, friction: float
 ) -> RadialLaw:
-    """Clearance spline: stick, slip, stop (formulation, section 5).
+    """Return the law of a clearance spline: stick, slip, stop (formulation, section 5).
 
     Parameters
     ----------
@@ -186,8 +186,8 @@ def spline_law(
     Raises
     ------
     ValueError
-        If K_w S1 > F_m, so that the law would drop (several equilibria), or if S2 < S1. The message
-        names the numbers.
+        If K_w S1 > F_m, so that the force would drop (several equilibria), or if S2 < S1. The
+        message names the numbers.
     """
     continuous = friction / bending_stiffness
     s1 = continuous if stick_limit is None else stick_limit
@@ -215,7 +215,7 @@ def spline_law(
 
 
 def round_ring_law(radius: float, stiffness: float) -> RadialLaw:
-    """Round limit ring: nothing inside `radius` [m], then a rigid stop or `stiffness` [N/m]."""
+    """Return a round ring's law: free inside `radius` [m], then rigid or of `stiffness` [N/m]."""
     free = Piece(0.0, 0.0, radius, "inside")
     if math.isinf(stiffness):
         return RadialLaw((free,))
@@ -226,7 +226,7 @@ def round_ring_law(radius: float, stiffness: float) -> RadialLaw:
 def tangent_wall(
     reach: Figure, stiffness: Figure, power: Figure, radius: Figure, faint: float
 ) -> tuple[Figure, Figure]:
-    """Tangent of a wall F = K (R − reach)^power: where it begins [m], its stiffness [N/m].
+    """Return the tangent of a wall F = K (R − reach)^power: its start [m] and stiffness [N/m].
 
     Parameters
     ----------
@@ -235,7 +235,7 @@ def tangent_wall(
     radius : float or ndarray
         R at which the tangent touches [m].
     faint : float
-        Least force of the point where it touches [N]: there is none without stiffness.
+        Least force at the point of tangency [N]: without a force there is no stiffness.
     """
     gap = np.maximum(radius - reach, (faint / stiffness) ** (1.0 / power))
     return reach + gap * (1.0 - 1.0 / power), power * stiffness * gap ** (power - 1.0)
@@ -254,7 +254,7 @@ class RollingLaw:
     power : float
         Above 1.
     faint : float
-        Force [N] that is next to nothing.
+        Least force [N] at which a tangent is taken (see `tangent_wall`).
     """
 
     clearance: float
@@ -263,6 +263,6 @@ class RollingLaw:
     faint: float
 
     def touching(self, radius: float) -> RadialLaw:
-        """Law whose wall touches this one at a radius [m]."""
+        """Return the law whose wall is the tangent of this one at a radius [m]."""
         begin, slope = tangent_wall(self.clearance, self.stiffness, self.power, radius, self.faint)
         return round_ring_law(float(begin), float(slope))

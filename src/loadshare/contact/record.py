@@ -1,4 +1,4 @@
-"""What a solve had to do, and how it went."""
+"""Options of a solve, and the record of how it went."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ class Options:
         "newton" (tangent compliances), "picard" (secant compliances) or "power" (one power-cone
         programme).
     reduce : bool
-        Leave out what cannot matter (and verify it), or put everything in play.
+        Whether to leave out what cannot matter (and verify it), or to put everything in play.
     polish : bool
-        Solve exactly on the identified active set. Without it the back-end's bare answer is taken,
-        which hardly ever passes the certificate; it serves comparisons.
+        Whether to solve exactly on the identified active set. Otherwise the back-end's bare answer
+        is taken, which hardly ever passes the certificate; it serves comparisons.
     stop : float
         Outer loop: largest misfit of laws, faces and friction bounds, in units of deflection and
         load.
     max_iterations : int
-        Of the outer loop, before the other method is tried.
+        Passes of the outer loop before the other method is tried.
     """
 
     solver: str = "clarabel"
@@ -54,9 +54,9 @@ class Iteration:
     kind : str
         Class of the programme.
     via : str
-        How it was solved: "linear solve", "active set kept", "<solver> + exact", with
-        "proximal" where no active set could be read, "in place" where coordinates that forces leave
-        open stay where the solver has them.
+        How it was solved: "linear solve", "active set kept", "<solver> + exact", with "proximal" if
+        no active set could be read, "in place" if coordinates that forces leave open stay where the
+        solver has them, "as shared" if forces that they leave open do so too.
     law, face, friction : float
         Misfits after the pass: compliance laws and ring faces [deflections], friction bounds
         [loads].
@@ -84,14 +84,14 @@ class Record:
     Attributes
     ----------
     solver, method : str
-        What was used in the end.
+        The ones used in the end.
     kind : str
         Class of the last programme.
     iterations : tuple of Iteration
-        Of the last plan.
+        Passes of the last plan.
     plan : Plan
     rounds : int
-        Plans tried.
+        Number of plans tried.
     removed : tuple of (str, str)
         What was left out of the last plan, and why.
     coordinates : tuple of str

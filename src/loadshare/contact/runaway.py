@@ -1,4 +1,4 @@
-"""What the load of a contact problem moves without end, if anything."""
+"""Find coordinates that the load of a contact problem moves without end."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from loadshare.settings import PLACES
 
 
 def runaway(problem: ContactProblem) -> dict[str, float]:
-    r"""Return what the load moves without end, with its part of the move; empty if all is held.
+    r"""Return the coordinates that the load moves without end, with their parts of the move.
 
-    What it does work on comes first. Of all moves d that no contact, spring or limit resists,
-    however far they lead,
+    Empty if it moves none; those on which it does most work come first. Of all moves d that no
+    contact, spring or limit resists, however far they go,
 
     .. math:: \max_d f\cdot d - \sum_j F_j \lVert P_j d \rVert \quad \text{s.t.}\; H d = 0,\;
         P_k d = 0,\; a_e\cdot d \le 0,\; |d_i| \le 1 ,
 
-    it is the one along which the load does most work beyond that of friction F, of graphs that end
-    in a level piece. Where that is positive the potential falls without bound: the problem has no
-    equilibrium. Arcs count by their faces at rest.
+    the move is the one along which the work of the load exceeds most that of friction F, of graphs
+    that end in a level piece. If the excess is positive the potential falls without bound: the
+    problem has no equilibrium. Arcs are replaced by their faces at rest.
     """
     from scipy.optimize import linprog
 
@@ -62,10 +62,10 @@ def runaway(problem: ContactProblem) -> dict[str, float]:
 
 
 def _resisted(stiffness: Array) -> Array:
-    """Rows (k, n), largest entry 1, that vanish along the moves that no spring resists.
+    """Return rows (k, n), largest entry 1, that vanish along moves that no spring resists.
 
-    Those of elimination with the largest part of a diagonal left as pivot: beside the stiffest
-    spring, the softest one has a row as good.
+    They come from elimination; its pivot has the largest part left of its original diagonal, so
+    that the row of the softest spring is as accurate as that of the stiffest.
     """
     left, rows = stiffness.copy(), [np.zeros(len(stiffness))]
     alone = np.where(np.diag(stiffness) > 0.0, np.diag(stiffness), math.inf)
@@ -78,7 +78,7 @@ def _resisted(stiffness: Array) -> Array:
 
 
 def _facets() -> Array:
-    """Directions (k, 2) of which the largest product with a vector is at least its length."""
+    """Return directions (k, 2) whose largest product with a vector is at least its length."""
     angles = 2.0 * math.pi * np.arange(PLACES.facets) / PLACES.facets
     way = np.column_stack([np.cos(angles), np.sin(angles)])
     return np.asarray(way / math.cos(math.pi / PLACES.facets))

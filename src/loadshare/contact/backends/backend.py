@@ -17,7 +17,7 @@ class Backend(Protocol):
     """A solver of programmes.
 
     What it returns is a proposal: the active set is read from it and solved exactly, and the
-    certificate judges the outcome. A back-end's own status is never believed.
+    certificate judges the outcome. A back-end's own status is never trusted.
     """
 
     name: str
@@ -37,7 +37,7 @@ KINDS_QP = frozenset({"linear", "QP"})
 KINDS_CONIC = KINDS_QP | {"SOCP", "power cone"}
 
 SOLVERS = ("clarabel", "osqp", "cvxpy")
-"""Each is a class of its name, in a module of its own."""
+"""Each is a class of that name, in a module of its own."""
 
 
 def backend(name: str) -> Backend:

@@ -28,7 +28,7 @@ def cones_of(form: ConicForm) -> list[Any]:
 
 
 def settings_of(tolerance: float) -> Any:
-    """Return how Clarabel is to go on."""
+    """Return the settings of Clarabel for a tolerance."""
     import clarabel
 
     settings = clarabel.DefaultSettings()

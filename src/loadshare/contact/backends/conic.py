@@ -125,5 +125,5 @@ def conic_form(programme: Programme) -> ConicForm:
 
 
 def _entries(row: Array) -> dict[int, float]:
-    """Entries that are not zero, by column."""
+    """Return the nonzero entries of a row, by column."""
     return {j: v for j, v in enumerate(row.tolist()) if v}

@@ -24,7 +24,7 @@ class CvxpyForm:
     x : cvxpy.Variable
         The coordinates.
     contacts, radials : list of cvxpy.Constraint
-        Whose multipliers are the forces.
+        Constraints whose multipliers are the forces.
     """
 
     problem: Any
@@ -71,7 +71,7 @@ def cvxpy_form(programme: Programme) -> CvxpyForm:
 
 
 def _radial(cone: Cone, x: Any, constraints: list[Any]) -> tuple[Any, Any]:
-    """Energy of a radial graph as an inf-convolution of its pieces, and its offset equation."""
+    """Return a radial graph's energy, an inf-convolution of its pieces, and its offset equation."""
     import cvxpy as cp
 
     energy, total = 0.0, 0.0
@@ -100,7 +100,7 @@ class Cvxpy(Backend):
         form = cvxpy_form(programme)
         try:
             with warnings.catch_warnings():
-                # CVXPY doubts answers short of its tolerances; the certificate judges them here.
+                # CVXPY warns of answers that miss its tolerances; here the certificate judges them.
                 warnings.simplefilter("ignore", UserWarning)
                 names = ("tol_gap_abs", "tol_gap_rel", "tol_feas")
                 form.problem.solve(solver=cp.CLARABEL, **dict.fromkeys(names, CONTACT.interior))
@@ -112,6 +112,6 @@ class Cvxpy(Backend):
 
 
 def _square_root(matrix: np.ndarray) -> np.ndarray:
-    """L with L Lᵀ = H for a semidefinite H."""
+    """Return L with L Lᵀ = H for a semidefinite H."""
     values, vectors = np.linalg.eigh(matrix)
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
