@@ -1,4 +1,4 @@
-"""The main job: every position of a case solved, certified, and handed out or refused."""
+"""The main job: solve and certify every position of a case, and hand out or refuse the answers."""
 
 from loadshare.job.positions import Progress, explain, solve
 

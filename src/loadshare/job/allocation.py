@@ -1,8 +1,8 @@
-"""Memory of a block is kept for the next one (glibc).
+"""Keep the memory of a block for the next one (glibc).
 
-Blocks fill and drop a hundred MiB of arrays. glibc hands what is given back to the system at once;
-to fetch it again, page by page, took up to a tenth of a batch. How much it keeps for itself is set
-by mallopt(3), once in a process.
+Blocks fill and drop a hundred MiB of arrays. glibc returns freed memory to the system at once;
+fetching it again, page by page, took up to a tenth of a batch. mallopt(3), called once in a
+process, sets how much glibc keeps.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from functools import cache
 from loadshare.settings import JOB
 
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
-"""What is set, as <malloc.h> numbers it."""
+"""Parameters that are set, with their numbers in <malloc.h>."""
 OWN = "MALLOC_TRIM_THRESHOLD_"
-"""Environment variable by which a user says it, who then has the last word."""
+"""Environment variable by which users set this themselves; it takes precedence."""
 
 
 @cache
 def keep_freed_memory() -> None:
-    """Let glibc keep what blocks give back; other C libraries do as they like."""
+    """Let glibc keep the memory that blocks free; other C libraries are left alone."""
     if OWN in os.environ:
         return
     try:

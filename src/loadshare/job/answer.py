@@ -23,7 +23,7 @@ from loadshare.view import View, Viewed
 class Answer(Viewed):
     """An equilibrium that is certified.
 
-    Its forces are known. Its place, where forces leave that open, the figures of its certificate
+    Its forces are known. Displacements that the forces leave open, the figures of its certificate
     and how it was found are computed when they are first read.
 
     Attributes
@@ -40,7 +40,7 @@ class Answer(Viewed):
     how : callable
         Returns plan, passes of the outer loop, and what was left out.
     small : bool
-        Whether its displacements are known to be clear of where they are refused.
+        Whether its displacements are known to be well below the limits of a refusal.
     """
 
     train: Train
@@ -60,7 +60,7 @@ class Answer(Viewed):
         record: Record,
         rung: str,
     ) -> Answer:
-        """Return an answer of which everything is known."""
+        """Return an answer of which all parts are known."""
         return cls(
             train,
             equilibrium.index,
@@ -109,7 +109,7 @@ class Answer(Viewed):
         return self.certificate.claims.validities[self.certificate.row]
 
     def refused(self) -> Refused | None:
-        """Return why it is refused for its displacements; None if it is not."""
+        """Return the refusal for its displacements; None if they are not refused."""
         beyond = {} if self.small else self.validity.refused
         if not beyond:
             return None

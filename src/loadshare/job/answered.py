@@ -1,4 +1,4 @@
-"""Samples of a case, solved together, each of which can be looked at as if it were solved alone."""
+"""Samples of a case that are solved together, each of which can be read as if solved alone."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ class Part:
     solved : Solved
         S answers for every position.
     others : dict of int to Answer
-        What the ladder found, by number among these.
+        Answers of the ladder, by number among these.
     refused : dict of int to exception
-        What has no answer, likewise.
+        Why there is no answer, likewise.
     """
 
     rows: Numbers
@@ -71,13 +71,13 @@ class Part:
 
     @cached_property
     def there(self) -> Numbers:
-        """Numbers of what has an answer."""
+        """Numbers of the answers that exist."""
         every = np.arange(len(self.rows) * len(self.positions))
         return np.delete(every, list(self.refused))
 
     @cached_property
     def figures(self) -> Figures:
-        """What there is of answers tells, as arrays in the order of `there`."""
+        """Figures of the answers, as arrays in the order of `there`."""
         solved, answers = self.solved, self.solved.found.equilibria
         proved = solved.found.verdicts.bounds.relative.copy()
         hot = [k for k in self.there.tolist() if k not in self.others]
@@ -101,7 +101,7 @@ class Answered:
     Attributes
     ----------
     positions : tuple of int
-        1-based, as requested; without a request all that any sample has.
+        1-based, as requested; without a request, all that any sample has.
     parts : tuple of Part
     lacking : mapping of int to tuple of int
         Requested positions that a sample does not have.
@@ -129,7 +129,7 @@ class Answered:
         return (*found, *(Refused(f"position {k}: {NONE}") for k in lacking))
 
     def asked(self, sample: int) -> tuple[int, ...]:
-        """Positions of a sample that are requested."""
+        """Return the requested positions of a sample."""
         there = {k for part, _ in self.of(sample) for k in part.positions}
         there |= {*self.lacking.get(sample, ())}
         return tuple(k for k in self.positions if k in there)
@@ -167,7 +167,7 @@ def answer_samples(
     positions : iterable of int, optional
         1-based positions; all by default.
     progress : Progress, optional
-        Called now and then with samples done and in all.
+        Called from time to time with the numbers of samples done and in all.
 
     Raises
     ------
@@ -199,7 +199,7 @@ def answer_samples(
 
 
 def _part(machine: Machine, rows: Numbers, samples: Samples, positions: tuple[int, ...]) -> Part:
-    """Solve samples at some positions; what the hot path leaves climbs the ladder."""
+    """Solve samples at some positions; those that the hot path does not solve climb the ladder."""
     here = machine.at(positions[0])
     situations = samples.abreast(positions)
     engine = engine_at_hand("auto", situations.count)

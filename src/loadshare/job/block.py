@@ -1,4 +1,4 @@
-"""Solve one block of samples: the hot path at once, and the ladder for what it leaves."""
+"""Solve one block of samples: all on the hot path, and those that it leaves on the ladder."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations
 
 RUNGS = ("none", HOT, SEARCHED, *(name for name, _ in rungs(Options())))
-"""What answers samples, by number: nothing, the hot path without and with the proximal search, what
-the ladder has below."""
+"""Rungs that answer samples, by number: none, the hot path without and with the proximal search,
+the rungs of the ladder below."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,19 +42,19 @@ class Block:
         One per position.
     certified : ndarray of bool, shape (S, positions)
     residual : ndarray, shape (S, positions)
-        Largest scaled residual; NaN where there is no answer.
+        Largest scaled residual; NaN without an answer.
     bound : ndarray, shape (S, positions)
-        Largest distance of a torque from the exact one, over the largest torque; likewise.
+        Largest distance of a torque from the exact one, over the largest torque; NaN likewise.
     determined : ndarray of bool, shape (S, positions)
         Whether the equilibrium determines every displacement.
     displaced : ndarray, shape (S, positions)
-        How far displacements go to a warning (see `Measuring.worst`); NaN where there is no answer.
+        Displacements over the limit of a warning (see `Measuring.worst`); NaN without an answer.
     convex : ndarray of bool, shape (S, positions)
-        Whether nothing that is not convex carries, so that the answer is the only one.
+        Whether no nonconvex element carries a force, so that the answer is the only one.
     arc_curvature : ndarray, shape (S, positions)
-        Stiffness that arcs take across them [N/m]; NaN where there is no answer.
+        Stiffness that arcs take away across them [N/m]; NaN without an answer.
     rung : ndarray of int8, shape (S, positions)
-        Number in `RUNGS` of what answered.
+        Number in `RUNGS` of the rung that answered.
     message : dict of (row, position) to str
         Why there is no answer.
     """
@@ -73,7 +73,7 @@ class Block:
     message: dict[tuple[int, int], str]
 
     def over(self, positions: tuple[int, ...]) -> Block:
-        """Return the block over other positions; at those that it lacks there is no answer."""
+        """Return the block over other positions, without an answer at those that it lacks."""
         lacking = np.array([k not in self.positions for k in positions])
         at = [self.positions.index(k) if k in self.positions else 0 for k in positions]
         arrays = {name: getattr(self, name)[:, at] for name in NOTHING}
@@ -100,7 +100,7 @@ NOTHING = {
     **dict.fromkeys(("residual", "bound", "displaced", "arc_curvature"), np.nan),
     "rung": np.int8(0),
 }
-"""What stands in the arrays of a block where there is no answer."""
+"""Values in the arrays of a block where there is no answer."""
 
 
 class _Chunk(NamedTuple):
@@ -109,7 +109,7 @@ class _Chunk(NamedTuple):
     Attributes
     ----------
     columns : slice
-        Of the positions, in arrays over (sample, position).
+        Its positions in arrays over (sample, position).
     machine : Machine
     situations : Situations
         P·S of them.
@@ -123,7 +123,7 @@ class _Chunk(NamedTuple):
     equilibria: Equilibria
 
     def of(self, values: Array) -> Array:
-        """Return its own of values over (sample, position), one position after another."""
+        """Return its part of values over (sample, position), one position after another."""
         return values[:, self.columns].T.reshape(-1)
 
 
@@ -158,7 +158,7 @@ class _Open:
         return values.reshape(-1, self.count).T
 
     def put(self, chunk: _Chunk, found: Answers) -> None:
-        """Write what the hot path found."""
+        """Write the answers of the hot path."""
         verdicts, count, block = found.verdicts, self.count, self.block
         for there, values in (
             (block.certified, found.passed),
@@ -176,7 +176,7 @@ class _Open:
             self.equilibria.append(found.equilibria.take(slice(start, start + count)))
 
     def answer(self, row: int, p: int, found: Answer) -> None:
-        """Write what the ladder found for a sample at a position."""
+        """Write the ladder's answer to a sample at a position."""
         certificate, block, at = found.certificate, self.block, (row, p)
         self.equilibria[p].put(row, found.equilibrium)
         block.certified[at], block.rung[at] = True, RUNGS.index(found.rung)
@@ -185,7 +185,7 @@ class _Open:
         self.deflection[at], self.load[at] = certificate.deflection, certificate.load
 
     def refuse(self, row: int, p: int, why: str) -> None:
-        """Leave a sample without an answer at a position."""
+        """Record that a sample has no answer at a position."""
         block = self.block
         for name in ("certified", "rung", "residual", "bound", "displaced"):
             getattr(block, name)[row, p] = NOTHING[name]
@@ -202,7 +202,7 @@ def solve_block(
     engine: Engine,
     least_norm: bool,
 ) -> Block:
-    """Solve one block; what the hot path leaves climbs the ladder.
+    """Solve one block; samples that the hot path leaves climb the ladder.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ def solve_block(
 
 
 def _too_far(open_: _Open) -> dict[tuple[int, int], str]:
-    """Write how far displacements go where that is not known; return why some are refused."""
+    """Complete how far displacements go; return why some of them are refused."""
     refused = dict[tuple[int, int], str]()
     for chunk in open_.chunks:
         measuring, here, found = chunk.machine.measuring, chunk.situations, chunk.equilibria

@@ -26,7 +26,7 @@ class _Shares(BackendArray):
         Largest torque on any flank [N·m].
     stages : sequence of Stage
     pairs : bool
-        Over the mean of the branch's group.
+        Whether coefficients are relative to the mean of the branch's group.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class _Shares(BackendArray):
 def shares_when_read(
     meshes: Sequence[str], torque: Array, largest: Array, stages: Sequence[Stage], pairs: bool
 ) -> Any:
-    """Return coefficients that are computed, and kept, when they are read; see `_Shares`."""
+    """Return coefficients that are computed when first read, and then kept; see `_Shares`."""
     found = _Shares(tuple(meshes), torque, largest, stages, pairs)
     return indexing.MemoryCachedArray(  # type: ignore[no-untyped-call]
         indexing.LazilyIndexedArray(found)

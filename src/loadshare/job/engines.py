@@ -1,4 +1,4 @@
-"""Which engine solves: the compiled one, where that is worth while and can be, or NumPy's."""
+"""Choice of the engine: the compiled one if it is worthwhile and usable, otherwise NumPy's."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ COMPILED = (
     "loadshare.solver.hot.touching",
     "loadshare.certify.bound.kernel",
 )
-"""What a quick answer calls, all of which must be there."""
+"""Modules that the compiled engine calls, all of which must be available."""
 KERNELS = (
     ("loadshare.solver.hot.compiled", "_settle_all"),
     ("loadshare.certify.bound.kernel", "find_all"),
     ("loadshare.certify.bound.kernel", "bound_all"),
 )
-"""What takes long to compile of all that answers a case; the rest takes a moment."""
+"""Functions that take long to compile; all others take a moment."""
 
 
 def engine_named(name: str, count: int) -> Engine:
@@ -33,8 +33,8 @@ def engine_named(name: str, count: int) -> Engine:
     Parameters
     ----------
     name : {"auto", "compiled", "vectorised"}
-        "auto" is the compiled one where it was used in this process, else the one that `chosen`
-        names. Where nothing can be compiled or kept, the vectorised one takes its place.
+        "auto" is the compiled one if it was used in this process, otherwise the one that `chosen`
+        names. If nothing can be compiled or kept, the vectorised one takes its place.
     count : int
         Equilibria to solve.
     """
@@ -46,10 +46,10 @@ def engine_named(name: str, count: int) -> Engine:
 
 
 def chosen(count: int) -> str:
-    """Name the engine that is done first with so many equilibria in a new process.
+    """Return the name of the engine that is fastest for `count` equilibria in a new process.
 
-    Up to a few hundred it is the vectorised one. Above, it is the compiled one where that is kept
-    on disk, and where there are so many that compiling takes less time than it saves.
+    Up to a few hundred it is the vectorised one. Above, it is the compiled one if that is kept on
+    disk, or if there are so many that compiling takes less time than it saves.
     """
     if count <= JOB.few:
         return "vectorised"
@@ -57,14 +57,14 @@ def chosen(count: int) -> str:
 
 
 def loaded() -> bool:
-    """Whether the compiled engine was used, or loaded, in this process: then it is always ahead."""
+    """Return whether the compiled engine was used or loaded in this process, and so is fastest."""
     # Another thread may be importing one of the modules.
     kernels = [getattr(sys.modules.get(module), name, None) for module, name in KERNELS]
     return compilation.why_not() is None and all(k is not None and k.overloads for k in kernels)
 
 
 def at_hand() -> bool:
-    """Whether the compiled engine is there without compiling; what is on disk is loaded."""
+    """Return whether the compiled engine needs no compiling; code on disk is loaded."""
     try:
         needed = [getattr(import_module(module), name) for module, name in KERNELS]
     except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
@@ -74,7 +74,7 @@ def at_hand() -> bool:
 
 @dataclass(slots=True)
 class Tally:
-    """What was solved in this process by those who solve case by case.
+    """Count of what callers who solve case by case have solved in this process.
 
     Attributes
     ----------
@@ -88,13 +88,13 @@ tally = Tally()
 
 
 def engine_at_hand(name: str, count: int) -> Engine:
-    """Return an engine by name, for those who solve case by case.
+    """Return an engine by name, for callers who solve case by case.
 
     Parameters
     ----------
     name : {"auto", "compiled", "vectorised"}
-        "auto" is the compiled one where that takes no compiling: once it was used in this process,
-        or once so many equilibria were solved that reading it from disk is worth while.
+        "auto" is the compiled one if that needs no compiling: once it was used in this process, or
+        once so many equilibria were solved that reading it from disk is worthwhile.
     count : int
         Equilibria to solve.
     """
@@ -109,7 +109,7 @@ def engine_at_hand(name: str, count: int) -> Engine:
 
 
 def _compiled() -> Engine | None:
-    """Return the compiled engine; None, with a word in the log, where it cannot be used."""
+    """Return the compiled engine; None, with a message in the log, if it cannot be used."""
     try:
         for name in COMPILED:
             import_module(name)

@@ -1,4 +1,4 @@
-"""A case's programme, for those who want to solve it themselves or to see what is solved."""
+"""A case's programme, for users who want to solve it themselves or to see what is solved."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from loadshare.contact.backends.cvxpy_ import CvxpyForm
 
 READ = "read back"
-"""Rung of an answer that somebody else's solver found."""
+"""Rung of an answer that a user's solver found."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,9 +45,9 @@ class Formulation(Viewed):
     programme : Programme
         Dimensionless: named unknowns, rows and cones.
     units : Units
-        Newtons and metres of its numbers.
+        Its units in newtons and metres.
     removed : tuple of (str, str)
-        What is not in it, and why; each was verified at the equilibrium.
+        Elements that are not in it, and why; each was verified at the equilibrium.
     scene : Scene
         The whole contact problem, in newtons and metres, nothing left out.
     plan : Plan
@@ -71,7 +71,7 @@ class Formulation(Viewed):
         Raises
         ------
         ValueError
-            If there are radial elements or exact Hertz laws, which no QP has.
+            If there are radial elements or exact Hertz laws, which a QP cannot express.
         """
         return quadratic_form(self.programme)
 
@@ -158,9 +158,10 @@ def formulate(
     position : int
         1-based.
     reduce : bool
-        Leave out what cannot matter, with the reason in `removed`; or write everything.
+        Whether to leave out what cannot matter, with the reason in `removed`, or to write
+        everything.
     exact_hertz : bool
-        Keep laws b F + c F^(2/3) as they are, as power cones.
+        Whether to keep laws b F + c F^(2/3) as they are, as power cones.
 
     Returns
     -------

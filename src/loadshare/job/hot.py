@@ -28,7 +28,7 @@ HOT, SEARCHED = "hot path", "proximal search"
 
 @dataclass(eq=False, repr=False)
 class Solved:
-    """What the hot path found in situations of one machine, handed out one by one.
+    """Answers of the hot path to situations of one machine, handed out one by one.
 
     Parameters
     ----------
@@ -36,9 +36,9 @@ class Solved:
     situations : Situations
         S of them.
     found : Answers
-        To them.
+        Answers to these situations.
     tolerance : float
-        Of their certificates.
+        Tolerance of their certificates.
     """
 
     machine: Machine
@@ -49,10 +49,10 @@ class Solved:
 
     @cached_property
     def small(self) -> Flags:
-        """Whether displacements are known to be clear of where they are refused, (S,)."""
+        """Whether displacements are known to be well below the limits of a refusal, (S,)."""
         found = self.found
         if (found.verdicts.displaced < JOB.small).all():
-            # A warning comes before a refusal.
+            # The limit of a warning is below that of a refusal.
             return np.ones(self.situations.count, dtype=bool)
         deflection = found.verdicts.deflection
         moved = self.machine.measuring.worst(
@@ -61,7 +61,7 @@ class Solved:
         return np.asarray(moved < JOB.small)
 
     def answers(self, rows: Sequence[int], indices: Sequence[int], train: Train) -> list[Answer]:
-        """Return answers that passed, each of a position of a train."""
+        """Return answers that passed, each at a position of a train."""
         found: list[Answer] = []
         names, every = self.found.equilibria.names.flanks, self.found.equilibria.flank_force
         for some in in_groups(range(len(rows))):
@@ -81,7 +81,7 @@ class Solved:
         return found
 
     def least(self, rows: Sequence[int]) -> dict[int, Equilibrium]:
-        """Move answers whose place is open to their least ones, and return these by number."""
+        """Move answers with open displacements to least norm, and return these by number."""
         loose = [r for r in rows if r not in self._least and not self.found.determined[r]]
         if loose:
             self._least |= least_places(
@@ -98,7 +98,7 @@ class _Placed:
     ----------
     solved : Solved
     rows, indices : list of int
-        Numbers among what was solved, and positions.
+        Numbers among the solved answers, and positions.
     train : Train
     """
 
@@ -134,7 +134,7 @@ def hot_answers(
     tolerance: float,
     engine: str = "auto",
 ) -> dict[int, Answer]:
-    """Answer what the hot path can, by position."""
+    """Return the answers that the hot path finds, by position."""
     situations = machine.situations(indices)
     found = machine.answer(situations, tolerance, engine_at_hand(engine, len(indices)))
     solved = Solved(machine, situations, found, tolerance)
@@ -144,7 +144,7 @@ def hot_answers(
 
 
 def _record(machine: Machine, found: Answers, row: int) -> Record:
-    """How the hot path answered."""
+    """Return the record of an answer of the hot path."""
     structure, states = machine.structure, found.states[row]
     basis = structure.basis(states)
     acting = states[: structure.rows] != 0
@@ -170,7 +170,7 @@ def _record(machine: Machine, found: Answers, row: int) -> Record:
 
 
 def left_out(answer: Answer) -> tuple[tuple[str, str], ...]:
-    """What did not act in an answer of the hot path, and the figure that says so."""
+    """Return elements that do not act in an answer of the hot path, and the figures that show it."""
     scene, found = answer.scene, answer.equilibrium
     plan = answer.record.plan
     x = coordinates_of(scene, found)

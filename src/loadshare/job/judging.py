@@ -17,7 +17,7 @@ from loadshare.train.situations import Situations
 
 @dataclass(eq=False, repr=False)
 class Judging:
-    """Answers of samples and what the certificate says of them.
+    """Answers of samples, and the certificate's verdicts on them.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Judging:
     judge : Judge
     situations : Situations
     iterate : Iterate
-        Of the samples; answers follow it.
+        Iterate of the samples, from which answers follow.
     tolerance : float
         Largest scaled residual of a certified answer.
     compiled : bool
@@ -34,7 +34,7 @@ class Judging:
     Attributes
     ----------
     answers : Equilibria
-        Once they were judged.
+        Set once they have been judged.
     """
 
     structure: Structure
@@ -49,7 +49,8 @@ class Judging:
     def renewed(self, rows: Flags, bounded: bool = True) -> Verdicts:
         """Judge samples that have changed, the first time all; return the verdicts on all.
 
-        Errors are bounded with every effort, or only where that takes no time (see `Judge.judge`).
+        If `bounded`, errors are bounded with every effort, otherwise only where that takes no time
+        (see `Judge.judge`).
         """
         if self._verdicts is None:
             self.answers = self._answers(self.situations, self.iterate)

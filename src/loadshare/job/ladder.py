@@ -1,9 +1,10 @@
-"""The ladder: what is tried, in order, until an answer is certified.
+"""The ladder: the methods that are tried, in order, until an answer is certified.
 
-The hot path comes first. What it does not solve, or what its certificate refuses, is refused where
-a part of the load displaces it too far for the geometry already; else it goes to a back-end with an
-exact pass on the identified active set, then to the other forms of the loop, down to the exact
-power-cone programme; then it is refused with figures.
+The hot path comes first. A position that it does not solve, or whose certificate does not pass, is
+refused if a part of the load already displaces gears too far for the geometry. Otherwise it goes to
+a back-end with an exact pass on the identified active set, then to the whole scene and the other
+forms of the loop, down to the exact power-cone programme. If all of these fail, it is refused with
+figures.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ from loadshare.train.train import Train
 _NAMED = 5
 """How many gears of a free motion are named."""
 AUTO = "auto"
-"""Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
+"""Instead of a back-end's name: the hot path, and Clarabel for positions that it leaves."""
 
 
 class _Part(NamedTuple):
@@ -53,7 +54,7 @@ class _Part(NamedTuple):
 
 
 def rungs(options: Options) -> Iterator[tuple[str, Options]]:
-    """Yield what was requested, then the whole scene, then the other forms of the loop."""
+    """Yield the requested rung, then the whole scene, then the other forms of the loop."""
     yield f"{options.solver} + exact", options
     if options.reduce:
         yield "whole scene", replace(options, reduce=False)
@@ -77,15 +78,15 @@ def climb_all(
     indices : sequence of int
         1-based positions.
     options : Options
-        For what the hot path leaves.
+        Options for positions that the hot path leaves.
     tolerance : float
     engine : str or None
-        Of the hot path, by name (`engine_at_hand`); None leaves it out.
+        Engine of the hot path, by name (`engine_at_hand`); None leaves the hot path out.
 
     Yields
     ------
     Answer or Refused
-        In the order of the positions; a refusal where no rung gives a certified answer.
+        In the order of the positions; a refusal if no rung gives a certified answer.
     """
     if machine.train.is_placed_anew:
         for index in indices:
@@ -117,10 +118,10 @@ def climb(
     index : int
         1-based.
     options : Options
-        Of the first rung.
+        Options of the first rung.
     tolerance : float
     steps : float
-        Newton steps of exact solves in all; as many as it takes by default.
+        Newton steps of exact solves in all; unlimited by default.
 
     Raises
     ------
@@ -149,7 +150,7 @@ def climb(
                 _refuse_if_driven(scene)
             continue
         if any(record.iterations is others for others in seen):
-            # The same answer once more.
+            # The same answer as that of an earlier rung.
             continue
         seen.append(record.iterations)
         certificate = certify(train, equilibrium, tolerance)
@@ -164,7 +165,7 @@ def climb(
 
 
 def _refuse_if_contradicted(scene: Scene, overlap: float = PLACES.overlap) -> None:
-    """Refuse a position whose rigid limits are shown to leave no place, and name them."""
+    """Refuse a position whose rigid limits provably contradict one another, and name them."""
     against = contradiction(scene, overlap)
     if against:
         raise Refused(
@@ -174,7 +175,7 @@ def _refuse_if_contradicted(scene: Scene, overlap: float = PLACES.overlap) -> No
 
 
 def _refuse_if_driven(scene: Scene) -> None:
-    """Refuse a position whose load is shown to move something without end, and name what."""
+    """Refuse a position whose load provably moves something without end, and name it."""
     moves = runaway(scene)
     if moves:
         first = next(iter(moves))
@@ -199,7 +200,7 @@ def _refuse_if_driven(scene: Scene) -> None:
 
 
 def _other_flanks(scene: Scene, moves: Mapping[str, float]) -> list[str]:
-    """Return the meshes whose other flank a move closes, where they have one flank only."""
+    """Return the meshes with one flank only whose other flank a move would close."""
     train = train_at(scene.train, scene.position)
     move = np.array([moves.get(name, 0.0) for name in scene.coordinates])
     found = []
@@ -218,7 +219,7 @@ def _other_flanks(scene: Scene, moves: Mapping[str, float]) -> list[str]:
 
 
 def _balancing_torque(scene: Scene, moves: Mapping[str, float]) -> str:
-    """Say what a given torque on one of the gears that turn would have to be, if one is given."""
+    """Say which value a given torque on a turning gear would need for balance, if one is given."""
     for name in scene.train.external:
         if name == scene.train.input or f"gear {name} rotation" not in moves:
             continue
@@ -233,7 +234,7 @@ def _balancing_torque(scene: Scene, moves: Mapping[str, float]) -> str:
 
 
 def _balancing_with_backlash(scene: Scene) -> str:
-    """Say the same with both flanks: a torque of the wrong sense presses the wrong ones."""
+    """Say the same with both flanks: a torque of the wrong sense presses the wrong flanks."""
     both = _with_backlash(scene, scene.train.meshes) if scene.train.external else None
     moves = runaway(both) if both is not None else {}
     return _balancing_torque(both, moves) if both is not None and moves else ""
@@ -247,7 +248,7 @@ def _with_backlash(scene: Scene, names: Iterable[str]) -> Scene:
 
 
 def _still_output(scene: Scene) -> str:
-    """Say that the output takes no power: it stands still while what drives it turns."""
+    """Say that the output takes no power, if it stands still while the input turns."""
     train = scene.train
     if train.gears[train.output].ratio:
         return ""
@@ -258,9 +259,9 @@ def _still_output(scene: Scene) -> str:
 
 
 def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:
-    """Part of the load that has an answer, where arcs may lose their hold under all of it.
+    """Return a part of the load that has an answer, if arcs may fail to hold all of it.
 
-    A gear may roll along them until nothing holds it; without arcs the problem is convex.
+    A gear may roll along arcs until nothing holds it; without arcs the problem is convex.
     """
     for share in JOB.lighter if train.drums and train.slip is None else ():
         torque = tuple(share * t for t in train.input_torque)
@@ -273,15 +274,15 @@ def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:
 
 
 def _refuse_if_too_large(index: int, part: _Part | None) -> None:
-    """Refuse a position whose displacements have no meaning under a part of its load."""
+    """Refuse a position that is displaced too far for its geometry under a part of its load."""
     if part is not None and part.displaced.refused:
         text = refusal_text(part.displaced.refused)
         raise Refused(f"position {index}: under {part.share:.0%} of the load, {text}")
 
 
 def _with_large(refusal: Refused, part: _Part | None) -> Refused:
-    """Add to a refusal what a part of the load displaces too far for the geometry already."""
-    # What is never refused, however large, is no reason for a refusal.
+    """Add to a refusal the displacements that are large already under a part of the load."""
+    # Displacements that are never refused, however large, are no reason for a refusal.
     large = {} if part is None else part.displaced.warned
     large = {name: m for name, m in large.items() if m.refusal is not None}
     if part is None or not large:
@@ -314,7 +315,7 @@ def uncertified(index: int, certificate: Certificate) -> Refused:
 
 
 def _runs_away(certificate: Certificate) -> str:
-    """Say that an attempt ends farther off than any gear is large, where something floats."""
+    """Say that an attempt ran away by more than the largest gear's radius, if gears float."""
     train = certificate.claims.train
     far = max((r.value for r in certificate.failing.values() if r.unit == "m"), default=0.0)
     free = [gear for gear in train.floating if gear not in train.limits]

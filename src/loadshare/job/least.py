@@ -1,4 +1,4 @@
-"""Answers of the hot path, moved to their places of least norm where forces leave them open."""
+"""Move answers of the hot path to least norm where forces leave displacements open."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ def least_places(
     rows: Sequence[int],
     tolerance: float,
 ) -> dict[int, Equilibrium]:
-    """Move some answers to their least places, in place, and return them with what is open.
+    """Move some answers to least norm, in place, and return them with the ranges left open.
 
-    An answer whose least place is not certified, because round-off of a move far away shows in a
-    stiff element or in the bound, stays where it is, and so does one whose least place is refused
-    as too far away for the geometry.
+    An answer stays where it is if it is not certified at least norm, because round-off of a long
+    move shows in a stiff element or in the bound, or if it is refused there as too far away for the
+    geometry.
 
     Parameters
     ----------
     machine : Machine
     situations : Situations
     found : Answers
-        To these situations; renewed.
+        Answers to these situations; updated.
     rows : sequence of int
         Numbers of the answers to move.
     tolerance : float

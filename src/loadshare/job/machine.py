@@ -1,4 +1,4 @@
-"""A machine reduced once, and solved for many samples: the first rung of the ladder."""
+"""A machine that is reduced once and solved for many samples: the first rung of the ladder."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Outcome = TypeVar("Outcome")
 
 
 def _compiling(engine: Engine, act: Callable[[Engine], Outcome]) -> Outcome:
-    """Act with an engine, or with the vectorised one in place of one that does not compile."""
+    """Call `act` with an engine, or with the vectorised one if that engine does not compile."""
     try:
         return act(engine)
     except Exception as error:
@@ -55,7 +55,7 @@ def _compiling(engine: Engine, act: Callable[[Engine], Outcome]) -> Outcome:
 
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """What the hot path makes of many samples.
+    """Answers of the hot path to many samples.
 
     Attributes
     ----------
@@ -64,13 +64,13 @@ class Answers:
     equilibria : Equilibria
     verdicts : Verdicts
     passed : ndarray of bool, shape (S,)
-        Certified.
+        Whether the answer is certified.
     states : ndarray of int8, shape (S, switches)
         Which elements act.
     turns : ndarray of int, shape (S,)
-        Sets visited.
+        Number of active sets visited.
     searched : ndarray of bool, shape (S,)
-        Whether exchange alone found nothing, and the proximal method went ahead.
+        Whether exchange alone found nothing, so that the proximal method went ahead.
     determine : callable
         Returns `determined`.
     """
@@ -88,7 +88,7 @@ class Answers:
     def determined(self) -> Flags:
         """Whether the forces determine every displacement of a sample, shape (S,).
 
-        Where they do not, the place given is one possible choice.
+        If they do not, the displacements given are one possible choice.
         """
         return self.determine()
 
@@ -100,15 +100,15 @@ class Machine:
     ----------
     train : Train
     near : Machine, optional
-        Of a case that differs little: where it has the same elements, positions begin at what it
-        found for as many.
+        Machine of a similar case: if it has the same elements, samples begin at its solutions,
+        provided that it solved as many.
     """
 
     def __init__(self, train: Train, near: Machine | None = None) -> None:
         self.train = train
         self._near: tuple[tuple[str, ...], Start] | None = None
         if near is not None and near._last is not None:
-            # Not the machine itself: along a sweep each would hold all those before it.
+            # Not the machine itself: along a sweep each would keep all earlier ones in memory.
             self._near = near._names, near._last
         self._last: Start | None = None
         self._starts: dict[int, Start | None] = {}
@@ -124,29 +124,29 @@ class Machine:
 
     @cached_property
     def judge(self) -> Judge:
-        """Its certificate."""
+        """Judge of its answers."""
         return Judge(self.train)
 
     @property
     def measuring(self) -> Measuring:
-        """What is measured on the displacements of its answers."""
+        """Measures of the displacements of its answers."""
         return self.judge.measuring
 
     @property
     def together(self) -> int:
-        """Equilibria that are solved together: no more than memory is used again for."""
+        """Number of equilibria solved together: no more than fit into memory that is reused."""
         widest = max(len(self.at(1).structure.names), 3 * len(self.train.gears))
         return min(JOB.together, JOB.allocated // (8 * widest))
 
     def share(self, other: Machine) -> None:
-        """Take over what is reduced of a machine that differs in its situations only."""
+        """Take over structure and judge of a machine that differs in its situations only."""
         self._like = other
         if self.train.is_placed_anew:
             return
         self.__dict__["structure"], self.__dict__["judge"] = other.structure, other.judge
 
     def at(self, index: int) -> Machine:
-        """Return the machine of a position (1-based): itself, unless its train is placed again."""
+        """Return the machine of a position (1-based): itself, unless its train is placed anew."""
         if index not in self._placed:
             train = train_at(self.train, index)
             if train is self.train:
@@ -157,7 +157,7 @@ class Machine:
         return self._placed[index]
 
     def situations(self, indices: Sequence[int]) -> Situations:
-        """Return the train's own situations at some positions, kept for the next time."""
+        """Return the train's own situations at some positions, cached."""
         key = tuple(indices)
         if self._own is None or self._own[0] != key:
             self._own = key, situations_of(self.train, key)
@@ -165,7 +165,7 @@ class Machine:
 
     @property
     def first_situation(self) -> Situations:
-        """The train's own situation at the first position: one of all, where these are few."""
+        """The train's own situation at position 1, from those of all positions if they are few."""
         if self.train.count > JOB.each:
             return situation_of(self.train, 1)
         return self.situations(range(1, self.train.count + 1)).take(slice(0, 1))
@@ -185,17 +185,17 @@ class Machine:
         tolerance : float
             Largest scaled residual of a certified answer.
         engine : Engine
-            Where it does not compile, the vectorised one takes its place.
+            If it does not compile, the vectorised one takes its place.
         starts : sequence of int, optional
-            Positions (1-based) at which equal parts of the samples begin where the train itself
-            stands.
+            Positions (1-based) of equal parts of the samples, which begin at the train's own
+            solution there.
         """
         return _compiling(
             engine, lambda engine: self._answer(situations, tolerance, engine, starts)
         )
 
     def learn(self, samples: Samples, positions: Sequence[int], engine: Engine) -> None:
-        """Learn from some of many samples, over all positions, where all begin."""
+        """Learn from some of many samples, over all positions, where all of them begin."""
         if self.train.is_placed_anew:
             for position in positions:
                 self.at(position).learn(samples, [position], engine)
@@ -219,7 +219,8 @@ class Machine:
         tries = np.ones(loading.count, dtype=np.intp)
         searched, led = np.zeros((2, loading.count), dtype=bool)
         judging = Judging(self.structure, self.judge, situations, iterate, tolerance, quick)
-        # What a rule has end on the verge takes long to bound; another way may end clear of it.
+        # Answers on the verge, which a rule may lead to, take long to bound; other ways may avoid
+        # them.
         at_once = rule_first and quick and self.judge.compiles(situations)
         while True:
             found.solved[left] = False
@@ -262,10 +263,10 @@ class Machine:
     def _ways(
         self, loading: Loading, engine: Engine, starts: Sequence[int]
     ) -> tuple[list[Way], bool]:
-        """Ways to solve some of the samples, one after another; whether a rule is the first.
+        """Return the ways to solve some of the samples, in order, and if the first one is a rule.
 
-        A beginning or compiled code that fails: once more from rest, then with NumPy, at last by
-        one element after another.
+        If a start or compiled code fails, samples are solved once more from rest, then with NumPy,
+        at last by exchanging one element at a time.
         """
         rule, numpy = self._rule if starts else None, vectorised.settle
         if starts and rule is None:
@@ -274,7 +275,7 @@ class Machine:
         ways: list[Way] = []
         if rule is not None:
             ways.append(lambda some, _: by_rule(self.structure, some, engine, rule))
-        # To find where the train itself stands takes as long as a few samples.
+        # Solving the train itself takes as long as a few samples.
         if loading.count > len(starts) > 0 or self._beside(loading.count) is not None:
             near = partial(self._near_ones, loading.count, starts, engine)
             ways.append(lambda some, rows: from_near(self.structure, some, engine, near(rows)))
@@ -285,7 +286,7 @@ class Machine:
         return ways, rule is not None
 
     def _at_starts(self, indices: Sequence[int], engine: Engine) -> list[Start | None]:
-        """What the train itself does at some positions; None if the hot path does not know."""
+        """Return the train's own solutions at some positions; None if the hot path finds none."""
         new = [index for index in indices if index not in self._starts]
         if new:
             loading = loading_of(self.structure, self.situations(new))
@@ -299,7 +300,7 @@ class Machine:
     def _near_ones(
         self, count: int, starts: Sequence[int], engine: Engine, rows: Numbers
     ) -> list[tuple[Numbers, Start]]:
-        """Where some of so many samples begin: numbers among them, and a start for these."""
+        """Return starts of some of `count` samples, each with the numbers (in `rows`) it is for."""
         if not starts:
             every = cast(Start, self._beside(count))
             return [(np.arange(len(rows)), every.of(rows))]
@@ -308,7 +309,7 @@ class Machine:
         return [(part, start) for part, start in parts if start is not None]
 
     def _beside(self, count: int) -> Start | None:
-        """What a machine near by did in as many samples; None if nothing is known."""
+        """Return the start that a similar machine gives as many samples; None if it has none."""
         if self._near is None:
             return None
         names, start = self._near
@@ -316,5 +317,5 @@ class Machine:
 
     @property
     def _names(self) -> tuple[str, ...]:
-        """Contacts and forces, in order."""
+        """Names of contacts and kinds of forces, in order."""
         return (*self.structure.row_names, *self.structure.kinds)

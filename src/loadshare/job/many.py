@@ -1,8 +1,8 @@
 """Solve one case again and again with other inputs: `loadshare.solve_many`.
 
 Samples are taken in blocks of a fixed size, so that an answer does not depend on the number of
-workers. Every block goes down the hot path at once, all positions together, and is certified at
-once; single samples that it leaves climb the ladder.
+workers. Every block is solved on the hot path at once, all positions together, and certified at
+once; single samples that the hot path leaves climb the ladder.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ def solve_blocks(
     """Solve samples block by block, in order; memory does not grow with their number.
 
     Parameters and errors are those of :func:`solve_many`. A sample has no answer at a position that
-    only others have. With `least_norm`, displacements that an
-    equilibrium leaves undetermined are the least-norm ones, which takes some milliseconds for every
-    sample with any; otherwise they are one possible choice.
+    only others have. With `least_norm`, displacements that an equilibrium leaves undetermined are
+    the least-norm ones, which takes some milliseconds for every sample with any; otherwise they are
+    one possible choice.
 
     Yields
     ------
@@ -83,7 +83,7 @@ def _solved(
     for rows, group in groups:
         machine = _machine(case, group)
         size = max(min(JOB.block, machine.together), machine.together // len(wanted))
-        # Equal blocks: a short one takes more time for every sample.
+        # Equal blocks: a short one takes more time per sample.
         each = -(-len(rows) // max(1, -(-len(rows) // size)))
         tasks += [(machine, rows, group, slice(at, at + each)) for at in range(0, len(rows), each)]
         if each < len(rows):
@@ -110,7 +110,7 @@ def _solved(
 
 
 def _there(samples: Samples, wanted: tuple[int, ...]) -> tuple[int, ...]:
-    """Positions that samples have; of those that have none, the first says what an answer holds."""
+    """Return the positions that samples have; if none, the first, as a pattern of an answer."""
     return tuple(k for k in wanted if k <= samples.train.count) or (1,)
 
 
@@ -118,7 +118,7 @@ _recent: Recent[Machine] = Recent()
 
 
 def _machine(case: Case, samples: Samples) -> Machine:
-    """Return the machine of samples that share one; what varies in them is no part of it."""
+    """Return the machine of samples, with the reduced parts of a recent one of the same shape."""
     fixed = [(c.path, c.text(0)) for c in samples.columns if c.path not in samples.values]
     which = (frozenset(samples.values), shape_of(samples.train), *fixed)
     machine, known = Machine(samples.train), _recent.of(case, which)
@@ -145,12 +145,13 @@ def solve_many(
     Parameters
     ----------
     case : Case or path
-        Gives what the samples do not.
+        It supplies whatever the samples do not.
     samples : mapping of str to array_like, or data frame
         Values by dotted key, all of one length. The unit is in brackets after the key, as in
         ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units are allowed as well.
     positions : iterable of int, optional
-        1-based positions to solve; all by default. What only some samples have is NaN for others.
+        1-based positions to solve; all by default. A position that only some samples have is NaN
+        for the others.
     keep : iterable of str
         Variables to keep, of "torque", "share", "pair_share" (computed when they are first read),
         "displacement" and "contact_force".
@@ -158,12 +159,13 @@ def solve_many(
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy, with the same answers. "auto" is Numba once it was used in this process,
-        from 300 equilibria on where its code is on disk, else from 200 000 on: compiling takes a
+        above 300 equilibria if its code is on disk, otherwise above 200 000: compiling takes a
         minute or two, once in an installation; if that fails, the log says so.
     workers : int
         Threads, at least one.
     least_norm : bool
-        Move undetermined displacements to the least-norm ones, as `solve` does: takes some ms each.
+        Whether undetermined displacements are the least-norm ones, as in `solve`; takes some ms
+        each.
     progress : Progress, optional
         Called after every block with samples done and in all.
 
@@ -175,17 +177,17 @@ def solve_many(
         displaced; ``contact_force`` [N] of ring contacts; ``residual`` (largest scaled one;
         with Numba without the energy gap, which follows from the others), ``torque_bound`` (largest
         distance of a torque from the exact one, over the largest on a flank or from outside),
-        ``certified``, ``determined``, ``displaced`` (displacements over those of a warning;
-        ``warned`` counts those above 1), ``convex`` (nothing that is not convex carries),
-        ``arc_curvature`` [N/m] that arcs take from the stiffness across them, ``rung`` (see
-        ``flag_meanings``; 0: no answer). What is refused is NaN; ``refused`` (attribute) says why.
+        ``certified``, ``determined``, ``displaced`` (displacements over the limit of a warning;
+        ``warned`` counts those above 1), ``convex`` (no nonconvex element carries a force),
+        ``arc_curvature`` (stiffness that arcs take away across them [N/m]), ``rung`` (see
+        ``flag_meanings``; 0: no answer). Refused answers are NaN; ``refused`` (attribute) says why.
 
     Raises
     ------
     CaseError
         If a key or a value cannot be used; all problems are listed.
     ValueError
-        If a position, a variable, an engine or so many `workers` cannot be, or a tolerance is none.
+        If a position, a variable, an engine, the number of `workers` or the tolerance is not valid.
 
     Examples
     --------
@@ -204,7 +206,7 @@ def solve_many(
     try:
         found.fill(_solved(case, groups, wanted, tolerance, engine, workers, least_norm), progress)
     except CaseError as error:
-        # It names what may be another sample's value.
+        # The value that it names may be another sample's.
         wrong = unusable(case, {column.key: column.values for column in columns})
         raise next(iter(wrong.values()), error) from None
     return found.dataset(case, tolerance)

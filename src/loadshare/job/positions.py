@@ -41,7 +41,7 @@ class Progress(Protocol):
     """Called after every position."""
 
     def __call__(self, done: int, total: int) -> None:
-        """Tell that `done` of `total` positions are finished."""
+        """Report that `done` of `total` positions are finished."""
 
 
 def solve(
@@ -66,15 +66,15 @@ def solve(
     method : {"newton", "picard", "power"}
         Form of the outer loop for nonlinear mesh laws.
     reduce : bool
-        Leave out, and verify, what cannot matter; the answer does not depend on it.
+        Whether to leave out, and verify, what cannot matter; the answer does not depend on it.
     tolerance : float
         Largest scaled residual of a certified answer, up to 1e-3.
     positions : iterable of int, optional
         1-based positions to solve; all by default.
     engine : {"auto", "vectorised", "compiled"}
-        Of the hot path: NumPy, or Numba, which takes a minute to compile the first time. "auto" is
-        Numba once it was used in this process, or 300 positions were solved and it is kept on
-        disk. Answers are the same except for round-off.
+        Engine of the hot path: NumPy, or Numba, which takes a minute to compile the first time.
+        "auto" is Numba once it was used in this process, or once 300 positions were solved and it
+        is kept on disk. Answers are the same except for round-off.
     progress : Progress, optional
         Called after every position.
 
@@ -91,7 +91,7 @@ def solve(
         If a position has no certified answer, or one whose displacements are too large for the
         geometry in which it was found. The other positions are in its ``partial``.
     ValueError
-        If a solver, method, engine or position does not exist, or the tolerance is no tolerance.
+        If a solver, method, engine or position does not exist, or the tolerance is not valid.
 
     Examples
     --------
@@ -125,7 +125,7 @@ def solve(
 
 
 def _together(refusals: Sequence[Refused], result: Result | None) -> Refused:
-    """One refusal for all positions that have no answer, with the worst figures."""
+    """Return one refusal for all positions that have no answer, with the worst figures."""
     figures: dict[str, float] = {}
     for refusal in refusals:
         for name, value in refusal.figures.items():
@@ -142,7 +142,7 @@ def explain(
     reduce: bool = True,
     tolerance: float = CERTIFY.tolerance,
 ) -> Answer:
-    """Solve one position and return everything that is known of how it was solved.
+    """Solve one position and return everything that is known about how it was solved.
 
     Parameters
     ----------
@@ -182,9 +182,10 @@ def explain(
 def _options(
     solver: str, method: str, reduce: bool, engine: str = "auto"
 ) -> tuple[Options, str | None]:
-    """Options of the rungs, and the engine of the hot path; None if that does not come first.
+    """Return the options of the rungs and the engine of the hot path; None to leave that out.
 
-    What only a back-end can do, another form of the loop or the whole scene, is not its task.
+    The hot path is left out if another form of the loop or the whole scene is requested, which only
+    a back-end can do.
     """
     one_of("solver", solver, (AUTO, *SOLVERS))
     one_of("engine", engine, ENGINES)
@@ -197,14 +198,14 @@ def _options(
 _recent: Recent[tuple[Case, Machine, Geometry]] = Recent()
 _sharing = Lock()
 _shapes: OrderedDict[Hashable, dict[tuple[float, float], Machine]] = OrderedDict()
-"""Machines by the shape of their trains, the last ones used at the end, and by their units."""
+"""Machines by the shape of their trains, most recently used last, and by their units."""
 
 
 def prepared(case: Case | str | Path) -> tuple[Case, Machine]:
-    """Return a case, its mesh laws computed where it asks for them, and its machine; built once.
+    """Return a case with its mesh laws computed, and its machine; both are built once.
 
-    What is reduced of a machine is that of the last one whose train had its shape. A case that
-    differs in numbers from one before has its geometry.
+    The machine shares the reduced parts of a recent one whose train has the same shape. A case that
+    differs from a recent one in numbers only has the same geometry.
     """
     case = opened(case)
     written = tuple(map(_when_written, case.law_files))
@@ -219,7 +220,7 @@ def prepared(case: Case | str | Path) -> tuple[Case, Machine]:
 
 
 def _when_written(file: Path) -> tuple[int, int]:
-    """What tells a file from the one that was there before; one that is gone is reported later."""
+    """Return what identifies a file's version; a file that is gone is reported later."""
     try:
         status = file.stat()
     except OSError:
@@ -238,9 +239,10 @@ def _built(case: Case) -> tuple[Train, Geometry]:
 
 
 def share(machine: Machine) -> None:
-    """Let a machine have what is reduced of one whose train has its shape, or be the first.
+    """Let a machine share the reduced parts of one whose train has its shape, or be the first.
 
-    In the same units, so that not a bit of an answer depends on what was solved before.
+    Only machines of the same units share, so that no bit of an answer depends on what was solved
+    before.
     """
     if machine.train.is_placed_anew:
         return
@@ -272,7 +274,7 @@ def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]
         message = f"positions {positions!r}: not a list of positions; {allowed}"
         raise ValueError(message)  # noqa: TRY004 -- one kind of error for all that no position is
     wanted = list(positions)
-    # A position out of an array is an integer of NumPy; a result and its file hold plain ones.
+    # Positions from an array are integers of NumPy; a result and its file hold plain ones.
     wrong = [k for k in wanted if not isinstance(k, Integral) or k is True or k not in there]
     if wrong or not wanted:
         shown = (str(k) if isinstance(k, Integral) else repr(k) for k in wrong)
@@ -285,12 +287,12 @@ def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]
 
 
 def wanted_of(trains: Iterable[Train], positions: Iterable[int] | None) -> tuple[int, ...]:
-    """Return the positions to solve of trains that need not have equally many: those of any.
+    """Return the positions to solve of several trains: those of the train that has most.
 
     Raises
     ------
     ValueError
-        As of `wanted_positions`, where no train has a position.
+        As `wanted_positions`, if no train has a position.
     """
     longest = max(trains, key=lambda train: train.count)
     return tuple(wanted_positions(longest, positions))
@@ -305,14 +307,14 @@ def result_of(
     tolerance: float,
     wanted: Sequence[int],
 ) -> Result:
-    """Put answers together as a result.
+    """Combine answers into a result.
 
     Parameters
     ----------
     case : Case
-        As it was given.
+        The case as given.
     solved : Case
-        The same, its mesh laws computed.
+        The same with its mesh laws computed.
     train : Train
     answers : list of Answer
     options : Options
@@ -327,7 +329,7 @@ def result_of(
 
 
 def _stamp(case: Case, options: Options, tolerance: float, wanted: Sequence[int]) -> Stamp:
-    """Where a result comes from."""
+    """Return the stamp of a result: where it comes from."""
     return Stamp(
         version=__version__,
         case=case.name,

@@ -1,8 +1,8 @@
 """Search for other answers: many starts, and a path from large clearances.
 
-A proof covers the neighbours of an answer (`certify.uniqueness`); this looks further, where ring
-arcs make a problem that is not convex. It is a search, not a proof: what it does not find may still
-be there, and the result says how far it went.
+A proof covers the neighbourhood of an answer (`certify.uniqueness`); this looks further, where ring
+arcs make a problem nonconvex. It is a search, not a proof: answers that it does not find may still
+exist, and the result says how far it went.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ from loadshare.view import View, Viewed
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Search(Viewed):
-    """What a search for other answers found at a position.
+    """Outcome of a search for other answers at a position.
 
     Attributes
     ----------
     answer : Answer
-        The one that is known.
+        The known answer.
     starts : int
         Starts that led to a certified equilibrium, of `JOB.starts`.
     path : bool or None
-        Whether the path from generous clearance ends in the answer; None where it broke off.
+        Whether the path from generous clearance ends in the answer; None if it broke off.
     others : tuple of Equilibrium
         Certified equilibria with other forces, each once.
     """
@@ -79,7 +79,7 @@ class Search(Viewed):
 
 
 def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Search:
-    """Look for other answers of a position.
+    """Search for other answers of a position.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Sear
     position : int
         1-based.
     seed : int
-        Of the random starts.
+        Seed of the random starts.
 
     Raises
     ------
@@ -120,7 +120,7 @@ def _same(one: Equilibrium, other: Equilibrium, known: Answer) -> bool:
 
 
 def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[Equilibrium]:
-    """Certified equilibria from random sets of contacts and random places."""
+    """Return certified equilibria from random active sets and random displacements."""
     structure = machine.structure
     situations = stack([situation_of(machine.train, position)] * JOB.starts)
     loading = loading_of(structure, situations)
@@ -132,7 +132,7 @@ def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[E
         states[:, :rows],
     )
     scale = np.abs(loading.nominal).max(initial=0.0)
-    # From a thousandth of a millionth of the rings' distance up to a tenth of it.
+    # From 1e-9 of the rings' distance up to a tenth of it.
     iterate.x[:] = (
         rng.normal(size=iterate.x.shape) * scale * 10.0 ** -rng.uniform(1, 9, (JOB.starts, 1))
     )
@@ -144,7 +144,7 @@ def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[E
 
 
 def _path(train: Train, position: int, deflection: float) -> Equilibrium | None:
-    """The answer at the end of a path on which clearances shrink to what they are."""
+    """Return the answer at the end of a path on which clearances shrink to their true values."""
     near: Machine | None = None
     extra = [JOB.generous * deflection * 0.5**k for k in range(JOB.path)] + [0.0]
     found: Answer | Refused | None = None

@@ -32,15 +32,15 @@ KEPT: dict[str, Variable] = {
     **{name: VARIABLES[name] for name in ("torque", "share", "pair_share", "displacement")},
     "contact_force": Variable(("contact",), "N", "force of a contact of a ring"),
 }
-"""Of each sample at each position, if it is requested."""
+"""Variables of each sample at each position, if they are requested."""
 SHARES = ("share", "pair_share")
-"""What follows from torques."""
+"""Variables that follow from torques."""
 USUAL = ("torque", "share", "pair_share")
-"""What is kept where nothing else is requested."""
+"""Variables that are kept if nothing else is requested."""
 
 
 def checked(names: Any) -> tuple[str, ...]:
-    """Return variables to keep.
+    """Return the variables to keep.
 
     Raises
     ------
@@ -62,7 +62,7 @@ class Each:
     Attributes
     ----------
     field : str
-        Of a block.
+        Field of a block.
     long_name, units : str
     """
 
@@ -93,7 +93,7 @@ def _refused(where: tuple[int, int], why: str) -> str:
 
 
 def _displacements(answers: Equilibria, gears: list[str]) -> Array:
-    """Displacements of some gears in their planes, (S, gears, 2) [m]."""
+    """Return displacements of some gears in their planes, (S, gears, 2) [m]."""
     order = answers.names.train.order
     frames = np.zeros((3 * len(order), 2 * len(gears)))
     for column, gear in enumerate(gears):
@@ -105,7 +105,7 @@ def _displacements(answers: Equilibria, gears: list[str]) -> Array:
 
 @lru_cache(maxsize=16)
 def _coordinates(count: int, *labels: tuple[str, tuple[Any, ...]]) -> xr.Coordinates:
-    """Labels of samples and of other dimensions; the same ones for batches that are alike."""
+    """Return labels of samples and other dimensions, cached for batches of the same labels."""
     import xarray as xr
 
     return xr.Coordinates({"sample": np.arange(count), **{d: list(names) for d, names in labels}})
@@ -133,7 +133,7 @@ class Table:
         }
         self.keep = keep
         self.stages = trains[0].stages
-        # Shares follow from torques, unless samples are grouped into stages in several ways.
+        # Shares follow from torques, unless trains group their meshes into different stages.
         alike = all(train.stages == self.stages for train in trains)
         later = [name for name in keep if alike and name in SHARES]
         self.largest = self._empty(np.nan, ())
@@ -148,7 +148,7 @@ class Table:
         return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value)
 
     def fill(self, blocks: Iterable[Block], progress: Progress | None = None) -> None:
-        """Write all blocks, and tell after each how many samples are done."""
+        """Write all blocks, and report after each how many samples are done."""
         done, count = 0, len(self.coords["sample"])
         for block in blocks:
             self.write(block)
@@ -159,7 +159,7 @@ class Table:
     def write(self, block: Block) -> None:
         """Write a block in its place."""
         rows = block.rows
-        # Many samples of one shape of train follow one another; a slice is written at once.
+        # Samples of one train often follow one another; a slice is written at once.
         place = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] == len(rows) - 1 else rows
         for name, each in EACH.items():
             self.each[name][place] = getattr(block, each.field)
@@ -182,7 +182,7 @@ class Table:
         """Return a variable of answers at one position, and the elements that it is of."""
         train = answers.names.train
         if name == "displacement":
-            # What does not move in these samples may do so in others.
+            # A gear that does not move in these samples may do so in others.
             gears = self.coords["gear"]
             return gears, _displacements(answers, gears)
         if name == "contact_force":
@@ -193,7 +193,7 @@ class Table:
         return list(torques.meshes), found
 
     def _values(self, name: str) -> Any:
-        """Return what was written, or what is computed from it when it is read."""
+        """Return the values written, or an array that is computed from them when read."""
         if name in self.variables:
             return self.variables[name]
         from loadshare.job.derived import shares_when_read
@@ -209,11 +209,11 @@ class Table:
         for name, each in EACH.items():
             attributes: dict[str, object] = {"units": each.units, "long_name": each.long_name}
             if name == "rung":
-                # As the climate and forecast conventions name numbers.
+                # Numbers are named as in the climate and forecast (CF) conventions.
                 attributes["flag_values"] = np.arange(len(RUNGS), dtype=np.int8)
                 attributes["flag_meanings"] = " ".join(r.replace(" ", "_") for r in RUNGS)
             found.append((name, EVERY, self.each[name], attributes))
-        # As they are: what looks at them more closely imports dask first.
+        # `fastpath` takes values as they are: any closer look at them would import dask first.
         data = {
             name: xr.Variable(dims, values, attributes, fastpath=True)
             for name, dims, values, attributes in found
@@ -231,7 +231,7 @@ class Table:
                 "loadshare_version": __version__,
                 "tolerance": tolerance,
                 "warned": int((self.each["displaced"] > 1.0).sum()),
-                # A text: netCDF has no tables, and no lists of none or one.
+                # A text: netCDF has no tables, and no lists of fewer than two entries.
                 "refused": "\n".join(starmap(_refused, sorted(self.message.items()))),
             },
         )

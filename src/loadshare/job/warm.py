@@ -1,4 +1,4 @@
-"""Compile ahead of time what answers many samples, for images and shared installations."""
+"""Compile the code for many samples ahead of time, for images and shared installations."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ def warm() -> str | None:
     Returns
     -------
     str or None
-        Why nothing could be compiled or kept; None where all is there.
+        Why nothing could be compiled or kept; None if all is there.
     """
-    # Nothing is checked beforehand: what is there is read in a moment, and all that a batch calls
-    # has to be there.
+    # Nothing is checked beforehand: code that is there is read in a moment, and a batch calls all
+    # that has to be there.
     case = Case(tomllib.loads(starter_case("warm", "split-path")))
     assert case.operating is not None
     torque = case.operating.input_torque[0]

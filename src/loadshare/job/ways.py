@@ -1,4 +1,4 @@
-"""Ways to solve samples of one structure: from rest, from what is near, by a rule, by a search."""
+"""Ways to solve samples of one structure: from rest, a nearby start, by a rule, by a search."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from loadshare.solver.hot.proximal import search
 from loadshare.solver.hot.rule import Rule, rule_of
 
 Way = Callable[[Loading, Numbers], tuple[Iterate, Found]]
-"""How some samples are solved, given with their numbers."""
+"""A way to solve some samples, given with their numbers."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Start:
-    """Where samples begin: contacts and forces as in an equilibrium that is near.
+    """Where samples begin: contact states and forces of a nearby equilibrium.
 
-    One row for all samples, or one for each. Radial elements begin on their first piece all the
-    same: a slip is found from stick more surely than from another sample's slip.
+    It has one row for all samples, or one for each. Radial elements begin on their first piece in
+    any case: slip is found more reliably from stick than from another sample's slip.
     """
 
     states: States
@@ -39,7 +39,7 @@ class Start:
 
 
 def start_of(structure: Structure, loading: Loading, iterate: Iterate, found: Found) -> Start:
-    """Return what others can begin at: where samples have arrived."""
+    """Return the solutions of samples as a start for others."""
     share = np.abs(iterate.force) / pushes(loading)[:, None]
     return Start(found.states[:, : structure.rows], share)
 
@@ -47,7 +47,7 @@ def start_of(structure: Structure, loading: Loading, iterate: Iterate, found: Fo
 def from_rest(
     structure: Structure, loading: Loading, engine: Engine, singly: bool = False
 ) -> tuple[Iterate, Found]:
-    """Let samples begin where nothing is displaced."""
+    """Solve samples that begin without any displacement."""
     iterate = at_rest(structure, loading)
     return iterate, exchange(structure, loading, iterate, engine, singly=singly)
 
@@ -55,7 +55,7 @@ def from_rest(
 def from_near(
     structure: Structure, loading: Loading, engine: Engine, near: Sequence[tuple[Numbers, Start]]
 ) -> tuple[Iterate, Found]:
-    """Let samples begin at a start, which is given with the numbers of those that it is for."""
+    """Solve samples that begin at starts, each given with the numbers of its samples."""
     iterate, states = at_rest(structure, loading), first_sets(structure, loading)
     for rows, start in near:
         states[rows, : structure.rows] = start.states
@@ -66,7 +66,7 @@ def from_near(
 def by_rule(
     structure: Structure, loading: Loading, engine: Engine, rule: Rule
 ) -> tuple[Iterate, Found]:
-    """Let samples begin where a rule says."""
+    """Solve samples that begin where a rule says."""
     states, iterate = rule.start(structure, loading)
     return iterate, exchange(structure, loading, iterate, engine, states)
 
@@ -94,20 +94,21 @@ def search_all(
 ) -> Numbers:
     """Search equilibria of some samples by the proximal method, one by one.
 
-    Others mostly end on the same set: they begin there, as long as that leads some of them to
-    an answer. What was led and comes back was no equilibrium, and is searched for.
+    The other samples mostly have the same active set: they are started from each answer found, as
+    long as enough of them are solved that way. A sample that was solved so but comes back, since
+    its answer was not certified, is searched for like the first.
 
     Parameters
     ----------
     rows : ndarray of int
         Numbers of the samples.
     led : ndarray of bool, shape (S,)
-        Which samples were led; renewed in place.
+        Samples that were solved from the answer of another one; updated in place.
 
     Returns
     -------
     ndarray of int
-        Which samples were searched for.
+        Numbers of the samples that were searched for.
     """
     done: list[int] = []
     left, leads = rows, True
