@@ -190,7 +190,7 @@ def _solve_fixed(
     stay: bool,
     shared: bool,
 ) -> tuple[Point, bool] | None:
-    """Solve the smooth equations of an active set by Newton's method; return if it settled too.
+    """Solve the smooth equations of an active set by Newton's method, and say whether it settled.
 
     On a wrong active set the equations may have no solution; the point that the steps reach still
     shows what to exchange.
