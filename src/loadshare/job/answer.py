@@ -40,7 +40,7 @@ class Answer(Viewed):
     how : callable
         Returns plan, passes of the outer loop, and what was left out.
     small : bool
-        Whether its displacements are known to be well below the limits of a refusal.
+        Whether its displacements are known to be below the limits of a refusal.
     """
 
     train: Train

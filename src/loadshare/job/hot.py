@@ -49,7 +49,7 @@ class Solved:
 
     @cached_property
     def small(self) -> Flags:
-        """Whether displacements are known to be well below the limits of a refusal, (S,)."""
+        """Whether displacements are known to be below the limits of a refusal, (S,)."""
         found = self.found
         if (found.verdicts.displaced < JOB.small).all():
             # The limit of a warning is below that of a refusal.
@@ -170,7 +170,7 @@ def _record(machine: Machine, found: Answers, row: int) -> Record:
 
 
 def left_out(answer: Answer) -> tuple[tuple[str, str], ...]:
-    """Return elements that do not act in an answer of the hot path, and the figures that show it."""
+    """Return the elements that did not act in an answer of the hot path, and figures to show it."""
     scene, found = answer.scene, answer.equilibrium
     plan = answer.record.plan
     x = coordinates_of(scene, found)

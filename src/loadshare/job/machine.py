@@ -263,7 +263,7 @@ class Machine:
     def _ways(
         self, loading: Loading, engine: Engine, starts: Sequence[int]
     ) -> tuple[list[Way], bool]:
-        """Return the ways to solve some of the samples, in order, and if the first one is a rule.
+        """Return the ways to solve some of the samples, in order, and whether a rule is first.
 
         If a start or compiled code fails, samples are solved once more from rest, then with NumPy,
         at last by exchanging one element at a time.
