@@ -163,7 +163,7 @@ class Radial:
         return float(np.linalg.norm(self.offset(x)))
 
     def law(self, torque: float, x: Array | None = None) -> RadialLaw:
-        """Return the law at a torque over the element; for a power law, its tangent at x."""
+        """Return the law at a torque over the element; for a rolling law, its tangent at x."""
         if isinstance(self.source, RollingLaw):
             return self.source.touching(0.0 if x is None else self.radius(x))
         return self.source if isinstance(self.source, RadialLaw) else self.source.law(torque)
