@@ -1,4 +1,4 @@
-"""Measured against computed."""
+"""Comparison of measured and computed figures."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from loadshare.study.positions import loaded
 from loadshare.view import View, Viewed
 
 MEANS = ("torque", "share", "pair_share")
-"""Quantities of a mesh: without a position, their mean over all positions is taken."""
+"""Quantities of a mesh; if no position is given, their mean over all positions is used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """A measured figure and the one computed for it.
+    """A measured figure and its computed counterpart.
 
     Attributes
     ----------
@@ -85,13 +85,13 @@ class Deviation:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Viewed):
-    """All measured figures of a case against the computed ones.
+    """All measured figures of a case, compared with the computed ones.
 
     Attributes
     ----------
     deviations : tuple of Deviation
     result : Result
-        What was computed, certified.
+        The certified result.
     """
 
     deviations: tuple[Deviation, ...]
@@ -103,7 +103,7 @@ class Comparison(Viewed):
         return math.fsum(d.deviations**2 for d in self.deviations)
 
     def to_frame(self) -> pd.DataFrame:
-        """The comparison as a table."""
+        """Return the comparison as a table."""
         of_target = ("measurement", "quantity", "where", "position")
         rows = [
             {name: getattr(d.target, name) for name in of_target}
@@ -114,16 +114,16 @@ class Comparison(Viewed):
         return pd.DataFrame(rows)
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The table of `to_frame`, with the unit of each figure next to it."""
+        """Return the table of `to_frame`, with the unit of each figure next to it."""
         table = self.to_frame()
         return table.assign(unit=[d.target.unit or "1" for d in self.deviations])
 
     def plot(self) -> Figure:
-        """Picture of how far every computed figure is from the measured one."""
+        """Plot how far every computed figure is from the measured one."""
         return picture(self)
 
     def _view(self) -> View:
-        """Show measured against computed figures."""
+        """Show the measured figures next to the computed ones."""
         chi = f"{self.chi_square:.4g} of {len(self.deviations)} figures"
         rows = tuple(
             (
@@ -140,7 +140,7 @@ class Comparison(Viewed):
 
 
 def compare(case: Case | str | FilePath, *, progress: Progress | None = None) -> Comparison:
-    """Compare what a case says was measured with what is computed.
+    """Compare the measurements in a case with computed figures.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def compare(case: Case | str | FilePath, *, progress: Progress | None = None) ->
     Raises
     ------
     CaseError
-        If the case holds no measurement, or of what carries no load, or cannot be used.
+        If the case cannot be used, holds no measurement, or holds one of an element without load.
     Refused
         If a position has no certified equilibrium.
 
@@ -214,12 +214,12 @@ def needed(wanted: list[Target]) -> list[int] | None:
 
 
 def computed(case: Case, wanted: Iterable[Target], result: Result) -> list[float]:
-    """Return the computed figures for measured ones [N·m] or [-].
+    """Return the computed counterparts of measured figures [N·m] or [-].
 
     Raises
     ------
     CaseError
-        If there is none for some.
+        If a measured figure has no computed counterpart.
     """
     found = {target: _computed(target, result) for target in wanted}
     message = "has nothing to be compared with: what it is of carries no load"
@@ -231,7 +231,7 @@ def computed(case: Case, wanted: Iterable[Target], result: Result) -> list[float
 
 
 def _computed(target: Target, result: Result) -> float:
-    """Return one of them; NaN where there is none."""
+    """Return the computed counterpart of one figure; NaN if there is none."""
     values = [getattr(p, kind)[mesh] for p, kind, mesh in _of_meshes(target, result)]
     if target.quantity in MEANS:
         return float(np.mean([np.nan if v is None else v for v in values]))
@@ -239,7 +239,7 @@ def _computed(target: Target, result: Result) -> float:
 
 
 def _of_meshes(target: Target, result: Result) -> list[tuple[Position, str, str]]:
-    """Positions, quantities and meshes whose mean or largest value a figure is."""
+    """Return the positions, quantities and meshes over which a figure is the mean or maximum."""
     at = [p for p in result.positions if target.position in (None, p.position)]
     if target.quantity in MEANS:
         return [(p, target.quantity, target.where) for p in at]

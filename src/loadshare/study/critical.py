@@ -1,9 +1,9 @@
-"""Critical values: where along a parameter the active set changes.
+"""Critical values: the values of a parameter at which the active set changes.
 
-On one active set the equilibrium follows smooth equations. Between two certified points of one set
-a bound proves that no gauge of an element (an approach, a force, a radius) reaches zero; where the
-sets differ, the zero of a gauge is found on the branch, and the stretches up to it are proved on
-either side (`loadshare.study.follow`). What cannot be proved is named.
+On one active set the equilibrium follows smooth equations. Between two certified points with the
+same set, a bound proves that no gauge of an element (an approach, a force, a radius) reaches zero.
+Where the sets differ, the zero of a gauge is found on the branch, and the stretches on either side
+are proved up to it (`loadshare.study.follow`). Stretches that cannot be proved are listed.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from loadshare.study.positions import alike, loaded
 from loadshare.view import View, Viewed
 
 SHOWN = 5
-"""Intervals that are named one by one where they are not proved."""
+"""Number of unproved intervals that are listed one by one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class Critical(Viewed):
     events : tuple of Event
         By position, then by value.
     unproved : tuple of Unproved
-        Where there may be further events; everywhere else there are none.
+        Intervals that may hold further events; everywhere else there are none.
     """
 
     parameter: Parameter
@@ -79,12 +79,12 @@ class Critical(Viewed):
     unproved: tuple[Unproved, ...] = ()
 
     def marks(self, position: int | None = None) -> tuple[tuple[float, str], ...]:
-        """Values and words for a picture; events at one value share a line.
+        """Return values and labels for a picture; events at the same value share a label.
 
         Parameters
         ----------
         position : int, optional
-            1-based; the first one found by default.
+            1-based; that of the first event by default.
         """
         here = [e for e in self.events if e.position == (position or self.events[0].position)]
         words: dict[float, dict[str, None]] = {}
@@ -94,16 +94,16 @@ class Critical(Viewed):
         return tuple((value, "; ".join(events)) for value, events in words.items())
 
     def of(self, kind: str = "", gear: str | None = None) -> tuple[Event, ...]:
-        """Events of a kind, of a gear, or both."""
+        """Return the events of a kind, of a gear, or of both."""
         return tuple(e for e in self.events if kind in e.kind and (gear is None or e.gear == gear))
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The events as a table, one row each, by the attributes of `Event`."""
+        """Return the events as a table: a row for each event, a column for each attribute."""
         columns = [f.name for f in fields(Event)]
         return pd.DataFrame(list(map(astuple, self.events)), columns=columns)
 
     def plot(self) -> Figure:
-        """Picture of the events: an element in a row, the input along x."""
+        """Plot the events: one row for each element, the input along x."""
         return picture(self)
 
     def _view(self) -> View:
@@ -156,15 +156,15 @@ def critical(
     start, stop : physical value or number
         Ends of the interval, such as ``"0 um"`` and ``"12 um"``.
     positions : iterable of int, optional
-        1-based positions; all by default. Positions that differ in nothing are solved once.
+        1-based positions; all by default. Identical positions are solved once.
     progress : Progress, optional
         Called after every position.
 
     Returns
     -------
     Critical
-        The events, and the intervals for which it is not proved that there are no others. The zero
-        of an event's gauge is found to round-off, about 1e-12 of the value.
+        The events, and the intervals in which further events could not be excluded. The zero of an
+        event's gauge is found to round-off, about 1e-12 of the value.
 
     Raises
     ------

@@ -45,7 +45,7 @@ class Event:
     position : int
         1-based meshing position.
     element : str
-        What changes its state: a flank, a ring's contact, a spline.
+        The element that changes its state: a flank, a ring's contact, a spline.
     gear : str or None
         The float concerned, for a ring or spline.
     kind : str
@@ -54,15 +54,15 @@ class Event:
     before, after : str
         State below and above the value.
     together : int
-        How many elements change at this very value; 1 for all but symmetric cases.
+        How many elements change at exactly this value; 1 except in symmetric cases.
     confirmed : bool
         Whether it is proved that these elements change here and, between the certified solves on
         both sides, nothing else does.
     worst : float
-        Larger one of the two certificates' worst scaled residuals.
+        Larger of the worst scaled residuals of the two certificates.
     apart : float
-        Distance of the two certified solves from the event, in the unit; where it is not confirmed,
-        of the ends of what is not proved.
+        Distance of the two certified solves from the event, in the unit; if it is not confirmed,
+        that of the ends of the unproved interval.
     """
 
     value: float
@@ -84,7 +84,7 @@ class Event:
 
 
 def events_of(line: Line, position: int, change: Change) -> list[Event]:
-    """Tell a change of the set element by element.
+    """Return a change of the set as events, one for each element.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
 
 
 def _events(line: Line, position: int, change: Change, together: int) -> partial[Event]:
-    """Return what makes events of a change, from element, gear, kind and both states."""
+    """Return `Event` with a change filled in; element, gear, kind and both states are missing."""
     return partial(
         Event,
         value=change.value,
@@ -132,7 +132,7 @@ def _events(line: Line, position: int, change: Change, together: int) -> partial
 
 
 def _state(states: int, is_row: bool, is_ring: bool) -> str:
-    """Words for the state that a code names."""
+    """Return the word for a coded state."""
     if is_row:
         return "open" if states == at.OPEN else "closed"
     if is_ring:
@@ -141,9 +141,9 @@ def _state(states: int, is_row: bool, is_ring: bool) -> str:
 
 
 def flanks_changed(line: Line, position: int, gap: Gap) -> list[Event]:
-    """Tell of which meshes without backlash the load presses another flank behind a gap.
+    """Return the meshes without backlash whose loaded flank changes across a gap, as events.
 
-    On either side a mesh of one flank has the one that is pressed, so no contact opens or closes.
+    Such a mesh has a single flank on either side, the loaded one, so no contact opens or closes.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Unknown inputs fitted to what was measured."""
+"""Fits of unknown inputs to measured figures."""
 
 from __future__ import annotations
 
@@ -61,16 +61,16 @@ class Fit(Viewed):
         In the parameters' units; from the stated uncertainties. Infinite (covariance) or NaN
         (correlation) where the data do not determine an input.
     singular_values : ndarray, shape (min(m, n),)
-        Of the sensitivities, measured in standard deviations over the range of each unknown.
+        Of the sensitivities, in standard deviations of the figures per range of each unknown.
     warnings : tuple of str
         Which inputs the data cannot determine separately, which are at a bound, and whether the
         figures are too far from the measured ones for their uncertainties.
     comparison : Comparison
-        Measured against computed at the fitted values, certified.
+        Measured figures and those computed at the fitted values, certified.
     starts : tuple of float
         χ² reached from every starting point; NaN where one failed.
     evaluations : int
-        Sets of equilibria solved.
+        Number of sets of equilibria that were solved.
     """
 
     case: Case
@@ -90,16 +90,16 @@ class Fit(Viewed):
 
     @property
     def freedom(self) -> int:
-        """Figures less unknowns."""
+        """Degrees of freedom: figures less unknowns."""
         return len(self.comparison.deviations) - len(self.unknowns)
 
     @property
     def values(self) -> dict[str, str | float]:
-        """Fitted values by parameter, as a case file says them."""
+        """Fitted values by parameter, as a case file writes them."""
         return {u.parameter.name: u.parameter.text(u.value) for u in self.unknowns}
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The fitted inputs as a table, one row each, in the unit given next to them."""
+        """Return the fitted inputs as a table, one row each, with their units."""
         rows = [
             {"input": u.parameter.name, "value": u.value, "deviation": u.deviation}
             | {"unit": u.parameter.unit or "1", "low": u.low, "high": u.high}
@@ -109,7 +109,7 @@ class Fit(Viewed):
         return pd.DataFrame(rows)
 
     def plot(self) -> Figure:
-        """Picture of how far every figure, computed at the fitted values, is from the measured."""
+        """Plot how far every figure computed at the fitted values is from the measured one."""
         return picture(self)
 
     def _view(self) -> View:
@@ -139,7 +139,7 @@ def fit(
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> Fit:
-    """Fit inputs of a case to what was measured.
+    """Fit inputs of a case to measured figures.
 
     Parameters
     ----------
@@ -147,14 +147,14 @@ def fit(
         With measurements, ``[measured.NAME]``.
     unknowns : mapping of key to (low, high)
         Bounds, also as a text "LOW:HIGH", by dotted key path, pattern or tuple of keys (which take
-        the same value). The case's own value is the first starting point if it lies between, else
-        the middle.
+        the same value). The first starting point is the case's own value if it lies between the
+        bounds, else their middle.
     starts : int
-        Starting points; the further ones are Sobol points between the bounds.
+        Number of starting points; those after the first are Sobol points between the bounds.
     seed : int
-        Of those points.
+        Of the Sobol points.
     progress : callable, optional
-        Called with the number of starting points that are done, and of all.
+        Called with the number of starting points that are done and the number of all.
 
     Returns
     -------
@@ -168,7 +168,7 @@ def fit(
     Refused
         If no starting point leads to a certified answer.
     ValueError
-        If `starts` is no whole number from 1 on.
+        If `starts` is not a whole number of at least 1.
 
     Examples
     --------
@@ -245,7 +245,7 @@ def _determined(jacobian: Array) -> tuple[Array, Array, list[list[int]]]:
     ndarray, shape (n, n)
         Covariance; infinite for inputs that are left open.
     list of list of int
-        These inputs, those together that can make up for each other.
+        These inputs, in groups whose members can compensate for one another.
     """
     _, sizes, right = np.linalg.svd(jacobian, full_matrices=True)
     full = np.zeros(len(right))
@@ -259,18 +259,18 @@ def _determined(jacobian: Array) -> tuple[Array, Array, list[list[int]]]:
 
 
 def _left_open(names: list[str], elsewhere: bool) -> str:
-    """Say that the data do not determine some inputs; elsewhere they may well depend on one."""
+    """Say that the data do not determine some inputs; with `elsewhere`, at the point found only."""
     if len(names) > 1:
         return f"The data cannot tell {', '.join(names)} apart."
-    # A start in a flat place goes nowhere.
+    # From a start where the figures are flat the search does not move.
     who = "Where the search ended, the figures do not depend on" if elsewhere else ""
     return f"{who or 'The data do not determine'} {names[0]}."
 
 
 def _too_far(comparison: Comparison, unknowns: int) -> list[str]:
-    """Say if χ² is larger than the stated uncertainties make it, but for one time in a thousand."""
+    """Warn if χ² exceeds what the stated uncertainties give in all but one case in a thousand."""
     freedom, chi = len(comparison.deviations) - unknowns, comparison.chi_square
-    # Where all could be met, what is not met at a bound counts as one figure.
+    # Where all figures could be met, those missed because of a bound count as one.
     usual = float(special.chdtri(max(freedom, 1), FIT.improbable))
     if chi <= usual:
         return []
@@ -282,18 +282,18 @@ def _too_far(comparison: Comparison, unknowns: int) -> list[str]:
 
 
 def _groups(loose: Array) -> list[list[int]]:
-    """Inputs that the data leave open, those together that can make up for each other.
+    """Group the inputs that the data leave open; members of a group can compensate for one another.
 
     Parameters
     ----------
     loose : ndarray, shape (k, n)
-        Orthonormal directions that change no figure. Their projector, unlike themselves, does not
-        depend on how they were chosen.
+        Orthonormal directions that change no figure. Their projector, unlike the directions, does
+        not depend on how they were chosen.
     """
     from scipy.sparse.csgraph import connected_components
 
     shared = np.abs(loose.T @ loose)
-    # However small its part, an input that has one is not determined: another can move it.
+    # An input with any part in them, however small, is not determined: another can move it.
     left_open = np.flatnonzero(np.diag(shared) > FIT.separable**2)
     count, group = connected_components(
         shared[np.ix_(left_open, left_open)] > FIT.separable, directed=False

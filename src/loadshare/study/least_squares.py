@@ -39,11 +39,12 @@ from loadshare.tooth import with_own_laws
 
 
 class LeastSquares:
-    """The least-squares problem, its unknowns scaled to [0, 1] between their bounds."""
+    """The least-squares problem of a fit, with unknowns scaled to [0, 1] between their bounds."""
 
     def __init__(self, case: Case, unknowns: Mapping[Any, Sequence[object] | str]) -> None:
         names = list(map(named, unknowns))
-        # Laws that no unknown touches are computed once, but stay the teeth's in what is found.
+        # Laws that no unknown affects are computed once; in the fitted case they remain computed
+        # from the teeth.
         self.written, self.case = with_own_laws(case, paths_of(names)), loaded(case, names)
         self.targets: list[Target] = targets(case)
         self.positions = needed(self.targets)
@@ -69,7 +70,7 @@ class LeastSquares:
         self._last: tuple[bytes, Case, Result] | None = None
 
     def of_bounds(self) -> CaseError | None:
-        """Return which bounds make no case by themselves, if any does not."""
+        """Return an error that names every bound which on its own gives no valid case, or None."""
         problems: list[Problem] = []
         for parameter, *ends in zip(self.parameters, self.low, self.high, strict=True):
             for end in map(float, ends):
@@ -81,7 +82,7 @@ class LeastSquares:
         return CaseError(problems) if problems else None
 
     def starting_points(self, count: int, seed: int) -> list[Array]:
-        """Return the values of `own`, then Sobol points."""
+        """Return the scaled values of `own`, then Sobol points."""
         points = [(self.own() - self.low) / (self.high - self.low)]
         if count > 1:
             power = math.ceil(math.log2(count))
@@ -90,7 +91,7 @@ class LeastSquares:
         return points
 
     def own(self) -> Array:
-        """Values of the case itself; the middle of the bounds where it gives none between them."""
+        """Return the case's own values; the middle of the bounds if one is not between them."""
         data, found = self.case.to_dict(), np.array((self.low + self.high) / 2)
         for k, parameter in enumerate(self.parameters):
             value = read_value(look_up(data, parse(parameter.keys[0])))
@@ -100,11 +101,11 @@ class LeastSquares:
         return found
 
     def numbers(self, u: Array) -> Array:
-        """Values of the unknowns from their places between the bounds."""
+        """Return the values of the unknowns at a scaled point."""
         return np.asarray(self.low + np.clip(u, 0.0, 1.0) * (self.high - self.low))
 
     def solved(self, u: Array) -> tuple[Case, Result]:
-        """Return the case and its certified result at a point; the last one is kept."""
+        """Return the case and its certified result at a point; the last ones are kept."""
         key = u.tobytes()
         if self._last is None or self._last[0] != key:
             case = applied(self.case, self.parameters, self.numbers(u))
@@ -113,15 +114,15 @@ class LeastSquares:
         return self._last[1], self._last[2]
 
     def residual(self, u: Array) -> Array:
-        """Computed less measured figures, in standard deviations."""
+        """Return computed less measured figures, in standard deviations."""
         _, result = self.solved(u)
         found = np.array(computed(self.case, self.targets, result))
         return np.asarray((found - self.measured) / self.spread)
 
     def jacobian(self, u: Array) -> Array:
-        """Derivative of the residual with respect to the scaled unknowns."""
+        """Return the derivative of the residual with respect to the scaled unknowns."""
         case, result = self.solved(u)
-        # What has a twin varies with it.
+        # An entry of a support varies with its twin, so one of the two is enough.
         keys = [
             [key for n, key in enumerate(p.keys) if twin_of(key) not in p.keys[:n]]
             for p in self.parameters
@@ -132,14 +133,14 @@ class LeastSquares:
         return np.asarray(np.array(columns).T / self.spread[:, None] * scale)
 
     def _column(self, rates: Sensitivity, result: Result, key: str) -> Array:
-        """Derivatives of the figures with respect to one key, per unit of its value."""
+        """Return the derivatives of the figures with respect to one key, per unit of its value."""
         factor = next(item.value.factor for item in rates.inputs if item.key == key)
         rate = partial(_mean, rates, key)
         return factor * np.array([slope(t, result, rate) for t in self.targets])
 
     def descend(self, start: Array) -> tuple[float, Array]:
-        """Return the χ² and the point to which a start leads."""
-        # The method keeps strictly inside; a start on a bound would be moved by it anyway.
+        """Minimise from a starting point; return the χ² and the point reached."""
+        # The method stays strictly inside the bounds and would move a start on a bound anyway.
         found = optimize.least_squares(
             self.residual,
             np.clip(start, FIT.inside, 1.0 - FIT.inside),
@@ -153,19 +154,19 @@ class LeastSquares:
         return 2.0 * float(found.cost), self._snapped(np.asarray(found.x))
 
     def _snapped(self, u: Array) -> Array:
-        """Put what the method left a hair inside a bound onto it."""
+        """Move values that the method left just inside a bound onto it."""
         return np.where(u < FIT.at_bound, 0.0, np.where(u > 1.0 - FIT.at_bound, 1.0, u))
 
 
 def _ends(bounds: object) -> list[object]:
-    """Ends of a range, which a text may hold as a command takes it, "0 um:100 um"."""
+    """Return the ends of a range, which may be a text as on the command line, "0 um:100 um"."""
     if isinstance(bounds, str):
         return [*bounds.split(":")]
     return list(bounds) if isinstance(bounds, Iterable) else [bounds]
 
 
 def _mean(rates: Sensitivity, key: str, position: int, kind: str) -> dict[str, float]:
-    """Derivatives by mesh; at a kink the mean of both sides, or the one that exists."""
+    """Return derivatives by mesh; at a kink the mean of both sides, or the side that exists."""
     sides = [getattr(rates.rates[position, key, side], kind) for side in ("falling", "rising")]
     found = {}
     for mesh in sides[0]:

@@ -1,8 +1,8 @@
-"""A march with memory: revolutions of the gears, and spline friction that remembers its slip.
+"""A march with memory: revolutions of the gears, with spline friction that remembers its slip.
 
 At every step the programme of formulation section 5 is solved with the change of the slip, s − s₀,
-in place of the slip: the implicit step of a friction law, which dissipates F_m times the size of
-that change. Every step is certified with its memory.
+in place of the slip. This is the implicit step of a friction law that dissipates F_m times the
+size of that change. The certificate of every step includes this memory.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from loadshare.view import View, Viewed, by_name
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Slip(Comparable):
-    """What a spline did in one step.
+    """The slip of a spline in one step.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Slip(Comparable):
     friction : float
         Friction bound F_m [N].
     dissipated : float
-        Energy that friction took up in the step [J].
+        Energy dissipated by friction in the step [J].
     """
 
     slip: Vector
@@ -64,7 +64,7 @@ class Slip(Comparable):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class March(Viewed):
-    """Certified equilibria along a march, each from the slip of the one before.
+    """Certified equilibria along a march, each starting from the slip of the one before.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class March(Viewed):
 
     @property
     def dissipated(self) -> float:
-        """Energy that the splines dissipated [J]."""
+        """Energy dissipated by all splines [J]."""
         return float(sum(s.dissipated for step in self.slips for s in step.values()))
 
     @cached_property
@@ -94,7 +94,7 @@ class March(Viewed):
         return unchanging(march_dataset(self))
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Torques and coefficients, one row per step and mesh, with the revolutions."""
+        """Return torques and coefficients, one row per step and mesh, with the revolutions."""
         table = self.result.to_dataframe()
         steps = [p.position for p in self.result.positions]
         at = dict(zip(steps, self.revolutions, strict=True))
@@ -102,16 +102,16 @@ class March(Viewed):
         return table
 
     def to_xarray(self) -> xr.Dataset:
-        """The labelled arrays, `dataset`."""
+        """Return the labelled arrays, `dataset`."""
         return self.dataset
 
     def plot(self, over: Literal["stage", "group"] = "stage") -> Figure:
-        """Load-sharing coefficient of every branch over the steps.
+        """Plot the load-sharing coefficient of every branch over the steps.
 
         Parameters
         ----------
         over : {"stage", "group"}
-            Mean to which the torque of a branch is compared.
+            Whose mean divides the torque of a branch.
         """
         return picture(self, over)
 
@@ -146,7 +146,7 @@ def march(
     steps: int | None = None,
     progress: Progress | None = None,
 ) -> March:
-    """March through revolutions of a gear with friction that remembers.
+    """March through revolutions of a gear, with friction that remembers its slip.
 
     The first step loads the train from rest, without slip.
 
@@ -170,8 +170,8 @@ def march(
     CaseError
         If the case has no march and none is given, or cannot be used.
     Refused
-        If a step has no certified equilibrium, or one with displacements that are too large for the
-        geometry. The steps before it are in its ``partial``.
+        If a step has no certified equilibrium, or its displacements are too large for the geometry.
+        ``partial`` of the exception holds the steps before it.
 
     Examples
     --------
@@ -232,7 +232,7 @@ def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) 
 
 
 def _slipped(answer: Answer, spline: Spline, before: Vector) -> Vector:
-    """Slip at the end of a step; what differs by round-off from the one before has not changed."""
+    """Return the slip at the end of a step; a change within round-off counts as none."""
     after = slip_of(spline, answer.equilibrium)
     round_off = MARCH.unchanged * answer.certificate.deflection
     return before if float(np.linalg.norm(after - before)) <= round_off else after
@@ -244,7 +244,7 @@ def _slip(answer: Answer, gear: str, before: Vector, after: Vector) -> Slip:
     friction = np.asarray(answer.equilibrium.radial_reaction[spline.name])
     stage = answer.certificate.floats[gear].spline or ""
     if stage == "stick" and after is not before:
-        # Friction that is next to nothing differs from none only by what has slipped.
+        # Negligible friction differs from none only in the slip that has happened.
         stage = "slip"
     work = max(float(-friction @ (after - before)), 0.0)
     return Slip(

@@ -1,4 +1,4 @@
-"""Studies that a case itself holds: ``[study.NAME]``."""
+"""Studies defined in a case itself: ``[study.NAME]``."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ if TYPE_CHECKING:
 
 
 def run_study(case: Case | str | Path, name: str, *, progress: Progress | None = None) -> Found:
-    """Run a study that a case holds.
+    """Run a study that is defined in a case.
 
     Parameters
     ----------
     case : Case or path
     name : str
-        Of the table ``[study.NAME]``.
+        NAME of the table ``[study.NAME]``.
     progress : Progress, optional
-        Called as parts of the study are done.
+        Called whenever a part of the study is done.
 
     Returns
     -------
     Sweep, Critical, Sensitivity, March, Comparison, Fit or Tolerance
-        By the study's kind.
+        Depending on the kind of study.
 
     Raises
     ------
     CaseError
         If the case has no such study, or the study cannot be run.
     Refused
-        If an equilibrium that it rests on is refused.
+        If an equilibrium that the study needs is refused.
 
     Examples
     --------
@@ -82,7 +82,7 @@ _ARGUMENTS: dict[str, dict[str, str]] = {
     "fit": {"unknowns": "unknowns", "starts": "starts", "seed": "seed"},
     "tolerance": {},
 }
-"""What the function of each kind of study is given: by argument, the key that holds it.
+"""For each kind of study, the arguments of its function and the keys of the table that hold them.
 
 A tolerance study reads its table itself.
 """

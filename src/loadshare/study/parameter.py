@@ -22,19 +22,19 @@ from loadshare.settings import ALLOWED
 
 STUDY = "study"
 GRID = 'a grid "0 um:12 um:61" (first, last, how many), or a list of values with units'
-"""Values of a sweep, as messages name what is allowed."""
+"""The values that a sweep allows, as messages state them."""
 RANGE = 'lowest and highest value, as ("0 um", "100 um")'
-"""Ends of an interval, likewise."""
+"""The ends that an interval allows, likewise."""
 NO_COUNT = "an input that is no count"
-"""Keys of what has to vary smoothly, likewise."""
+"""The keys allowed where an input must vary smoothly, likewise."""
 OF_COUNTS = "A sweep takes counts, as in a list of values."
-"""What else there is for a count."""
+"""Hint for a count, where it is not allowed."""
 _QUANTITY = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A number as a case file says it.
+    """A number and its unit, as a case file writes them.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Value:
 
     @property
     def text(self) -> str | float:
-        """How a case file writes it; what may be a count, as one."""
+        """The value as a case file writes it; plain whole numbers as integers, as counts are."""
         if self.unit:
             return f"{self.number!r} {self.unit}"
         return int(self.number) if self.number.is_integer() else self.number
@@ -90,7 +90,7 @@ class Value:
 
 
 def read_value(given: object) -> Value | None:
-    """Return a physical value or a plain number, or None for what is neither.
+    """Return a physical value or a plain number; None if it is neither.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def read_value(given: object) -> Value | None:
 
 @cache
 def _si_unit(unit: str) -> str:
-    """SI unit of the kind that `unit` measures; empty where no input of a case is of that kind."""
+    """Return the SI unit of the kind that `unit` measures; empty if no input is of that kind."""
     from loadshare.case import quantity
 
     if not unit:
@@ -127,14 +127,14 @@ def _si_unit(unit: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One number at one or more keys of a case.
+    """An input that takes one number at one or more keys of a case.
 
     Attributes
     ----------
     name : str
         As the user named it.
     keys : tuple of str
-        Dotted key paths that take the value, all alike.
+        Dotted key paths, all of which take the value.
     unit : str
         Unit of its values; empty for a plain number.
     """
@@ -145,15 +145,15 @@ class Parameter:
 
     @property
     def column(self) -> str:
-        """Its name with the unit in brackets."""
+        """The name with the unit in brackets."""
         return with_unit(self.name, self.unit)
 
     def text(self, number: float) -> str | float:
-        """Return one of its values as a case file has it."""
+        """Return one of its values as a case file writes it."""
         return Value(float(number), self.unit).text
 
     def changes(self, number: float) -> dict[str, Any]:
-        """Return the changes that `Case.replace` takes."""
+        """Return one of its values as the changes that `Case.replace` takes."""
         return dict.fromkeys(self.keys, self.text(number))
 
 
@@ -175,7 +175,7 @@ def check_apart(parameters: Iterable[Parameter]) -> None:
 
 
 def check_smooth(parameter: Parameter) -> None:
-    """Refuse a parameter that sets a count: a study that needs the values between has none.
+    """Refuse a parameter that sets a count, for studies that need values in between.
 
     Raises
     ------
@@ -212,7 +212,7 @@ def table_of(parameters: Iterable[Parameter], values: Array) -> dict[str, Array]
 
 
 def read_parameter(case: Case, key: str | Sequence[str], unit: str) -> Parameter:
-    """Find the keys that a parameter means.
+    """Return the parameter that a key, a pattern or several of these stand for.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def read_parameter(case: Case, key: str | Sequence[str], unit: str) -> Parameter
     Raises
     ------
     CaseError
-        If a key is none, or a pattern matches nothing.
+        If a text is not a key path, or a pattern matches nothing.
     """
     parts = split_outside(named(key), "=")
     keys = tuple(dict.fromkeys(found for part in parts for found in matches(case, part)))
@@ -248,12 +248,12 @@ def named(key: str | Sequence[str]) -> str:
 
 
 def matches(case: Case, pattern: str) -> tuple[str, ...]:
-    """Return the keys of a case that a pattern means; a key without a star means itself.
+    """Return the keys of a case that a pattern matches; a key without a star stands for itself.
 
     Raises
     ------
     CaseError
-        If the text is no key path, or the pattern matches nothing.
+        If the text is not a key path, or the pattern matches nothing.
     """
     allowed = "a text such as rings.4.float"
     try:
@@ -275,7 +275,7 @@ def matches(case: Case, pattern: str) -> tuple[str, ...]:
 
 
 def _matching(data: Any, wanted: Path, above: Path) -> Iterator[Path]:
-    """Yield paths that a pattern covers; its last step need not be there."""
+    """Yield the paths that a pattern matches; a last step without a star need not exist."""
     if len(above) == len(wanted):
         yield above
         return
@@ -292,7 +292,7 @@ def _matching(data: Any, wanted: Path, above: Path) -> Iterator[Path]:
 
 
 def leaves(data: Any, above: Path = ()) -> Iterator[Path]:
-    """Yield the path of every value of a case that is no table or list, list items included."""
+    """Yield the path of every value in a case, down to those in tables and lists."""
     if isinstance(data, dict):
         for key, item in data.items():
             if above or key not in ABOUT:
@@ -313,7 +313,7 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
         ``"0 um:12 um:61"`` (first, last, how many), or values: physical ones or plain numbers. The
         unit is that of the first value that has one.
     place, allowed : str
-        What is read, and what may be there; for messages.
+        Which key is read, and which values are allowed; for messages.
 
     Returns
     -------
@@ -368,14 +368,14 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
 
 
 def too_many(place: str, points: object) -> CaseError:
-    """What is wrong with a grid of more points than a sweep may have."""
+    """Return the error for a grid with more points than a sweep may have."""
     most = f"up to {ALLOWED.points:,} points in all"
     hint = "solve_many and [study] of kind tolerance take any number of samples, and keep less"
     return _unusable(place, "is too fine", most, hint, f"{points} points")
 
 
 def _plain(item: object) -> object:
-    """Return a number of numpy as one of Python."""
+    """Return a NumPy number as a Python one, anything else as it is."""
     return item.item() if hasattr(item, "item") and not hasattr(item, "units") else item
 
 

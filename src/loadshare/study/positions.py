@@ -1,4 +1,4 @@
-"""Cases as a study takes them, positions that differ in nothing, and certified answers."""
+"""What studies share: cases prepared for them, groups of identical positions, certified answers."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from loadshare.train.train import Train
 
 
 def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
-    """Return a case, read from its file if a path is given, its mesh laws computed.
+    """Return a case with its mesh laws computed, read from its file if a path is given.
 
-    Laws that may follow from what varies are left to be computed for each value; but not where a
-    number of the law itself varies.
+    Laws that may depend on a varied input are left to be computed for each of its values, except
+    those of which a number itself varies.
 
     Parameters
     ----------
     case : Case or path
     varied : iterable of str
-        Key paths and patterns of what varies; several may be joined by ``=``.
+        Key paths and patterns of the varied inputs; several may be joined by ``=``.
     """
     paths = paths_of(varied)
     own = with_own_laws(opened(case), paths)
@@ -40,17 +40,17 @@ def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
 
 
 def paths_of(varied: Iterable[str]) -> list[Key]:
-    """Return the paths of keys and patterns, of which several may be joined by ``=``."""
+    """Return the paths of keys and patterns; several may be joined by ``=``."""
     paths: list[Key] = []
     for part in (part for key in varied for part in split_outside(key, "=")):
-        # What is no key path is reported where it is used.
+        # A text that is not a key path is reported where it is used.
         with suppress(ValueError):
             paths.append(parse(part))
     return paths
 
 
 def alike(trains: Iterable[Train], positions: Iterable[int]) -> list[list[int]]:
-    """Group positions that differ in nothing that bears on the mechanics, in any of the trains."""
+    """Group positions whose mechanics are identical in each of the trains."""
     trains = list(trains)
     groups: dict[tuple[object, ...], list[int]] = {}
     for position in positions:
@@ -60,7 +60,7 @@ def alike(trains: Iterable[Train], positions: Iterable[int]) -> list[list[int]]:
 
 
 def _situation(train: Train, position: int) -> tuple[object, ...]:
-    """What a position brings, as something to compare."""
+    """Return the data of a position that decide its mechanics, for comparison."""
     if train.is_placed_anew:
         return (position,)
     situation = situation_of(train, position)
@@ -68,7 +68,7 @@ def _situation(train: Train, position: int) -> tuple[object, ...]:
 
 
 BACKEND = Options(solver="clarabel")
-"""For trains that remember: the hot path knows holonomic friction only."""
+"""For trains that remember slip: the fast method handles holonomic friction only."""
 
 
 def certified(train: Train, position: int) -> Answer:
@@ -77,18 +77,18 @@ def certified(train: Train, position: int) -> Answer:
     Raises
     ------
     Refused
-        If it has no certified equilibrium, or one with displacements that are too large.
+        If it has no certified equilibrium, or the displacements are too large.
     """
     return each_certified(train, [position])[0]
 
 
 def each_certified(train: Train, positions: Sequence[int]) -> list[Answer]:
-    """Solve and certify positions of a train, together.
+    """Solve and certify several positions of a train together.
 
     Raises
     ------
     Refused
-        As `certified`, for the first of them that is refused.
+        As `certified`, for the first position that is refused.
     """
     found: Iterable[Answer | Refused]
     if train.slip is not None:

@@ -47,12 +47,12 @@ from loadshare.view import View, Viewed, by_name
 
 CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
 MOST = 2
-"""Parameters of a sweep."""
+"""Largest number of parameters of a sweep."""
 
 
 @dataclass(frozen=True, eq=False)
 class Point(Comparable):
-    """What was found at one point of a sweep.
+    """The outcome at one point of a sweep.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Point(Comparable):
     status : str
         "certified", "partly refused" (some positions), "refused", or "invalid" (no usable case).
     message : str
-        Why not, where it is not certified.
+        Why the point is not certified, if it is not.
     find : callable
         Returns `result`.
     """
@@ -73,13 +73,13 @@ class Point(Comparable):
 
     @cached_property
     def result(self) -> Result | None:
-        """Of the certified positions."""
+        """Result of the certified positions; None if there are none."""
         return self.find()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Viewed):
-    """A case over a grid.
+    """A case solved over a grid.
 
     Attributes
     ----------
@@ -90,11 +90,11 @@ class Sweep(Viewed):
     grids : tuple of tuple of float
         Values of each parameter, in its unit.
     count : int
-        Positions of the case.
+        Number of positions.
     points : tuple of Point
-        The last parameter runs fastest.
+        The last parameter varies fastest.
     answered : Answered
-        What was solved.
+        The answers at all points that were solved.
     usable : tuple of int
         Numbers of the points that were solved.
     """
@@ -119,7 +119,7 @@ class Sweep(Viewed):
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """Everything found as labelled arrays: one dimension per parameter, then position."""
+        """All results as labelled arrays: one dimension per parameter, then position."""
         return unchanging(sweep_dataset(self))
 
     def largest(self, kind: str, point: int) -> dict[str, float | None]:
@@ -128,7 +128,7 @@ class Sweep(Viewed):
         Parameters
         ----------
         kind : {"omega", "pair_omega"}
-            By the mean of the stage or of the group.
+            Over the mean of the stage or of the group.
         point : int
         """
         one_of("kind", kind, self.shares)
@@ -138,7 +138,7 @@ class Sweep(Viewed):
 
     @cached_property
     def shares(self) -> dict[str, dict[str, Array]]:
-        """Largest Ω at all points, by kind and stage; not a number without one."""
+        """Largest Ω at all points, by kind and stage; NaN where there is none."""
         return largest_shares(self)
 
     def plot(
@@ -149,7 +149,7 @@ class Sweep(Viewed):
         position: int | None = None,
         events: Sequence[tuple[float, str]] = (),
     ) -> Figure:
-        """Picture of a figure over the grid: lines over one parameter, maps over two.
+        """Plot a variable over the grid: lines over one parameter, maps over two.
 
         Parameters
         ----------
@@ -161,8 +161,8 @@ class Sweep(Viewed):
         position : int, optional
             Position to show; by default the largest value over the positions.
         events : sequence of (float, str)
-            Values of the one parameter at which something happens, and what, as
-            `Critical.marks` gives them.
+            Values of a single parameter at which something happens, with a label, as
+            `Critical.marks` returns them.
 
         Raises
         ------
@@ -172,19 +172,19 @@ class Sweep(Viewed):
         return picture(self, show, names=names, position=position, events=events)
 
     def to_frame(self) -> pd.DataFrame:
-        """Torques and coefficients as a table, one row per point, position and mesh."""
+        """Return torques and coefficients as a table, one row per point, position and mesh."""
         return sweep_frame(self)
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The table of `to_frame`, with the unit of every column in ``attrs["units"]``."""
+        """Return the table of `to_frame`, with the unit of every column in ``attrs["units"]``."""
         return with_units(self.to_frame(), self.dataset)
 
     def to_xarray(self) -> xr.Dataset:
-        """The labelled arrays, `dataset`."""
+        """Return the labelled arrays, `dataset`."""
         return self.dataset
 
     def _view(self) -> View:
-        """Show the grid, what became of its points, and the largest Ω at each."""
+        """Show the grid, the status of its points, and the largest Ω at each."""
         facts = []
         for p, values in zip(self.parameters, self.grids, strict=True):
             ends = f"{values[0]:g} to {values[-1]:g} {p.unit}".rstrip()
@@ -239,7 +239,7 @@ def sweep(
     positions : sequence of int, optional
         1-based positions; all by default.
     progress : Progress, optional
-        Called now and then with points done and in all.
+        Called from time to time with the number of points done and the number of all.
 
     Returns
     -------
@@ -253,7 +253,7 @@ def sweep(
     ValueError
         If a position does not exist.
     TypeError
-        If `parameters` is no mapping.
+        If `parameters` is not a mapping.
 
     Examples
     --------
@@ -275,7 +275,7 @@ def sweep(
     except CaseError as error:
         refused = _unusable(case, chosen, points)
         if len(refused) in (0, total):
-            # No point makes a case: the keys themselves are wrong.
+            # If no point gives a valid case, the keys themselves are wrong.
             raise refused.get(0, error) from None
         some = np.delete(points, list(refused), axis=0)
         answered = answer_samples(case, table_of(chosen, some), positions, progress)
@@ -298,7 +298,7 @@ def sweep(
 def _grids(
     case: Case | str | FilePath, parameters: Mapping[Any, object]
 ) -> tuple[Case, list[Parameter], list[tuple[float, ...]]]:
-    """Return the case of a sweep, what varies, and the values that each takes."""
+    """Return the case of a sweep, its parameters, and the values of each."""
     check_mapping("inputs by key path", "{'rings.4.float': '0 um:12 um:61'}", parameters)
     case = loaded(case, map(named, parameters))
     if not 1 <= len(parameters) <= MOST:
@@ -314,7 +314,7 @@ def _grids(
 
 
 def _check_corners(case: Case, chosen: Sequence[Parameter], values: Array) -> None:
-    """Let the checks of a case judge the corners of the grid that samples do not try."""
+    """Run the checks of the case at the corners of the grid that those of samples leave out."""
     low, high = values.min(axis=0), values.max(axis=0)
     if len(chosen) > 1:
         applied(case, chosen, (low[0], high[1]))
@@ -322,7 +322,7 @@ def _check_corners(case: Case, chosen: Sequence[Parameter], values: Array) -> No
 
 
 def _unusable(case: Case, chosen: Sequence[Parameter], values: Array) -> dict[int, CaseError]:
-    """Return why points have no usable case, by number."""
+    """Return the error of every point that has no usable case, by number."""
     found = {}
     for number, at in enumerate(values.tolist()):
         try:
@@ -333,7 +333,7 @@ def _unusable(case: Case, chosen: Sequence[Parameter], values: Array) -> dict[in
 
 
 def _point(values: tuple[float, ...], answered: Answered, sample: int) -> Point:
-    """Return what became of a point."""
+    """Return the outcome at a point."""
     refused = answered.refused(sample)
     whole = len(refused) == len(answered.asked(sample))
     status = REFUSED if whole else PARTLY if refused else CERTIFIED

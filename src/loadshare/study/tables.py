@@ -30,8 +30,8 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
         One dimension per parameter, named after it, with the unit in its attributes; then those of
         a result (position, mesh, gear, component, end, float, figure) and "stage". Besides what a
         result holds: "omega" and "pair_omega" (parameters, stage), "rest" and "spline" (parameters,
-        position, float) as words, "status" and "message" (parameters). What was not certified is
-        NaN, or an empty text.
+        position, float) as words, "status" and "message" (parameters). Entries without a certified
+        answer are NaN or an empty text.
     """
     dims = tuple(p.name for p in sweep.parameters)
     shape = tuple(len(values) for values in sweep.grids)
@@ -66,14 +66,14 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
 def _filled(
     sweep: Sweep, wanted: Sequence[str]
 ) -> tuple[list[int], dict[str, list[str]], dict[str, np.ndarray]]:
-    """Put together figures of the parts of a sweep, at positions that have an answer anywhere.
+    """Collect figures from the parts of a sweep, at positions with an answer at any point.
 
     Returns
     -------
     list of int
         These positions.
     mapping of str to list of str
-        Names of what the figures describe, by dimension.
+        Names of the elements and components, by dimension.
     mapping of str to ndarray, shape (points, positions, ...)
         The figures.
     """
@@ -99,7 +99,7 @@ def _filled(
 
 
 def _answered(part: Part) -> tuple[np.ndarray, np.ndarray]:
-    """Samples and positions of what has an answer in a part."""
+    """Return the samples and positions of the answers in a part."""
     each = len(part.rows)
     return part.rows[part.there % each], np.array(part.positions)[part.there // each]
 
@@ -113,7 +113,7 @@ TABULATED = ("torque", "coast_torque", "share", "pair_share")
 def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
     """Return the largest Ω of every stage and of the system at all points, by mean and stage.
 
-    "omega" by the mean of the stage, "pair_omega" by that of the group; not a number without one.
+    "omega" is over the mean of the stage, "pair_omega" over that of the group; NaN without one.
     """
     found: dict[str, dict[str, np.ndarray]] = {}
     for part in sweep.answered.parts:
@@ -134,7 +134,7 @@ def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
 
 
 def sweep_frame(sweep: Sweep) -> pd.DataFrame:
-    """Tabulate a sweep: point by position by mesh; a refused point has one row with its message."""
+    """Tabulate a sweep by point, position and mesh; a refused point has one row and its message."""
     positions, names, arrays = _filled(sweep, (*TABULATED, "residual"))
     worst = arrays.get("residual", np.full((len(sweep.points), 0, 1), np.nan)).max(axis=2)
     point, position = np.nonzero(~np.isnan(worst))
@@ -170,8 +170,8 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     xarray.Dataset
         "torque", "share", "pair_share" (position, input, side, mesh), "displacement" (position,
         input, side, gear, component), "omega", "pair_omega" (input, side, stage): derivatives per
-        SI unit of the input, and each with "_error" at its name its stated error; coordinates
-        "value", "unit" and "factor" (SI units per unit) say what the input is, "error" the largest
+        SI unit of the input, and under each name with "_error" added, its stated error. Coordinates
+        "value", "unit" and "factor" (SI units per unit) describe the input; "error" is the largest
         stated error of a torque's derivative, "kink" (position) whether the sides may differ.
     """
     keys = [item.key for item in found.inputs]

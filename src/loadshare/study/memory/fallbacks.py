@@ -1,6 +1,6 @@
-"""What finds a step with memory where programmes with or without held slips fail.
+"""Fallbacks for a step with memory, where programmes with and without held slips fail.
 
-All of it is for friction with given bounds.
+All of them are for friction with fixed bounds.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from loadshare.train.train import Train
 def searched(train: Train, index: int) -> Answer | None:
     """Return a certified answer by the proximal search, if there is one.
 
-    It knows friction with fixed bounds only, as elements of their own next to a shaft that bends.
+    It handles only friction with fixed bounds, as elements of their own beside the bending shaft.
     """
     structure, situation = structure_of(train), situation_of(train, index)
     scene, loading = scene_of(structure, situation), loading_of(structure, situation)
@@ -51,7 +51,7 @@ def searched(train: Train, index: int) -> Answer | None:
     try:
         laws = {r.name: r.law(0.0, x) for r in scene.radials}
     except ValueError:
-        # A spline has no law with memory; the general programme says why.
+        # A spline has no law with memory; the general programme reports why.
         return None
     force, row = iterate.force[0] * structure.force, structure.springs
     forces = dict(zip(structure.row_names, force[row:].tolist(), strict=False))
@@ -73,9 +73,9 @@ def searched(train: Train, index: int) -> Answer | None:
 
 
 def almost_frictionless(train: Train, index: int) -> Answer | None:
-    """Return a certified answer for friction that is next to nothing.
+    """Return a certified answer for negligible friction, if there is one.
 
-    That without it, to which friction is added along the way that each slip has gone.
+    The step is solved without friction, which is then added against the change of each slip.
     """
     load = assemble(train, index).force_unit()
     bounds = [s.bound(0.0) for s in train.splines.values()]
@@ -103,10 +103,10 @@ def almost_frictionless(train: Train, index: int) -> Answer | None:
 
 
 def in_turn(train: Train, index: int) -> Answer | None:
-    """Return a certified answer by giving slips and displacements in turn, if that settles.
+    """Return a certified answer by solving for displacements and slips in turn, if that converges.
 
-    Each step lessens a convex energy. It settles fast where the slips have little room, which is
-    where active sets fail: a slip turns about a centre that is nearer than a step.
+    Each turn lowers a convex energy. Convergence is fast where the slips have little room, which is
+    where active sets fail: the slip turns about a centre that is nearer than one step.
     """
     gears, slips = tuple(train.splines), dict(slips_before(train))
     for _ in range(MARCH.turns):
@@ -130,7 +130,7 @@ def in_turn(train: Train, index: int) -> Answer | None:
 
 
 def _slip_at(spline: Spline, place: Vector, before: Vector) -> Vector:
-    """Slip s that a displacement p gives: least ½ K_w |p − s|² + F_m |s − s₀| within the room."""
+    """Return the s within its room that minimises ½ K_w |p − s|² + F_m |s − s₀|, given p and s₀."""
     stiffness, bound = spline.bending_stiffness, spline.bound(0.0)
     room = SlipStop(spline).law(0.0).reach
     force = stiffness * (place - before)
@@ -143,7 +143,7 @@ def _slip_at(spline: Spline, place: Vector, before: Vector) -> Vector:
         left = force - least_push(force, start, bound)
         if float(np.linalg.norm(left)) <= bound * (1.0 + MARCH.round_off):
             return start
-    # On the edge of the room, between the way to the slip before and the way to the displacement.
+    # The slip is on the edge of its room, at an angle between those of s₀ and of p.
     out = place / float(np.linalg.norm(place))
     across = start - (start @ out) * out
     width = float(np.linalg.norm(across))

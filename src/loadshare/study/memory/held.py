@@ -1,9 +1,9 @@
-"""A step with the slips of some splines held fast, and certified.
+"""A certified step with the slips of some splines held fixed.
 
-A spline whose slip stood at the end of its clearance and does not change is held by friction and by
-the stop at once. How they share its force is then open, and an active set with both is singular.
-There the slip is taken out of the programme, the force that holds it is found, and it is split so
-that the stop takes no more than friction leaves.
+A spline whose slip is at the end of its clearance and does not change is held by friction and by
+the stop at once. How they share the force is then undetermined, and an active set with both is
+singular. The slip is therefore taken out of the programme, the force that holds it is found, and
+this force is split so that the stop takes no more than friction leaves.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def with_slips_held(
 ) -> Answer | None:
     """Return a certified answer with the slip of some splines held, if there is one.
 
-    Within so many Newton steps in all, and for every plan; with each of several limits of a plan.
+    A try has at most `steps` Newton steps in all; each of `plans` is tried as the limit of a plan.
     """
     scene = whole = assemble(train, index)
     if gears:
@@ -69,22 +69,22 @@ def if_certified(train: Train, found: Equilibrium, record: Record, rung: str) ->
 
 
 def stands_at_end(spline: Spline, slip: Vector) -> bool:
-    """Tell whether a slip is at the end of its clearance."""
+    """Return whether a slip is at the end of its clearance."""
     if spline.friction_force is None:
-        # Its room changes with the torque, so that friction and stop hardly ever meet.
+        # Its room changes with the torque, so friction and stop hardly ever hold it together.
         return False
     room = SlipStop(spline).law(0.0).reach
     return float(np.linalg.norm(slip)) >= room * (1.0 - MARCH.at_end)
 
 
 def slips_before(train: Train) -> Mapping[str, Vector]:
-    """Return the slip of every spline in the step before [m], by gear."""
+    """Return the slip of every spline at the previous step [m], by gear."""
     assert train.slip is not None
     return {gear: np.asarray(slip) for gear, slip in train.slip.items()}
 
 
 def without_slips(scene: Scene, gears: tuple[str, ...], slips: Mapping[str, Vector]) -> Scene:
-    """Return the scene with the slips of some splines held."""
+    """Return the scene with the slips of some splines held at given values."""
     train = scene.train
     gone: dict[int, float] = {}
     held: set[str] = set()
@@ -115,7 +115,7 @@ def without_slips(scene: Scene, gears: tuple[str, ...], slips: Mapping[str, Vect
 def split_force(
     train: Train, found: Equilibrium, gears: tuple[str, ...], slips: Mapping[str, Vector]
 ) -> Equilibrium:
-    """Share the force that holds a slip between friction and the stop."""
+    """Split the force that holds each slip between friction and the stop."""
     reactions = dict(found.radial_reaction)
     for gear in gears:
         spline, before, slip = train.splines[gear], slips_before(train)[gear], slips[gear]
@@ -133,7 +133,7 @@ def split_force(
 
 
 def least_push(force: Vector, outward: Vector, bound: float) -> Vector:
-    """Least push of the stop that leaves friction no more than its bound."""
+    """Return the least force of the stop that leaves friction no more than its bound."""
     size = float(np.linalg.norm(outward))
     along = outward / size if size > 0.0 else force / (float(np.linalg.norm(force)) or 1.0)
     pushed = float(force @ along)

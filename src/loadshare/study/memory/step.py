@@ -1,4 +1,4 @@
-"""One step with memory, certified: which ways are tried, and what solved the step before first."""
+"""One certified step with memory: the order in which methods are tried."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
 _ENDLESS = math.inf, math.inf
-"""Newton steps in all, and for every plan, where neither has a limit."""
+"""Limits on the Newton steps, in all and of every plan: none."""
 
 
 @dataclass(slots=True)
 class Ways:
-    """What solved the step before, which is tried first at the next.
+    """The method that solved the previous step, which is tried first at the next.
 
     Attributes
     ----------
     held : dict of tuple of str to tuple of str
-        Gears whose slip was held, by those whose slip stood at an end.
+        Gears whose slip was held, by those whose slip was at the end of its clearance.
     bounds : dict of gear to float
-        Friction [N] that belonged to the torques, where it was found by way of fixed bounds.
+        Friction bounds [N] that agreed with the torques, where they were found by iteration.
     """
 
     held: dict[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
@@ -47,11 +47,11 @@ def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
     Parameters
     ----------
     train : Train
-        One that remembers (`Train.remembering`).
+        One that remembers slip (`Train.remembering`).
     index : int
         1-based.
     ways : Ways, optional
-        Of the step before, renewed.
+        Of the previous step; updated in place.
 
     Raises
     ------
@@ -59,17 +59,17 @@ def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
         If the position has no certified equilibrium.
     """
     if not train.splines:
-        # There is nothing that remembers.
+        # Without splines there is no slip to remember.
         return certified(replace(train, slip=None), index)
     assert train.slip is not None
-    # A slip that stood at the end of its clearance mostly stays there.
+    # A slip at the end of its clearance mostly stays there.
     ends = tuple(g for g, s in train.splines.items() if stands_at_end(s, train.slip[g]))
     follows, ways = any(s.friction_force is None for s in train.splines.values()), ways or Ways()
-    # Where friction follows the torque, given bounds lead to those of the torques.
+    # Where friction follows the torque, iteration on fixed bounds finds those of the torques.
     if ways.bounds and (answer := _followed(train, index, ways)) is not None:
         return answer
     sets = sorted((*_subsets(ends), ()), key=lambda gears: gears != ways.held.get(ends))
-    # What a plan does not find soon, a wider one mostly does, or another set.
+    # If a plan finds no answer soon, a wider one or another set of held slips mostly does.
     limits = ((MARCH.quick, math.inf),) if follows else ((math.inf, MARCH.quick_plan), _ENDLESS)
     for (steps, each), gears in product(limits, sets):
         answer = with_slips_held(train, index, gears, islice(rungs(BACKEND), 1), steps, (each,))
@@ -92,16 +92,16 @@ def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
 
 
 def _subsets(gears: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Yield all sets of gears but the empty one, the largest first."""
+    """Yield all non-empty sets of gears, the largest first."""
     for count in range(len(gears), 0, -1):
         yield from combinations(gears, count)
 
 
 def _followed(train: Train, index: int, ways: Ways) -> Answer | None:
-    r"""Return a certified answer where friction follows the torque, by way of fixed bounds.
+    r"""Return a certified answer where friction follows the torque, by iteration on fixed bounds.
 
-    With bounds F that are given the step is convex and its torques T are unique, so they depend on
-    F continuously. They do not grow with it either: what sticks does not ask for the bound. So
+    With fixed bounds F the step is convex and its torques T are unique, so continuous in F. They
+    stay bounded as F grows, since a spline that sticks does not depend on its bound. So
     :math:`F = \tau \lvert T(F)\rvert/r` has a solution (Brouwer), which Broyden's method finds.
     """
     gears = [g for g, s in train.splines.items() if s.friction_force is None]
@@ -120,7 +120,7 @@ def _followed(train: Train, index: int, ways: Ways) -> Answer | None:
         torque = [train.transmitted(g, found.flank_force) for g in gears]
         off = rate * np.abs(torque) - bounds
         far = float(np.abs(off).max())
-        # What is that close and comes no closer is as close as rounding of the torques lets it.
+        # A mismatch this small that no longer shrinks is the round-off of the torques.
         as_close = far <= MARCH.close * float(bounds.max()) and far > 0.5 * least
         if as_close or far <= MARCH.settled * float(rate.max()) * drive:
             break
@@ -142,7 +142,7 @@ def _bounded(train: Train, bounds: Mapping[str, float]) -> Train:
 
 
 def _broyden(inverse: Array, step: Array, change: Array) -> Array:
-    """Inverse of −Jacobian that also turns a change of what is off into the step that made it."""
+    """Return the inverse of −Jacobian, updated by the last step and its change of the mismatch."""
     moved = -inverse @ change
     along = float(step @ moved)
     if abs(along) <= MARCH.singular * float(step @ step):
