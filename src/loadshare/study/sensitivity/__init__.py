@@ -5,7 +5,7 @@ The equilibrium equations of the active set are differentiated implicitly: with 
 .. math:: \frac{dz}{du} = -\left(\frac{\partial r}{\partial z}\right)^{-1}
     \frac{\partial r}{\partial u}
 
-The Jacobian is factorised once for all inputs; no equilibrium is solved again.
+The Jacobian is factorised once for all inputs; away from a verge no equilibrium is solved again.
 """
 
 from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Remark, Sensitivity

@@ -1,4 +1,4 @@
-"""The equations of an active set at one value of an input, and how far it is from ending."""
+"""The equations of an active set at one value of an input, and how far the set is from changing."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from loadshare.train.situations import Situations, situation_of
 
 
 class BranchLost(RuntimeError):  # noqa: N818 -- a finding, not a fault
-    """A branch has no point where it was looked for; the message says why."""
+    """A branch has no point where one was sought; the message says why."""
 
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """A train at a position, as the equations of its active sets take it.
+    """A train at a position, in the form that the equations of its active sets need.
 
     Attributes
     ----------
     train : Train
     structure : Structure
-        Of the train at the input's own value: coordinates and units are the same at all values.
+        Of the train at the input's own value, so coordinates and units are the same at all values.
     situation : Situations
     numbers : Numbers
     """
@@ -47,19 +47,19 @@ class Setting:
 
     @classmethod
     def at(cls, train: Train, position: int, base: Structure | None = None) -> Setting:
-        """Return a train at a position (1-based).
+        """Return the setting of a train at a position (1-based).
 
         Parameters
         ----------
         train : Train
         position : int
         base : Structure, optional
-            Of the train at the input's own value; by default this is it.
+            Of the train at the input's own value; that of the given train by default.
 
         Raises
         ------
         ValueError
-            If it has other elements than these.
+            If the train has other elements than `base`.
         """
         own = structure_of(train) if base is None else structure_like(base, train)
         situation = situation_of(train, position)
@@ -110,7 +110,7 @@ class Gauge(NamedTuple):
     gradient: Array | None
 
     def closing(self, loose: Array) -> Array | None:
-        """How fast loose moves (n, d) close it; None where they leave it as it is."""
+        """Return how fast undetermined moves (n, d) close it; None if they do not affect it."""
         if self.gradient is None:
             return None
         rates = np.asarray(self.gradient @ loose)
@@ -125,17 +125,17 @@ class Branch:
     setting : Setting
     active : WorkingSet
     like : Equations, optional
-        Of this set at another value, which serve for this one as well if they can.
+        Equations of this set at another value, which are reused if they fit this value.
 
     Attributes
     ----------
     pins : mapping of switch to float
-        Rigid rings that pin their gears without play, and the play that they have at this value.
+        Rigid rings that pin their gears in this set, and the play that they have at this value.
 
     Raises
     ------
     BranchLost
-        If a radial law lacks the step on which the set stands.
+        If a radial law lacks the step that the set assumes.
     """
 
     def __init__(self, setting: Setting, active: WorkingSet, like: Equations | None = None) -> None:
@@ -161,7 +161,7 @@ class Branch:
         Raises
         ------
         BranchLost
-            If it has other unknowns there.
+            If the set has other unknowns there.
         """
         there = Branch(setting, self.active, self.equations)
         if there.size != self.size:
@@ -169,12 +169,12 @@ class Branch:
         return there
 
     def play(self, z: Array) -> Array:
-        """Return how far pins let their gears go at unknowns z, as part of G.
+        """Return how far pins let their gears move at unknowns z, as part of G.
 
         Raises
         ------
         BranchLost
-            If nothing pushes such a gear.
+            If no force acts on such a gear.
         """
         found = np.zeros(self.size)
         for k, play in self.pins.items():
@@ -183,13 +183,13 @@ class Branch:
         return found
 
     def _pinned(self, k: int) -> slice:
-        """Where the two forces of a pin are among the unknowns."""
+        """Return where the two forces of a pin are among the unknowns."""
         where = self.equations.polar_at[k]
         assert where is not None
         return slice(where, where + 2)
 
     def _way(self, k: int, z: Array) -> Array:
-        """Return the direction in which a pin is pushed: as far as it has play, its gear goes."""
+        """Return the direction in which a pin is pushed; its gear moves that way by the play."""
         force = z[self._pinned(k)]
         size = float(np.linalg.norm(force))
         if size <= SENSITIVITY.verge:
@@ -201,7 +201,7 @@ class Branch:
         return self.equations.jacobian(z, self.numbers)
 
     def rounding(self, z: Array) -> Array:
-        """Bound on the round-off of `figures`, from the sizes of their terms."""
+        """Return a bound on the round-off of `figures`, from the sizes of their terms."""
         state = self.equations.state(z[None], self.numbers)
         sizes = self.equations.sizes(z[None], self.numbers, state)[0]
         torques = np.abs(self.setting.levers @ state.force[0])
@@ -211,12 +211,12 @@ class Branch:
         )
 
     def solve(self, x: Array) -> Array:
-        """Solve from coordinates near by.
+        """Solve the equations from nearby coordinates and return the unknowns.
 
         Raises
         ------
         BranchLost
-            If there is no solution near them.
+            If there is no solution nearby.
         """
         start = self.equations.start(x[None], self.numbers)
         z, good = self.equations.solve(start, self.numbers)
@@ -225,13 +225,13 @@ class Branch:
         return np.asarray(z[0])
 
     def torque_gradients(self, z: Array) -> Array:
-        """Derivatives (meshes, size) of the torques with respect to z."""
+        """Return the derivatives (meshes, size) of the torques with respect to z."""
         state = self.equations.state(z[None], self.numbers)
         levers = self.setting.levers[None]
         return np.asarray(self.equations.along_forces(levers, state, self.numbers)[0])
 
     def gauges(self, z: Array, only: Collection[int] | None = None) -> dict[tuple[int, int], Gauge]:
-        """Return the gauges of elements, by what each is and the state to which it would go.
+        """Return the gauges of elements, by element and the state to which it would change.
 
         Parameters
         ----------
@@ -247,13 +247,13 @@ class Branch:
         for gauge in found:
             k, gradient = gauge.switch, None
             if k in self.pins:
-                # Its play is that of the input alone.
+                # The play of a pin depends on the input alone.
                 continue
             if k in e.arcs and k not in e.polar_at:
                 gradient = -here.frames[k][0, 0] @ e.matrix(k, self.numbers)[0]
             elif k < e.arcs.start and e.states[k] == at.OPEN:
                 gradient = here.vectors[0, e.structure.springs + k]
-            # What the coordinates cannot close is none.
+            # A contact that the coordinates cannot close has no gauge.
             if gradient is None or gradient.any():
                 gauges[k, gauge.to] = Gauge(k, float(gauge.first[0]), gradient)
         return gauges
@@ -262,7 +262,7 @@ class Branch:
 def figures(branches: Sequence[Branch], z: Array) -> list[Array | BranchLost]:
     """Return G at unknowns z (size,), then the torque of every mesh [N·m], for several branches.
 
-    In place of those at which a radial law would drop: why there are none.
+    A branch without them, such as one at which a radial law would drop, gives the reason instead.
     """
     together: dict[int, list[int]] = {}
     for k, branch in enumerate(branches):
@@ -274,7 +274,7 @@ def figures(branches: Sequence[Branch], z: Array) -> list[Array | BranchLost]:
 
 
 def _figures(branches: Sequence[Branch], z: Array) -> list[Array | BranchLost]:
-    """Figures of branches with the same equations."""
+    """Return the figures of branches with the same equations."""
     equations = branches[0].equations
     numbers = Numbers.stacked([branch.numbers for branch in branches])
     points = np.repeat(z[None], len(branches), axis=0)

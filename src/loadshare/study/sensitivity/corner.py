@@ -1,4 +1,4 @@
-"""One position of a train, ready to be differentiated by any input."""
+"""One position of a train, ready to be differentiated with respect to any input."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from loadshare.train.placed import train_at
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motions:
-    """Derivatives of torques and displacements to one side, with bounds on their errors.
+    """One-sided derivatives of torques and displacements, with bounds on their errors.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Corner:
     torques : MeshTorques
         Of this answer alone.
     remarks : list of Remark
-        What was found about the inputs differentiated by so far.
+        Remarks on the derivatives taken so far.
     """
 
     def __init__(self, train: Train, answer: Answer) -> None:
@@ -77,11 +77,11 @@ class Corner:
 
     @property
     def on_the_verge(self) -> tuple[str, ...]:
-        """Elements for which the derivatives found so far hold to one side only."""
+        """Elements because of which derivatives found so far hold on one side only."""
         return tuple(dict.fromkeys((*self.neighbourhood.verge, *self._caught)))
 
     def rates(self, trains: Trains, item: Input) -> dict[tuple[int, str, str], Rates]:
-        """Return the derivatives to both sides, by position, input and side.
+        """Return the derivatives on both sides, by position, input and side.
 
         Raises
         ------
@@ -94,7 +94,7 @@ class Corner:
         return {(self.position, key, "falling"): falling, (self.position, key, "rising"): rising}
 
     def _side(self, varied: Variation, sign: float, key: str, side: str) -> tuple[Rates, bool]:
-        """Return the derivatives to one side, and whether they are those to the other as well."""
+        """Return the derivatives on one side, and whether they hold on the other as well."""
         place = self.neighbourhood.own
         step, kinked = None, True
         if place is not None:
@@ -130,12 +130,12 @@ class Corner:
         return self._rates(motions), False
 
     def _without(self, key: str, side: str, why: Exception) -> Rates:
-        """Say why there is no derivative to a side."""
+        """Add a remark on why a side has no derivative, and return NaN for it."""
         self._remark(key, side, f"has no derivative when it is {_word(side)}: {why}")
         return self._nothing()
 
     def _differenced(self, varied: Variation, sign: float, step: float | None) -> Motions:
-        """Torques and displacements by differences of certified solves."""
+        """Return derivatives of torques and displacements from differences of certified solves."""
         count = len(self.train.meshes)
         rates, errors = differenced(self._answer, varied, sign, step)
         moved: dict[str, Array] = {}
@@ -153,7 +153,7 @@ class Corner:
         )
 
     def _moved(self, motion: Motion) -> Motions:
-        """Torques and displacements of a motion."""
+        """Return the derivatives of torques and displacements from a motion."""
         branch, size = motion.branch, motion.branch.size
         gradients = branch.torque_gradients(motion.z)
         direct_error = motion.change.error[size:]
@@ -192,7 +192,7 @@ class Corner:
     def _shares(
         self, motions: Motions, groups: list[tuple[str, ...]]
     ) -> tuple[dict[str, float], dict[str, float]]:
-        """Derivatives of Ω = T / mean(T) of every branch, and bounds on their errors."""
+        """Return the derivatives of Ω = T / mean(T) of every branch, and bounds on their errors."""
         order = list(self.train.meshes)
         value, error = dict.fromkeys(order, np.nan), dict.fromkeys(order, np.nan)
         for group, weights in self._weights(order, groups):
@@ -204,7 +204,7 @@ class Corner:
     def _weights(
         self, order: list[str], groups: list[tuple[str, ...]]
     ) -> Iterator[tuple[tuple[str, ...], Array]]:
-        """Yield groups that carry, and dΩ over dT (group, meshes)."""
+        """Yield the groups that carry load, and dΩ/dT (group, meshes)."""
         for group in groups:
             columns = [order.index(m) for m in group]
             torque = self.torques.net[0, columns]
@@ -215,9 +215,9 @@ class Corner:
                 yield group, weights / mean
 
     def _loose(self, motion: Motion | None = None) -> dict[str, Array]:
-        """Which components of each gear's displacement are left undetermined, here or beside.
+        """Return which components of each gear's displacement are undetermined, here or beside.
 
-        A gear that is held here may come to float as it moves to a side.
+        A gear that is held here may begin to float as it moves to a side.
         """
         free = set(self._answer.undetermined)
         loose = {g: np.array([f"gear {g} {c}" in free for c in "xy"]) for g in self.train.gears}
@@ -232,7 +232,7 @@ class Corner:
         return loose
 
     def _nothing(self) -> Rates:
-        """Not a number, wherever something might move."""
+        """Return NaN for everything that might move."""
         nothing = dict.fromkeys(self.train.meshes, np.nan)
         moved = {
             name: np.full(2, np.nan if gear.moves else 0.0)
@@ -246,7 +246,7 @@ class Corner:
 
 
 def _largest(changes: list[Array]) -> Array | float:
-    """Largest size of each of several changes; 0 of none."""
+    """Return the largest size over several changes, entry by entry; 0 if there are none."""
     return np.abs(changes).max(axis=0) if changes else 0.0
 
 

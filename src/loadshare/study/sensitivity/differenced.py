@@ -1,7 +1,7 @@
 """One-sided differences of certified solves, where no active set could be proved.
 
-The difference over a step, a quarter of it, and so on converges as the step or as its square root
-(a law that is soft at first). Two neighbours give the limit and tell what is left.
+The difference quotient over a step, a quarter of it, and so on converges as the step or as its
+square root (a law that is soft at first). Two successive quotients give the limit and its error.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from loadshare.train.equilibrium import Equilibrium
 
 
 class NoDifference(RuntimeError):  # noqa: N818 -- a finding, not a fault
-    """There is no certified equilibrium to a side; the message says why."""
+    """There is no certified equilibrium on a side; the message says why."""
 
 
 def differenced(
     here: Equilibrium, varied: Variation, sign: float, step: float | None
 ) -> tuple[Array, Array]:
-    """Return derivatives to one side, and their errors: of torques, then of displacements.
+    """Return one-sided derivatives and their errors: of torques, then of displacements.
 
     Parameters
     ----------
@@ -34,12 +34,12 @@ def differenced(
     varied : Variation
     sign : float
     step : float or None
-        Step [SI] that the input can take for certain.
+        Step [SI] that the input is known to be able to take.
 
     Raises
     ------
     NoDifference
-        If there is no certified equilibrium to that side, however near.
+        If there is no certified equilibrium on that side, however near.
     """
     start = _stacked(varied.setting(0.0).train, here)
     first = (
@@ -69,7 +69,7 @@ def differenced(
 
 
 def _unsettled(slopes: list[tuple[Array, Array]]) -> bool:
-    """Whether slopes differed the more the nearer they were, beyond their noise, until lately."""
+    """Return whether any of these slopes differed more, beyond noise, as steps shrank."""
     for far, middle, near in zip(slopes[:-2], slopes[1:-1], slopes[2:], strict=True):
         apart = np.abs(near[0] - middle[0])
         noise = near[1] + middle[1]
@@ -79,9 +79,9 @@ def _unsettled(slopes: list[tuple[Array, Array]]) -> bool:
 
 
 def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
-    """Extrapolate every pair of neighbours; take, figure by figure, the least error.
+    """Extrapolate every pair of successive slopes; take, figure by figure, that of least error.
 
-    A limit that a nearer one contradicts is none: an event stands between them.
+    A limit that one from smaller steps contradicts is not used: there is an event between them.
     """
     limits = [
         ((4.0 * near - far) / 3.0, (4.0 * noise + coarse) / 3.0)
@@ -98,13 +98,13 @@ def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
 
 
 def _stacked(train: Train, found: Equilibrium) -> Array:
-    """Torques, then displacements in every gear's frame, side by side."""
+    """Return torques, then displacements in every gear's frame, in one array."""
     moved = [gear.plane @ found.displacement[name] for name, gear in train.gears.items()]
     return np.concatenate([torques_of(train, found).net[0], *moved])
 
 
 def _sizes(stacked: Array, torques: int) -> Array:
-    """Largest of the torques, which come first, and of the displacements."""
+    """Return, for every entry, the largest torque (these come first) or displacement."""
     sizes = np.abs(stacked)
     sizes[:torques] = sizes[:torques].max(initial=0.0)
     sizes[torques:] = sizes[torques:].max(initial=0.0)

@@ -1,9 +1,9 @@
 """Derivatives of the train's own equations with respect to an input of the case.
 
-No solve lies between, and the equations are smooth in most inputs: a central difference of fourth
-order, at a step and at twice the step, gives the derivative and tells its error. Where both sides
-disagree beyond that, the equations have a kink in the input, and where it stands at a bound there
-is one side only: then differences of third order are taken to each side.
+No solve is involved, and the equations are smooth in most inputs: a central difference of fourth
+order, at a step and at twice the step, gives the derivative and its error. Where the sides differ
+by more than that, the equations have a kink in the input, and where the input is at a bound there
+is one side only. Differences of third order are then taken on each side.
 """
 
 from __future__ import annotations
@@ -46,18 +46,18 @@ _FORWARD = np.array([-21.0, 32.0, -12.0, 1.0]) / 12.0
 _FORWARD_CHECK = np.array([-1.5, 2.0, -0.5, 0.0])
 
 _AWAY = 1, 2, 4
-"""Steps away from the value at which the function is taken."""
+"""Distances from the value, in steps, at which the function is evaluated."""
 
 Points = dict[int, Array]
 Group = list[Array] | Exception
-"""Figures at some numbers, or why the input cannot be at one of them."""
+"""Figures at some numbers of the input, or why it cannot take one of them."""
 Function = Callable[[Sequence[Sequence[float]]], list[Group]]
-"""Figures at groups of numbers, in the unit of the input."""
+"""Function that returns figures at groups of numbers, in the unit of the input."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Slope:
-    """A derivative to one side, per SI unit.
+    """A one-sided derivative, per SI unit.
 
     Attributes
     ----------
@@ -72,16 +72,16 @@ class Slope:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Derivative:
-    """Derivatives to both sides of an input's value.
+    """Derivatives on both sides of an input's value.
 
     Attributes
     ----------
     falling, rising : Slope or Exception
-        The exception says why the input cannot go there.
+        The exception says why the input cannot go to that side.
     kinked : bool
         Whether the sides differ.
     step : float
-        In SI units; four of it are within reach of every side that there is.
+        In SI units; the input can move by four steps to every side that exists.
     """
 
     falling: Slope | Exception
@@ -90,7 +90,7 @@ class Derivative:
     step: float
 
     def to(self, sign: float) -> Slope | Exception:
-        """Return the side of a sign."""
+        """Return the derivative on the side of a sign."""
         return self.rising if sign > 0.0 else self.falling
 
 
@@ -101,26 +101,26 @@ def whole(found: Sequence[Array | Exception]) -> Group:
 
 
 def differentiate(of: Function, value: Value, rounding: Array) -> Derivative:
-    """Differentiate a function of an input to both sides.
+    """Differentiate a function of an input on both sides of its value.
 
     Parameters
     ----------
     of : callable
-        The function, of groups of numbers. What it gives for a group with a number at which the
-        input cannot be is a `CaseError`, a `ValueError` or a `BranchLost`.
+        The function, of groups of numbers. For a group with a number that the input cannot take it
+        returns a `CaseError`, a `ValueError` or a `BranchLost`.
     value : Value
-        Where.
+        Of the input.
     rounding : ndarray
         Bound on the round-off of the function.
 
     Raises
     ------
     CaseError
-        If the input can be varied on neither side.
+        If the input can be varied to neither side.
     """
     usual = max(SENSITIVITY.step * abs(value.number), LEAST[value.si_unit] / value.factor)
     first = best = _differentiated(of, value, rounding, usual)
-    # A shorter step leaves less, unless what it leaves is round-off; then a longer one may.
+    # A shorter step leaves a smaller error unless that is round-off; then a longer one may.
     rounded = False
     for share in SENSITIVITY.other:
         least = _relative(best)
@@ -141,12 +141,12 @@ def differentiate(of: Function, value: Value, rounding: Array) -> Derivative:
 
 
 def _sides(found: Derivative) -> tuple[bool, bool]:
-    """Whether there is a derivative to each side."""
+    """Return whether there is a derivative on each side."""
     return isinstance(found.falling, Slope), isinstance(found.rising, Slope)
 
 
 def _relative(found: Derivative) -> float:
-    """Largest error over the largest derivative, of sides that there are."""
+    """Return the largest error over the largest derivative, of the sides that exist."""
     worst = 0.0
     for side in (found.falling, found.rising):
         if isinstance(side, Slope):
@@ -158,7 +158,7 @@ def _relative(found: Derivative) -> float:
 def _differentiated(of: Function, value: Value, rounding: Array, usual: float) -> Derivative:
     here: Array | None = None
     sides: dict[int, tuple[Points, float] | Exception] = {}
-    # A value far below the least step of its kind may have no room but its own.
+    # A value far below the least step of its kind may have no more room than its own size.
     own = SENSITIVITY.step * abs(value.number)
     shorter = [usual * share for share in SENSITIVITY.shorter]
     for h in (*shorter, own) if 0.0 < own < shorter[-1] else shorter:
@@ -200,7 +200,7 @@ def _differentiated(of: Function, value: Value, rounding: Array, usual: float) -
 
 
 def _central(below: Points, above: Points, h: float, value: Value, rounding: Array) -> Slope:
-    """Fourth order, at a step and at twice the step."""
+    """Return the difference of fourth order; that at twice the step gives its error."""
     once, twice, four = ((above[k] - below[k]) / (2.0 * k * h * value.factor) for k in (1, 2, 4))
     near, far = (4.0 * once - twice) / 3.0, (4.0 * twice - four) / 3.0
     still = (once == 0.0) & (twice == 0.0) & (four == 0.0)
@@ -215,7 +215,7 @@ def _forward(
     value: Value,
     rounding: Array,
 ) -> Slope | Exception:
-    """Third order on one side; its distance from the second order is the error."""
+    """Return the one-sided difference of third order; that of second order gives its error."""
     if isinstance(side, Exception):
         return side
     points, h = side
@@ -228,6 +228,6 @@ def _forward(
 
 
 def _noise(found: Array, h: float, value: Value, rounding: Array) -> Array:
-    """Round-off of a difference: of its terms, and of the values at which they are taken."""
+    """Return the round-off of a difference: of its terms, and of where they are evaluated."""
     of_values = 2.0 * EPS * abs(value.number) / h
     return np.asarray(rounding / (h * value.factor) + of_values * np.abs(found))

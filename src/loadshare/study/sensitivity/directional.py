@@ -1,11 +1,11 @@
-"""How an equilibrium moves with an input, on either side of it.
+"""How an equilibrium moves with an input, on either side of the input's value.
 
-Where every element stands clear of its limits the answer is one linear solve with the Jacobian of
-the active set. Where some stand on the verge (no gap and no force, a radius just at a corner), or a
+Where every element is clear of its limits, the answer is one linear solve with the Jacobian of the
+active set. Where some are on the verge (no gap and no force, a radius exactly at a corner), or a
 body floats free and the input loads it, each side has an active set of its own. It is read from a
-certified solve a little way to that side, and followed back: the place where its branch meets the
-value is where a falling body is caught. A set is taken only if it is proved there to first order:
-its equations hold, no element is violated, and none that stands on the verge moves across it. The
+certified solve a small step to that side and followed back to the value; the point of its branch
+there is where a falling body is caught. A set is accepted only if it is proved there to first
+order: its equations hold, no element is violated, and none on the verge moves across it. The
 directional derivative of a convex contact problem is unique in its forces, so a set that passes is
 the right one, however it was found. Source: implicit function theorem; for the verge, the
 directional derivative of a complementarity problem.
@@ -48,9 +48,9 @@ class Neighbourhood:
     Attributes
     ----------
     own : Point or None
-        The equilibrium on its own active set; None where that cannot be read.
+        The equilibrium on its own active set; None if that cannot be read.
     verge : tuple of str
-        Elements that have neither gap nor force there, or stand at a corner of their law.
+        Elements that have neither gap nor force there, or are at a corner of their law.
     """
 
     def __init__(self, setting: Setting, found: Equilibrium) -> None:
@@ -75,7 +75,7 @@ class Neighbourhood:
         Returns
         -------
         Motion or None
-            None if no active set was found that holds to that side.
+            None if no active set was found that holds on that side.
         """
         for point in chain(tuple(self._points), self._near(sign, varied)):
             found = self._followed(point, sign, varied)
@@ -85,7 +85,7 @@ class Neighbourhood:
         return None
 
     def gives_way(self, change: Slope, step: float) -> bool:
-        """Whether an input loads a body along a move that nothing resists, however far it leads."""
+        """Return whether an input loads a body along a move that nothing resists, however far."""
         if self.own is None or not self._unbalanced(self.own, change, step)[0]:
             return False
         loose, equations = self.own.tangent.loose, self.own.branch.equations
@@ -99,7 +99,7 @@ class Neighbourhood:
 
     @staticmethod
     def _unbalanced(point: Point, slope: Slope, step: float) -> tuple[bool, Array]:
-        """Whether a set cannot balance what an input changes, and how much it leaves."""
+        """Return whether a set cannot balance an input's effect, and what is left unbalanced."""
         branch, unbalanced = point.branch, point.tangent.unbalanced
         explicit, error = slope.value[: branch.size], slope.error[: branch.size]
         size = float(np.abs(explicit).max(initial=0.0))
@@ -108,7 +108,7 @@ class Neighbourhood:
         return bool((left > np.maximum(known, SENSITIVITY.round_off / step)).any()), left
 
     def _followed(self, point: Point, sign: float, varied: Variation) -> Motion | None:
-        """Return the motion on a set, if the set holds to that side."""
+        """Return the motion on a set, if the set holds on that side."""
         branch, z, tangent = point.branch, point.z, point.tangent
         slope, step = self._slope(point, sign, varied)
         if slope is None:
@@ -132,14 +132,14 @@ class Neighbourhood:
             structure = self._setting.structure
             changed = self.own.branch.active.changes(branch.active, structure)
             elements = tuple(switch_names(structure)[k] for k in changed)
-        # What an input leaves where it is, on the verge or not, is so to the other side as well.
+        # What an input does not move, on the verge or not, stays put on the other side as well.
         one_sided = bool(elements) or len(still) < len(verge)
         beside = tuple(self._with(point, still, sign, varied))
         return Motion(branch, z, tangent, rate, error, slope, elements, one_sided, beside)
 
     @staticmethod
     def _slope(point: Point, sign: float, varied: Variation) -> tuple[Slope | None, float]:
-        """How an input changes the equations to a side, if it can, and the step that showed it."""
+        """Return how an input changes the equations on a side, if it can, and the step used."""
         try:
             change = varied.change(point.branch, point.z)
         except _NOTHING:
@@ -149,7 +149,7 @@ class Neighbourhood:
 
     @staticmethod
     def _verge(point: Point) -> Gauges | None:
-        """Gauges that are on the verge, undetermined ones with them; None if one is violated."""
+        """Return the gauges on the verge, undetermined ones included; None if one is violated."""
         gauges = {key: g for key, g in point.gauges.items() if g.switch not in point.idle}
         if any(g.value < -10.0 * SENSITIVITY.verge for g in gauges.values()):
             return None
@@ -158,7 +158,7 @@ class Neighbourhood:
     def _with(
         self, point: Point, still: tuple[tuple[int, int], ...], sign: float, varied: Variation
     ) -> Iterator[Motion]:
-        """Yield motions with elements in their other states, together and alone, if these hold."""
+        """Yield motions with elements in their other states, all and one by one, if they hold."""
         for changes in (still, *((one,) for one in still if len(still) > 1)) if still else ():
             other = self._beside(point, changes)
             if other is None:
@@ -173,7 +173,7 @@ class Neighbourhood:
                 yield Motion(other.branch, other.z, other.tangent, rate, error, slope)
 
     def _beside(self, point: Point, changes: tuple[tuple[int, int], ...]) -> Point | None:
-        """Return a point with elements in other states, if there is one: the same for any input."""
+        """Return a point with elements in other states, if there is one; it suits every input."""
         if (point, changes) not in self._others:
             states = list(point.branch.active.states)
             for switch, to in changes:
@@ -197,17 +197,17 @@ class Neighbourhood:
         verge: Gauges,
         later: bool = False,
     ) -> tuple[tuple[int, int], ...] | None:
-        """What is on the verge, in either state; None if anything moves across it.
+        """Return what stays on the verge, in either state; None if any element moves across it.
 
-        It moves neither way except by round-off, or stands across by round-off and only comes back
-        at a distance from the value. With `later`, what moves across at a distance does not count.
+        Such an element moves neither way except by round-off, or is across by round-off and returns
+        only at a distance from the value. With `later`, a crossing at a distance does not count.
         """
         if not verge:
             return ()
         branch, z = point.branch, point.z
         fastest = float(np.abs(rate).max(initial=0.0))
         if step * fastest > SENSITIVITY.way:
-            # By a power of 2, so that sets that move about as fast share their trains.
+            # By a power of 2, so that sets that move at similar rates share their trains.
             step *= 2.0 ** math.floor(math.log2(SENSITIVITY.way / (step * fastest)))
         along = []
         try:
@@ -234,14 +234,14 @@ class Neighbourhood:
         return tuple(still) if _has_room(tied) else None
 
     def _near(self, sign: float, varied: Variation) -> Iterator[Point]:
-        """Yield the sets of certified solves a little way to that side."""
+        """Yield points on the sets of certified solves a small step to that side."""
         for amount in self._amounts(sign, varied):
             try:
                 branch, z = varied.setting(amount).branch_of(varied.answer(amount))
             except _NOTHING:
                 continue
-            # Under a law that is infinitely soft at first a contact carries either nothing, to
-            # first order, or what nothing else can.
+            # Under a law that is infinitely soft at first, a contact carries either nothing, to
+            # first order, or the load that nothing else can carry.
             soft = self._soft(branch)
             for tied in (frozenset[int](), soft) if soft else (frozenset[int](),):
                 try:
@@ -250,7 +250,7 @@ class Neighbourhood:
                     continue
 
     def _amounts(self, sign: float, varied: Variation) -> Iterator[float]:
-        """Yield steps of the input [SI] by their effect on the equations and the verge."""
+        """Yield steps of the input [SI], sized by their effect on the equations and gauges."""
         if self.own is None:
             return
         branch, z = self.own.branch, self.own.z
@@ -270,7 +270,7 @@ class Neighbourhood:
             yield sign * min(near / effect, reach)
 
     def _soft(self, branch: Branch) -> frozenset[int]:
-        """Closed contacts that carry nothing at the value itself under a law soft at first."""
+        """Return closed contacts with laws soft at first that carry nothing at the value itself."""
         assert self.own is not None
         springs, own = branch.equations.structure.springs, self.own.branch.equations
         curved = (branch.equations.curved - springs).tolist()
@@ -285,7 +285,7 @@ class Neighbourhood:
         amount: float,
         varied: Variation,
     ) -> Point:
-        """Follow a set back to the value: three points on its branch, and Newton's method."""
+        """Follow a set back to the value, from three points on its branch and by Newton's method."""
         idle = soft - tied
         states = tuple(at.OPEN if k in idle else c for k, c in enumerate(branch.active.states))
         active = replace(branch.active, states=states, tied=tied)
@@ -301,11 +301,11 @@ class Neighbourhood:
 
 
 def _has_room(rows: list[tuple[Array, float]]) -> bool:
-    """Whether what is loose can move so that no verge contact closes: row·v ≤ room for all."""
+    """Return whether undetermined moves v can keep contacts on the verge open: row·v ≤ room."""
     if not rows:
         return True
     matrix, room = np.array([r for r, _ in rows]), np.array([b for _, b in rows])
-    # Room over the largest one: the free moves are as large as the gaps demand.
+    # Rooms are scaled by the largest: the free moves are as large as the gaps demand.
     scale = float(np.abs(room).max()) or 1.0
     count = matrix.shape[1]
     found = optimize.linprog(

@@ -1,4 +1,4 @@
-"""Inputs of a case that can be differentiated by: its numbers, but no counts."""
+"""Inputs with respect to which a case can be differentiated: its numbers except counts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KEY = "an input that the case gives"
 
 
 def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
-    """Return the inputs wanted; all numbers that are no counts by default.
+    """Return the inputs asked for; by default all numbers except counts.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
     Raises
     ------
     CaseError
-        If nothing in the case matches; all problems are listed.
+        If an input matches nothing in the case; all problems are listed.
     """
     data = case.to_dict()
     if wanted is None:
@@ -60,7 +60,7 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
 
 
 def twin_of(key: str) -> str | None:
-    """Return the key of what must be the same: the entry across the diagonal of a support.
+    """Return the key of the entry across the diagonal of a support, which must be the same.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def twin_of(key: str) -> str | None:
 
 
 def _without_twins(inputs: Iterable[Input]) -> list[Input]:
-    """Leave out what varies with an input before it."""
+    """Leave out inputs that vary with an earlier one."""
     found: dict[str, Input] = {}
     for item in inputs:
         if twin_of(item.key) not in found:
@@ -93,7 +93,7 @@ def _numbers_at(data: object, key: str) -> list[Input]:
 
 
 def _below(data: object, above: Path) -> list[Input]:
-    """Return all numbers of a table or list that are no counts."""
+    """Return all numbers of a table or list except counts."""
     found = []
     for path in leaves(data):
         value = _number(look_up(data, path))
@@ -103,7 +103,7 @@ def _below(data: object, above: Path) -> list[Input]:
 
 
 def _number(given: object) -> Value | None:
-    """Return a physical value or a plain number; counts and names are none."""
+    """Return a physical value or a plain number; None for counts and names."""
     if isinstance(given, int):
         return None
     value = read_value(given)

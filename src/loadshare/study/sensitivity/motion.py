@@ -1,4 +1,4 @@
-"""The equations of a branch at a point, made linear, and how its unknowns move along them.
+"""The linearised equations of a branch at a point, and how its unknowns move with an input.
 
 Source: implicit function theorem.
 """
@@ -16,11 +16,11 @@ from loadshare.study.sensitivity.branch import Branch, Gauge
 from loadshare.study.sensitivity.differences import Slope
 
 Gauges = dict[tuple[int, int], Gauge]
-"""By an element and the state to which it would go."""
+"""Gauges, by element and the state to which it would change."""
 
 
 class Tangent:
-    """The linearised equations of a branch at a point, solved in the sense of least squares.
+    """The linearised equations of a branch at a point, solved by least squares.
 
     Parameters
     ----------
@@ -32,9 +32,9 @@ class Tangent:
     matrix : ndarray, shape (size, size)
         The Jacobian.
     inverse : ndarray, shape (size, size)
-        Its pseudo-inverse, of the equilibrated matrix.
+        Its pseudo-inverse, computed from the equilibrated matrix.
     unbalanced : ndarray, shape (size, d)
-        Orthonormal combinations of equations that no unknown enters.
+        Orthonormal combinations of equations that no unknown changes.
     loose : ndarray, shape (n, d)
         Directions of the coordinates that change no equation.
     """
@@ -55,20 +55,20 @@ class Tangent:
 
     @cached_property
     def _beside(self) -> Array:
-        """How the Jacobian changes with the round-off of each equation, (k, size, size).
+        """Change of the Jacobian with the round-off of each equation, (k, size, size).
 
-        Unknowns are known up to round-off carried through the solve: what two of them share, as
-        those on either side of a stiff contact do, moves them together.
+        The round-off of unknowns is that of the equations, carried through the solve: if two of
+        them share it, as those on either side of a stiff contact do, it moves them together.
         """
         steps = (self.inverse * self._branch.rounding(self._z)[: self._branch.size]).T
         return np.asarray(self._branch.jacobians(self._z + steps) - self.matrix)
 
     def turned(self, rate: Array) -> Array:
-        """Bound on how far the equations' rates are known, as unknowns move at a rate (size,)."""
+        """Return a bound on the errors of the equations' rates as unknowns move at `rate`."""
         return np.asarray(np.abs(self._beside @ rate).sum(axis=0))
 
     def solve(self, right: Array) -> Array:
-        """Solve, refined once."""
+        """Solve for a right-hand side, with one refinement."""
         found = self.inverse @ right
         return np.asarray(found + self.inverse @ (right - self.matrix @ found))
 
@@ -81,29 +81,29 @@ def _orthonormal(spans: Array, size: int) -> Array:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """How the unknowns move with an input, to one side.
+    """The motion of the unknowns with an input, on one side.
 
     Attributes
     ----------
     branch : Branch
         On the active set of that side.
     z : ndarray
-        Its unknowns at the value itself; a body that falls stands where it is caught.
+        Its unknowns at the value itself; a falling body is where it is caught.
     tangent : Tangent
     rate : ndarray, shape (size,)
         Derivative of z with respect to the input, per SI unit.
     error : ndarray, shape (size,)
         Bound on the error of the equations that the rate solves.
     change : Slope
-        Derivative of the residual and of what else was wanted, at z.
+        Derivative of the residual and of the torques with respect to the input, at z.
     elements : tuple of str
-        What is in another state than at the value itself.
+        Elements in another state than at the value itself.
     one_sided : bool
-        Whether anything on the verge leaves it, or is in another state: then it says nothing of
-        the other side.
+        Whether an element leaves the verge or is in another state: the motion then says nothing
+        about the other side.
     beside : tuple of Motion
-        On sets that differ in what stands on the verge, in either state for all that is known: any
-        of them may be that of this side.
+        Motions on sets that differ in elements on the verge whose state cannot be decided: any of
+        these sets may be that of this side.
     """
 
     branch: Branch
@@ -123,7 +123,7 @@ class Motion:
         return np.asarray(direct + self.branch.torque_gradients(self.z) @ self.rate)
 
     def bound(self, functionals: Array) -> Array:
-        """Bound on the error of linear functionals (k, size) of the rate."""
+        """Return a bound on the error of linear functionals (k, size) of the rate."""
         adjoint = np.abs(functionals @ self.tangent.inverse)
         terms = np.abs(functionals) @ np.abs(self.rate)
         return np.asarray(adjoint @ self.error + 4.0 * EPS * terms)
@@ -131,7 +131,7 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A branch and its unknowns where it meets the value.
+    """A branch and its unknowns at the input's own value.
 
     Attributes
     ----------

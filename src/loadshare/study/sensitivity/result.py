@@ -1,4 +1,4 @@
-"""What a sensitivity study finds."""
+"""The result of a sensitivity study."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Input:
     key : str
         Dotted key path.
     value : Value
-        As the case says it.
+        As the case gives it.
     """
 
     key: str
@@ -36,14 +36,14 @@ class Input:
 
 @dataclass(frozen=True, slots=True)
 class Kink:
-    """An equilibrium on the verge of another active set: its derivatives hold to one side each.
+    """An equilibrium on the verge of another active set: each derivative holds on one side only.
 
     Attributes
     ----------
     position : int
     elements : tuple of str
-        What has neither gap nor force, or stands at a corner of its law; and contacts that catch a
-        body which floats free, as soon as an input loads it.
+        Elements that have neither gap nor force or are at a corner of their law, and contacts that
+        catch a free body as soon as an input loads it.
     """
 
     position: int
@@ -52,12 +52,12 @@ class Kink:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rates(Comparable):
-    """Derivatives of one position with respect to one input, to one side, per SI unit.
+    """Derivatives of one position with respect to one input, on one side, per SI unit.
 
     Attributes
     ----------
     torque, share, pair_share : mapping of mesh to float
-        [N·m], [-]; NaN where nothing can follow to that side, or a group carries nothing.
+        [N·m], [-]; NaN if there is no derivative on that side, or a group carries nothing.
     displacement : mapping of gear to ndarray, shape (2,)
         [m], in the gear's transverse frame; NaN where the equilibrium leaves it undetermined.
     error : Rates or None
@@ -73,7 +73,7 @@ class Rates(Comparable):
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """What a reader of one derivative must know: why there is none, or what it leaves out.
+    """A note on one derivative: why it does not exist, or what it leaves out.
 
     Attributes
     ----------
@@ -99,17 +99,17 @@ class Sensitivity(Viewed):
     inputs : tuple of Input
     positions : tuple of int
     rates : mapping of (position, key, side) to Rates
-        Side is "falling" or "rising"; both agree where there is no kink.
+        Side is "falling" or "rising"; the two agree where there is no kink.
     omega, pair_omega : mapping of (key, side) to mapping of stage to float
         Derivative of the largest Ω of each stage and of the system.
     omega_error, pair_omega_error : mapping of (key, side) to mapping of stage to float
         Their stated errors.
     kinks : tuple of Kink
     error : mapping of key to float
-        Largest stated error of a torque's derivative [N·m per SI unit]; each derivative's own
-        stands in `Rates.error`.
+        Largest stated error of a torque's derivative [N·m per SI unit]; that of each derivative is
+        in `Rates.error`.
     remarks : tuple of Remark
-        Derivatives that do not exist or leave something out, by name.
+        Which derivatives do not exist or leave something out, and why.
     skipped : tuple of (str, str)
         Inputs that cannot be varied on their own, and why.
     sides : tuple of str
@@ -135,34 +135,34 @@ class Sensitivity(Viewed):
         return unchanging(sensitivity_dataset(self))
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Derivatives of torques and shares with their stated errors, per SI unit of the input.
+        """Return derivatives of torques and shares with their errors, per SI unit of the input.
 
         One row per position, input, side and mesh; ``attrs["units"]`` has the units.
         """
         names = [n + e for n in ("torque", "share", "pair_share") for e in ("", "_error")]
-        # What an input is, and its factor, belong to the arrays; "error" is that of all torques.
+        # An input's value, unit and factor belong to the arrays; "error" is that of all torques.
         arrays = self.dataset[names].reset_coords(
             ["value", "unit", "factor", "error", "kink"], drop=True
         )
         return with_units(arrays.to_dataframe().reset_index(), self.dataset)
 
     def to_xarray(self) -> xr.Dataset:
-        """The labelled arrays, `dataset`."""
+        """Return the labelled arrays, `dataset`."""
         return self.dataset
 
     def plot(self, stage: str = "system", over: Literal["stage", "group"] = "stage") -> Figure:
-        """Picture of the inputs that move Ω most, over their whole values.
+        """Plot the inputs that change Ω most, each derivative times the input's whole value.
 
         Parameters
         ----------
         stage : str
         over : {"stage", "group"}
-            Over whose mean torque Ω is.
+            Whose mean torque divides the torques in Ω.
         """
         return picture(self, stage, over)
 
     def _view(self) -> View:
-        """Show the largest derivatives of Ω of the system, and what a reader must know of them."""
+        """Show the largest derivatives of the system's Ω, and the numbers of kinks and remarks."""
 
         def cell(key: str, side: str, factor: float) -> str:
             rate = self.omega[key, side].get("system")

@@ -29,7 +29,7 @@ from loadshare.train.geometry import geometry_of
 
 
 class Slope(NamedTuple):
-    """The largest share of a stage, its derivative, and the stated error of that."""
+    """The largest share of a stage, its derivative, and the derivative's stated error."""
 
     share: float
     rate: float
@@ -59,14 +59,14 @@ def sensitivity(
     Returns
     -------
     Sensitivity
-        One-sided derivatives, which agree unless the equilibrium is on a verge. Where it does,
-        `Sensitivity.kinks` says so.
+        One-sided derivatives, which agree unless the equilibrium is on a verge;
+        `Sensitivity.kinks` names the positions where it is.
 
     Raises
     ------
     CaseError
-        If an input is not there, is no number, or cannot be varied on its own; of several that a
-        table or pattern names, those that cannot are left out (`skipped`).
+        If an input is missing, is not a number, or cannot be varied on its own. Of those that a
+        table or pattern stands for, inputs that cannot be varied are left out (`skipped`).
     Refused
         If a position has no certified equilibrium.
 
@@ -120,7 +120,7 @@ def sensitivity(
 def _each(
     largest: dict[tuple[str, str], dict[str, Slope]], what: str
 ) -> dict[tuple[str, str], dict[str, float]]:
-    """Return one figure of slopes by input and side, then by stage."""
+    """Return one field of the slopes by input and side, then by stage."""
     return {
         at: {stage: getattr(slope, what) for stage, slope in slopes.items()}
         for at, slopes in largest.items()
@@ -128,7 +128,7 @@ def _each(
 
 
 def _error(rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequence[int]) -> float:
-    """Largest stated error of a torque's derivative."""
+    """Return the largest stated error of a torque's derivative."""
     errors = [rates[position, key, side].error for position in positions for side in SIDES]
     stated = [v for e in errors if e is not None for v in e.torque.values()]
     return max((v for v in stated if not math.isnan(v)), default=math.nan)
@@ -137,7 +137,7 @@ def _error(rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequen
 def _largest(
     train: Train, corners: list[Corner], rates: dict[tuple[int, str, str], Rates], kind: str
 ) -> dict[tuple[str, str], dict[str, Slope]]:
-    """Derivatives of the largest Ω of each stage, and of the system, by input and side."""
+    """Return the derivatives of the largest Ω of each stage and the system, by input and side."""
     found: dict[tuple[str, str], dict[str, Slope]] = {}
     for key, side in dict.fromkeys((key, side) for _, key, side in rates):
         here = found[key, side] = {}
@@ -155,8 +155,8 @@ def _largest(
 
 
 def _steepest(near: list[Slope], side: str) -> Slope:
-    """Return the largest share, its derivative and its error; of equals, the largest beyond."""
-    # Where nothing is carried there are no shares.
+    """Return the largest share with derivative and error; of equal ones, the largest beyond."""
+    # Where no load is carried there are no shares.
     near = [slope for slope in near if not np.isnan(slope.share)]
     if not near:
         return Slope(np.nan, np.nan, np.nan)

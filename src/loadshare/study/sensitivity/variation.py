@@ -1,4 +1,4 @@
-"""The trains of a case as an input varies, and what they are at one position."""
+"""The trains of a case as an input varies, and their equations at one position."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class Trains:
     Parameters
     ----------
     base : (Case, Geometry, Train)
-        The case, its mesh laws computed, with its geometry and its train.
+        The case with its mesh laws computed, its geometry and its train.
     case : Case
-        The same, except for laws that follow from the input.
+        The same, except that laws which depend on the input are not computed yet.
     item : Input
     positions : sequence of int
-        1-based, at which they are looked at.
+        1-based positions that are differentiated.
     """
 
     def __init__(
@@ -56,12 +56,12 @@ class Trains:
         self._numbers = lru_cache(maxsize=None)(self._numbers_of)
 
     def at(self, number: float) -> Train:
-        """Return the train with the input at a number, in its unit.
+        """Return the train with the input at a number, in the input's unit.
 
         Raises
         ------
         CaseError
-            If the input cannot be there.
+            If the input cannot take this number.
         """
         return self._at(number)
 
@@ -74,12 +74,12 @@ class Trains:
         return train_alike(changed, self._base) or build_train(changed)
 
     def numbers(self, train: Train, position: int, base: Structure) -> Numbers:
-        """Return the numbers of one of them, or of one with other laws, in the units of others.
+        """Return the numbers of a train at a position, in the units of `base`.
 
         Raises
         ------
         ValueError
-            If it has other elements than these.
+            If the train has other elements than `base`.
         """
         if train.placed or position not in self._positions:
             return Numbers.of(structure_like(base, train), situation_of(train, position))
@@ -129,14 +129,14 @@ class Variation:
         Raises
         ------
         CaseError
-            If the input cannot be there.
+            If the input cannot take this value.
         Refused
             If there is no certified equilibrium.
         """
         return certified(self.setting(amount).train, self.position).equilibrium
 
     def change(self, branch: Branch, z: Array) -> Derivative:
-        """Return the derivative of a branch's residual and torques at z, by the input.
+        """Return the derivative of a branch's residual and torques at z with respect to the input.
 
         Raises
         ------
@@ -159,14 +159,14 @@ class Variation:
         return self._changes[key]
 
     def _beside(self, branch: Branch, numbers: Sequence[float]) -> list[Branch] | Exception:
-        """Return a branch with the input at some numbers, or why it is not at one of them."""
+        """Return a branch at some numbers of the input, or why it does not exist at one of them."""
         try:
             return [branch.beside(self._setting(number)) for number in numbers]
         except (CaseError, ValueError, BranchLost) as why:
             return why
 
     def steps(self, sign: float, step: float) -> tuple[str, ...]:
-        """Meshes that pass to another place of their cycle right next to the value."""
+        """Return meshes that pass to another point of their cycle right next to the value."""
         least = min(step, SENSITIVITY.beside * max(abs(self.value.si), step))
         for amount in (step, least):
             train = self._trains.at(self._number(sign * amount))
@@ -182,5 +182,5 @@ class Variation:
 
 
 def torques_of(train: Train, found: Equilibrium) -> MeshTorques:
-    """Torques of an equilibrium on the drivers of the meshes [N·m]."""
+    """Return the torques of an equilibrium on the drivers of the meshes [N·m]."""
     return mesh_torques(train, forces_of(train, [found.flank_force]))
