@@ -285,7 +285,7 @@ class Neighbourhood:
         amount: float,
         varied: Variation,
     ) -> Point:
-        """Follow a set back to the value, from three points on its branch and by Newton's method."""
+        """Follow a set back to the value, from three points on its branch by Newton's method."""
         idle = soft - tied
         states = tuple(at.OPEN if k in idle else c for k, c in enumerate(branch.active.states))
         active = replace(branch.active, states=states, tied=tied)

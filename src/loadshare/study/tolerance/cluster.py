@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from distributed import Client
 
 JOIN = 10.0
-"""Seconds that the scheduler is awaited, and the first worker."""
+"""Seconds to wait for the scheduler, and for the first worker."""
 WAIT = 30.0
-"""Seconds that another worker is awaited when the last is gone."""
+"""Seconds to wait for another worker when the last one is gone."""
 LOOK = 2.0
-"""Seconds between two looks whether there are workers."""
+"""Seconds between two checks whether there are workers."""
 SHOWN = 5
-"""Workers that are named."""
+"""Number of workers that are named at most."""
 
 
 def part_table(job: str, part: Part) -> pa.Table:
@@ -35,7 +35,7 @@ def part_table(job: str, part: Part) -> pa.Table:
     Raises
     ------
     LoadshareError
-        If the worker, perhaps one that came late, has another version than asks.
+        If the worker, perhaps one that joined late, has another version than the one asked for.
     """
     known = known_job(job)
     if known.settings["version"] != __version__:
@@ -78,7 +78,7 @@ def solve_on_cluster(folder: Folder, parts: Sequence[Part], address: str) -> Ite
             _check_workers(client, address)
             yield from _solved(client, folder, parts, address)
         except (CancelledError, OSError) as error:
-            # What this machine cannot write is no matter of the cluster.
+            # A file that this machine cannot write is no fault of the cluster.
             if client.status == "running":
                 raise
             raise LoadshareError(
@@ -87,7 +87,7 @@ def solve_on_cluster(folder: Folder, parts: Sequence[Part], address: str) -> Ite
 
 
 def _solved(client: Client, folder: Folder, parts: Sequence[Part], address: str) -> Iterator[Part]:
-    # Sent with every part: what is scattered would be lost with the worker that holds it.
+    # Sent with every part: scattered data would be lost with the worker that holds it.
     job = folder.job.to_json()
     queue = iter(parts)
     ahead = TOLERANCE.ahead * max(sum(client.nthreads().values()), 1)
@@ -106,7 +106,7 @@ def _solved(client: Client, folder: Folder, parts: Sequence[Part], address: str)
             except CancelledError:
                 raise
             except TimeoutError:
-                # Its worker was lost before it was fetched: others solve it, if there are any.
+                # The worker was lost before its result was fetched: another solves the part.
                 continue
             except Exception as error:
                 raise LoadshareError(
@@ -121,7 +121,7 @@ def _solved(client: Client, folder: Folder, parts: Sequence[Part], address: str)
 
 
 def _first(client: Client, futures: list[Any], folder: Folder, address: str) -> set[Any]:
-    """Return the futures that are done, when there is one."""
+    """Wait until a future is done, and return all that are."""
     from distributed import wait
 
     seen = time.monotonic()
@@ -138,12 +138,12 @@ def _first(client: Client, futures: list[Any], folder: Folder, address: str) -> 
 
 
 def _check_workers(client: Client, address: str) -> None:
-    """See that there are workers, and that they are what this machine is.
+    """Check that there are workers, with the same versions as this machine.
 
     Raises
     ------
     LoadshareError
-        If that is not so; it names the workers.
+        If there are none, or some have other versions; it names them.
     """
     try:
         client.wait_for_workers(1, timeout=JOIN)
@@ -152,7 +152,7 @@ def _check_workers(client: Client, address: str) -> None:
     workers = client.get_versions()["workers"].items()
     pythons = {worker: _python(one["host"]["python"]) for worker, one in workers}
     apart = _apart("Python", _python(sys.version), pythons)
-    # Code that is sent is of one Python, so the other version is queried only then.
+    # Code can be sent only to the same Python, so the package's version is queried only then.
     apart = apart or _apart("loadshare", __version__, client.run(_version(), on_error="return"))
     if apart:
         more = [f"  and {len(apart) - SHOWN} more"] if len(apart) > SHOWN else []
@@ -176,12 +176,12 @@ def _without_workers(address: str) -> str:
 
 
 def _python(version: str) -> str:
-    """Return what matters of a Python's version: 3.12.1 and 3.12.2 read one another's code."""
+    """Return the part of a Python version that matters: 3.12.1 can read the code of 3.12.2."""
     return ".".join(version.split(".")[:2])
 
 
 def _version() -> Callable[[], str]:
-    """Return what finds the version there; sent as code, since the package may be missing."""
+    """Return a function that finds a worker's version; sent as code, as it may lack the package."""
 
     def version() -> str:
         from importlib import import_module

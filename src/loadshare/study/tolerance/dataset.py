@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def dataset(found: Tolerance) -> xr.Dataset:
-    """Return the statistics of Ω.
+    """Build the labelled arrays of the statistics of Ω.
 
     Dimensions are ``over`` ("stage", "group"), ``stage``, ``level`` of the quantiles, ``input`` and
-    ``bin``; intervals are next to their figures as ``…_low`` and ``…_high``.
+    ``bin``; the interval of a figure is under its name with ``_low`` and ``_high`` added.
     """
     overs = list(dict.fromkeys(o.over for o in found.omega))
     stages = list(dict.fromkeys(o.stage for o in found.omega))
@@ -102,7 +102,7 @@ NAMES = {
     "first_order": f"part of the variance of the {COEFFICIENT} that is due to the input alone",
     "total_order": f"part of the variance of the {COEFFICIENT} in which the input takes part",
 }
-"""What each figure is; all are plain numbers."""
+"""Description of each figure; all are dimensionless."""
 ENDS = {"": "", "_low": ", lower end of its interval", "_high": ", upper end of its interval"}
 
 

@@ -1,4 +1,4 @@
-"""Which inputs each sample has: the study's own samples, and those for the shares of variance."""
+"""The inputs of every sample: of the study's own, and of those for the shares of variance."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from loadshare.study.tolerance.inputs import Inputs
 
 @dataclass(frozen=True)
 class Drawn:
-    """Samples that are drawn, in blocks of up to `JOB.block`.
+    """Samples drawn in blocks of up to `JOB.block`.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Drawn:
 
     @property
     def matrices(self) -> int:
-        """How many matrices of samples there are."""
+        """Number of matrices of samples."""
         return 1
 
     @property
@@ -46,13 +46,13 @@ class Drawn:
         return self.matrices * self._each
 
     def rows(self, block: int) -> NDArray[np.int64]:
-        """Numbers of a block's samples, from 0."""
+        """Return the numbers of a block's samples, from 0."""
         matrix, part = divmod(block, self._each)
         start = matrix * self.count
         return np.arange(start + part * JOB.block, start + min((part + 1) * JOB.block, self.count))
 
     def values(self, block: int) -> Array:
-        """Inputs of a block's samples in their units, shape (rows, inputs)."""
+        """Return the inputs of a block's samples in their units, shape (rows, inputs)."""
         points = uniforms(self.sampling, self.seed, (), block, len(self.inputs.every))
         return self.inputs.values(points[: len(self.rows(block))])
 
@@ -70,11 +70,11 @@ class PickFreeze(Drawn):
 
     @property
     def matrices(self) -> int:
-        """A, B, and one for each unit."""
+        """Number of matrices: A, B, and one for each unit."""
         return 2 + len(self.inputs.units)
 
     def values(self, block: int) -> Array:
-        """Inputs of a block's samples in their units, shape (rows, inputs)."""
+        """Return the inputs of a block's samples in their units, shape (rows, inputs)."""
         matrix, part = divmod(block, self._each)
         width = len(self.inputs.every)
         both = uniforms(self.sampling, self.seed, (1,), part, 2 * width)[: len(self.rows(block))]
@@ -91,11 +91,11 @@ def uniforms(sampling: str, seed: int, stream: tuple[int, ...], block: int, widt
     Parameters
     ----------
     sampling : {"random", "sobol"}
-        Independent points; or points of scrambled Sobol sequences in turn: row i of a block belongs
+        Independent points, or points of scrambled Sobol sequences in turn: row i of a block belongs
         to sequence i mod `TOLERANCE.sequences`.
     seed : int
     stream : tuple of int
-        Tells apart the points of one study that serve different ends.
+        Separates the points of one study that serve different purposes.
     block : int
         0-based.
     width : int
@@ -103,7 +103,7 @@ def uniforms(sampling: str, seed: int, stream: tuple[int, ...], block: int, widt
 
     Returns
     -------
-    ndarray, shape (BLOCK, width)
+    ndarray, shape (JOB.block, width)
     """
     if sampling == "sobol":
         return _sobol(seed, stream, block, width)
@@ -122,5 +122,5 @@ def _sobol(seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
         if block:
             engine.fast_forward(block * each)
         points[:, r] = engine.random(each)
-    # Points are on a grid of 2^-30, zero included; the middle of a cell is as good as its edge.
+    # Points are on a grid of 2^-30 that includes zero; they are moved to the middle of a cell.
     return points.reshape(JOB.block, width) + 2.0**-31

@@ -21,14 +21,14 @@ TURN = Value(360.0, "deg")
 
 @dataclass(frozen=True)
 class Distribution:
-    """How one input scatters.
+    """The distribution of one input.
 
     Attributes
     ----------
     kind : str
         "normal", "truncated normal", "uniform", "rayleigh" or "uniform phase".
     numbers : mapping of str to float
-        What the kind takes, in `unit`.
+        Parameters of the kind, in `unit`.
     unit : str
         Of its values; empty for a plain number.
     """
@@ -39,7 +39,7 @@ class Distribution:
 
     @cached_property
     def frozen(self) -> Any:
-        """The distribution as scipy.stats has it."""
+        """The distribution as an object of scipy.stats."""
         of: dict[str, Callable[..., Any]] = {
             "normal": lambda mean, deviation: stats.norm(mean, deviation),
             "truncated normal": lambda mean, deviation, low, high: stats.truncnorm(
@@ -52,7 +52,7 @@ class Distribution:
         return of[self.kind](**self.numbers)
 
     def at(self, probability: Array) -> Array:
-        """Return the values below which the probabilities lie."""
+        """Return the quantiles of the probabilities."""
         return np.asarray(self.frozen.ppf(probability))
 
     @property
@@ -61,7 +61,7 @@ class Distribution:
         return self.kind == PHASE
 
     def ends(self, tail: float = TOLERANCE.tail) -> tuple[float, float]:
-        """Return its two ends; where it has none, the quantile that leaves `tail` beyond."""
+        """Return both ends; in place of an infinite one, the quantile that leaves `tail` beyond."""
         low, high = (float(end) for end in self.frozen.support())
         inner = self.at(np.array([tail, 1.0 - tail]))
         return (
@@ -76,7 +76,7 @@ class Distribution:
 
 @dataclass(frozen=True, slots=True)
 class Wrong:
-    """What is wrong with a number of a distribution; `key` is empty for all of it."""
+    """A fault of a number in a distribution, or of all of it, with an empty `key`."""
 
     key: str
     message: str
@@ -84,7 +84,7 @@ class Wrong:
 
 
 def read_distribution(spread: Spread) -> Distribution | list[Wrong]:
-    """Read a distribution from a case's table, or tell what is wrong with it.
+    """Read a distribution from a case's table, or list what is wrong with it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is kept of every sample: the largest figures over positions and branches."""
+"""The figures that are kept of every sample: the largest over positions and branches."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from loadshare.train.samples import unusable
 from loadshare.train.train import Train
 
 KINDS = {"omega": "stage", "pair_omega": "group"}
-"""Ω as columns name it, and over whose mean it is."""
+"""Kinds of Ω, as columns name them, and whose mean each is over."""
 KIND_OVER = {over: kind for kind, over in KINDS.items()}
 SYSTEM = "system"
 
@@ -33,9 +33,9 @@ class Figures:
     Attributes
     ----------
     columns : mapping of str to ndarray, shape (S,)
-        ``omega.STAGE``, ``pair_omega.STAGE`` [-], ``torque.MESH [N*m]``, ``float.GEAR [m]`` (way of
-        the centre) and ``boundary_force.GEAR [N]`` (hardest pressed contact of its ring): the
-        largest over the positions. NaN where a position is not certified.
+        ``omega.STAGE``, ``pair_omega.STAGE`` [-], ``torque.MESH [N*m]``, ``float.GEAR [m]``
+        (displacement of the centre) and ``boundary_force.GEAR [N]`` (largest force on a contact of
+        its ring): the largest over the positions. NaN where a position is not certified.
     residual : ndarray, shape (S,)
         Largest scaled residual of the certificates.
     message : mapping of int to str
@@ -49,7 +49,7 @@ class Figures:
 
 @dataclass(frozen=True, eq=False)
 class Solver:
-    """Solves samples of a case.
+    """The solver of a case's samples.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Solver:
 
     @cached_property
     def names(self) -> list[str]:
-        """The columns of its figures, in their order."""
+        """Names of the columns of its figures, in order."""
         train = self.train
         stages = [*(s.name for s in train.stages), SYSTEM]
         return [
@@ -83,7 +83,7 @@ class Solver:
         ]
 
     def solve(self, values: Array) -> Figures:
-        """Solve samples with these inputs, shape (S, inputs)."""
+        """Solve samples with the given inputs, shape (S, inputs)."""
         count = len(values)
         columns = {name: np.full(count, np.nan) for name in self.names}
         residual = np.full(count, np.nan)
@@ -92,7 +92,7 @@ class Solver:
         try:
             blocks = self._blocks(values)
         except CaseError:
-            # One sample of these makes no case; it shall not take the others with it.
+            # Some sample gives no valid case; the others are solved all the same.
             samples = self.inputs.samples(values)
             message |= {k: f"makes no case: {w}" for k, w in unusable(self.case, samples).items()}
             usable = np.setdiff1d(usable, list(message))
@@ -123,15 +123,15 @@ class Solver:
 
 
 def _figures(block: Block) -> dict[str, Array]:
-    """Largest figures over the positions, shape (S,) each; NaN where there is none."""
+    """Return the largest figures over the positions, shape (S,) each; NaN where there is none."""
     every: dict[str, list[Array]] = {}
     for answers in block.equilibria:
         for name, values in _at_position(answers).items():
             every.setdefault(name, []).append(values)
-    # fmax leaves a stage out at a position where it carries nothing.
+    # fmax ignores a stage at positions where it carries nothing.
     found = {name: np.fmax.reduce(values) for name, values in every.items()}
     for name in (name for name in every if name.startswith("torque.")):
-        # Of a drive that brakes the largest torque is the most negative.
+        # If the drive brakes, the largest torque is the most negative one.
         least = np.fmin.reduce(every[name])
         found[name] = np.where(-least > found[name], least, found[name])
     return found
@@ -155,7 +155,7 @@ def _at_position(answers: Equilibria) -> dict[str, Array]:
 
 
 def _boundary_force(answers: Equilibria, gear: str) -> Array:
-    """Force of the hardest pressed contact of what limits a gear [N]."""
+    """Return the largest force on a contact of the rings and stops that limit a gear [N]."""
     names, found = answers.names, [np.zeros(len(answers.rotation))]
     radials = [name for name, _ in names.radials]
     for limit in names.train.limits[gear]:

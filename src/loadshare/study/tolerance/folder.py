@@ -1,4 +1,4 @@
-"""The folder of a study: parts as Parquet files, and what they belong to."""
+"""The folder of a study: parts as Parquet files, and the study to which they belong."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ class Folder:
     path : pathlib.Path
     job : Job
     lasting : bool
-        Whether it stays when the study fails.
+        Whether the folder stays if the study fails.
 
     Raises
     ------
     LoadshareError
-        If the folder holds another study, or what is no study.
+        If the folder holds another study, or something other than a study.
     """
 
     def __init__(self, path: Path, job: Job, *, lasting: bool = True) -> None:
@@ -85,7 +85,7 @@ class Folder:
         return folder / f"part-{part.number:06d}.parquet"
 
     def kept(self) -> str:
-        """Return what of a study that ends now is kept, and how to go on with it, in words."""
+        """Return a text on what is kept if the study ends now, and how to continue it."""
         if not self.lasting:
             return "Nothing is kept: the study has no folder (out, or --output)."
         done = sum(self.file(part).is_file() for part in self.all)
@@ -93,7 +93,7 @@ class Folder:
         return f"{text}: the same command continues from there."
 
     def missing(self) -> list[Part]:
-        """Return the parts that are not there, or not whole; the log names the latter."""
+        """Return the parts that are missing or damaged; the log names the latter."""
         found = [part for part in self.all if not self._whole(part)]
         for file in filter(Path.exists, map(self.file, found)):
             log.warning("%s: is not what was written there; it is solved again.", file)
@@ -103,7 +103,7 @@ class Folder:
 
         file = self.file(part)
         try:
-            # A part of the same name can stem from elsewhere: the stamp names study, number, rows.
+            # A part of the same name can be another study's: the stamp has study, number and rows.
             metadata = parquet.read_metadata(file).metadata or {}
             if metadata.get(STAMP) != self.job.stamp(part):
                 return False
@@ -113,7 +113,7 @@ class Folder:
         return len(table) == part.rows and metadata.get(PART_DIGEST) == digest(table)
 
     def write(self, part: Part, table: pa.Table) -> None:
-        """Put a part in its place, whole or not at all."""
+        """Write a part to its file, whole or not at all."""
         file = self.file(part)
         sealed = table.replace_schema_metadata(
             {**table.schema.metadata, PART_DIGEST: digest(table)}
@@ -126,7 +126,7 @@ class Folder:
     def worst(self) -> list[dict[str, Any]] | None:
         """Return the worst cases that were found for this study, or None if none are known.
 
-        Those in a file that is not what was written are none; the log names it.
+        A file that was altered since it was written counts as none; the log names it.
         """
         file = self.path / WORST
         try:
@@ -141,7 +141,7 @@ class Folder:
         return None
 
     def keep_worst(self, found: Sequence[dict[str, Any]]) -> None:
-        """Write the worst cases, so that the search need not be made again."""
+        """Write the worst cases, so that the search need not be repeated."""
         _write_sealed(self.path / WORST, {"study": self.job.hash, "worst": list(found)})
 
     def files(self, design: str = SAMPLES) -> list[Path]:
@@ -176,13 +176,13 @@ class Folder:
 
 
 def _is_foreign(file: Path) -> bool:
-    """Whether a file is none with which a process begins this study."""
+    """Return whether a file is neither the lock nor left over from writing the study's document."""
     begins = is_left(file.name) and file.name.startswith(f".{STUDY}.")
     return not begins and file.name != LOCK
 
 
 def digest(table: pa.Table) -> bytes:
-    """Return the SHA-256 of what a table holds, whatever bytes it is written in."""
+    """Return the SHA-256 of a table's content, which does not depend on how a file encodes it."""
     found = hashlib.sha256()
     for name, column in zip(table.column_names, table.columns, strict=True):
         values = column.to_numpy()
@@ -194,7 +194,7 @@ def digest(table: pa.Table) -> bytes:
 
 
 def read_part(file: Path, columns: list[str] | None = None) -> pa.Table:
-    """Read columns of a part, all by default, each page against its checksum.
+    """Read columns of a part, all by default, and check each page against its checksum.
 
     Raises
     ------
@@ -207,7 +207,7 @@ def read_part(file: Path, columns: list[str] | None = None) -> pa.Table:
 
 @contextmanager
 def _reading(file: Path) -> Iterator[None]:
-    """Turn what is wrong with a part into a message."""
+    """Turn an error in reading a part into a `ResultError`."""
     try:
         yield
     except (OSError, ValueError, pa.ArrowException) as error:
@@ -259,6 +259,6 @@ def _short(value: Any) -> str:
 
 
 def _write_sealed(file: Path, content: dict[str, Any]) -> None:
-    """Write a document with the digest of what it holds."""
+    """Write a document with the digest of its content."""
     sealed = {**content, DIGEST: digest_of(content)}
     write_whole(file, json.dumps(sealed, indent=1, ensure_ascii=False) + "\n")

@@ -1,4 +1,4 @@
-"""Inputs of a tolerance study: which keys scatter, how, and which of them together."""
+"""Inputs of a tolerance study: which keys scatter, how, and which of them are correlated."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Input(Parameter):
 
     @classmethod
     def of(cls, keys: tuple[str, ...], distribution: Distribution) -> Input:
-        """Return keys that take one value, as a distribution gives it."""
+        """Return the input of keys that all take one value, drawn from a distribution."""
         return cls("=".join(keys), keys, distribution.unit, distribution)
 
 
@@ -87,7 +87,7 @@ class Inputs:
 
     @cached_property
     def units(self) -> tuple[tuple[int, ...], ...]:
-        """Numbers of the inputs that are independent of all others: groups, and single ones."""
+        """Units that are independent of one another: numbers of a group's inputs, or of one."""
         of = {member: copula.members for copula in self.copulas for member in copula.members}
         return tuple(dict.fromkeys(of.get(k, (k,)) for k in range(len(self.every))))
 
@@ -97,7 +97,7 @@ class Inputs:
         return tuple(" + ".join(self.every[k].name for k in unit) for unit in self.units)
 
     def to_plain(self) -> dict[str, Any]:
-        """Return what `from_plain` takes: tables, lists, texts and numbers."""
+        """Return the inputs as tables, lists, texts and numbers, which `from_plain` takes."""
         return {
             "inputs": [
                 {
@@ -115,7 +115,7 @@ class Inputs:
 
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any]) -> Inputs:
-        """Return inputs from what `to_plain` gave."""
+        """Return inputs from the plain data of `to_plain`."""
         every = tuple(
             Input.of(
                 tuple(one["keys"]),
@@ -130,13 +130,13 @@ class Inputs:
 
 
 def read_inputs(case: Case, name: str) -> Inputs:
-    """Read the inputs of a tolerance study, and try the case with their far ends.
+    """Read the inputs of a tolerance study, and check the case at their far ends.
 
     Parameters
     ----------
     case : Case
     name : str
-        Of the study.
+        Name of the study.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def read_inputs(case: Case, name: str) -> Inputs:
 
 
 class _Reader:
-    """Reads inputs and groups, and gathers what is wrong."""
+    """Reader of inputs and groups, which collects all problems."""
 
     def __init__(self, case: Case, name: str) -> None:
         self.case = case
@@ -210,7 +210,7 @@ class _Reader:
     def _read_by_class(
         self, path: tuple[str | int, ...], spread: Spread, keys: tuple[str, ...]
     ) -> Distribution | None:
-        """Return a distribution whose end follows from the tolerance class of a gear."""
+        """Return a distribution whose upper end follows from the tolerance class of a gear."""
         ends = set()
         for key in keys:
             match parse(key):
@@ -231,7 +231,7 @@ class _Reader:
         return self._read(path, spread.model_copy(update={"high": f"{1e6 * ends.pop()!r} um"}))
 
     def _fits(self, path: tuple[str | int, ...], one: Input) -> bool:
-        """Tell whether the case can be used with the far ends of an input, and between them."""
+        """Return whether the case can be used at the far ends of an input, and between them."""
         for key in one.keys:
             if takes_count(parse(key)):
                 message = f"{key} is a count: it has no values in between"
@@ -271,7 +271,7 @@ class _Reader:
                 yield Copula(members, matrix)
 
     def _members(self, g: int, group: Group, number: Mapping[str, int]) -> tuple[int, ...] | None:
-        """Return the numbers of a group's inputs; None where one is not usable."""
+        """Return the numbers of a group's inputs; None if one is not usable."""
         members: list[int] = []
         usable = True
         for i, text in enumerate(group.inputs):

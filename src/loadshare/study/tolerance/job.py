@@ -1,4 +1,4 @@
-"""A tolerance study as plain data, so that any process can do any part of it."""
+"""A tolerance study as plain data, so that any process can solve any part of it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from loadshare.train import build_train
 
 SAMPLES, INDICES = "samples", "indices"
 STAMP = b"loadshare"
-"""Key in a part's metadata under which it says which study it belongs to."""
+"""Key in a part's metadata that says to which study the part belongs."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -46,7 +46,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Job:
-    """All on which the samples of a study and their answers depend.
+    """Everything on which the samples of a study and their answers depend.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Job:
         return cls(case.name, case.to_toml(), whole)
 
     def to_json(self) -> str:
-        """Return it as text."""
+        """Return the job as JSON text."""
         return json.dumps({"name": self.name, "text": self.text, "settings": self.settings})
 
     @cached_property
@@ -87,12 +87,12 @@ class Job:
 
     @cached_property
     def inputs(self) -> Inputs:
-        """The inputs."""
+        """The inputs of the study."""
         return Inputs.from_plain(self.settings)
 
     @cached_property
     def solver(self) -> Solver:
-        """What solves its samples."""
+        """The solver of its samples."""
         case = Case(tomllib.loads(self.text), name=self.name)
         return Solver(
             case,
@@ -105,7 +105,7 @@ class Job:
 
     @cached_property
     def designs(self) -> dict[str, Drawn]:
-        """Samples by what they serve."""
+        """The designs of the samples, by purpose."""
         seed, sampling = self.settings["seed"], self.settings["sampling"]
         return {
             SAMPLES: Drawn(self.inputs, self.settings["samples"], seed, sampling),
@@ -125,7 +125,7 @@ class Job:
         return range(chunk * number, min(chunk * (number + 1), self.designs[design].blocks))
 
     def stamp(self, part: Part) -> bytes:
-        """Return what a part's metadata says of it."""
+        """Return the stamp that identifies a part in its metadata."""
         about = {"study": self.hash, "design": part.design, "part": part.number, "rows": part.rows}
         return json.dumps(about, sort_keys=True).encode()
 
@@ -135,8 +135,8 @@ class Job:
         Returns
         -------
         pyarrow.Table
-            One row per sample: its number, inputs, figures, largest residual, and the message of
-            one that has no certified answer.
+            One row per sample: its number, inputs, figures, largest residual, whether it is
+            certified, and the message if it is not.
         """
         design = self.designs[part.design]
         pieces = [self._piece(design, block) for block in self.blocks(part.design, part.number)]
@@ -152,7 +152,7 @@ class Job:
         )
 
     def _piece(self, design: Drawn, block: int) -> dict[str, Any]:
-        """Solve one block; answers never depend on what else is in its part."""
+        """Solve one block; answers never depend on the other blocks of its part."""
         rows, values = design.rows(block), design.values(block)
         found = self.solver.solve(values)
         return {
@@ -167,7 +167,7 @@ class Job:
 
 @lru_cache(maxsize=4)
 def known_job(text: str) -> Job:
-    """Return the job that `to_json` wrote; kept, with its train, for the next part."""
+    """Return the job that `to_json` wrote; it is kept, with its train, for the next part."""
     return Job(**json.loads(text))
 
 
@@ -177,4 +177,4 @@ def equilibria(samples: int, indices: int, units: int, positions: int) -> int:
 
 
 CHUNK = 8
-"""Blocks per part: 32768 samples, some seconds of work and some megabytes of memory."""
+"""Blocks per part: 32768 samples, a few seconds of work and a few megabytes of memory."""

@@ -1,6 +1,6 @@
-"""Parts solved on this machine, in this process or side by side in others.
+"""Parts solved on this machine, in this process or by several others in parallel.
 
-Two threads were measured to solve 111 000 equilibria a second of the seed's study, two processes
+On the seed's study two threads were measured to solve 111 000 equilibria a second, two processes
 139 000 once they run; so each worker is a process.
 """
 
@@ -25,7 +25,7 @@ def solve_parts(folder: Folder, parts: Sequence[Part], workers: int) -> Iterator
     folder : Folder
     parts : sequence of Part
     workers : int
-        Processes.
+        Number of processes.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def solve_parts(folder: Folder, parts: Sequence[Part], workers: int) -> Iterator
 
 
 def solve_there(path: str, job: str, part: Part) -> str:
-    """Solve a part in a worker process and return why it could not, or nothing."""
+    """Solve a part in a worker process; return why it failed, or an empty text."""
     try:
         folder = _folder(path, job)
         folder.write(part, folder.job.table(part))

@@ -1,4 +1,4 @@
-"""What a tolerance study found."""
+"""The result of a tolerance study."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from loadshare.view import View, Viewed, figure, listed
 
 Over: TypeAlias = Literal["stage", "group"]
 OVERS: tuple[Over, ...] = get_args(Over)
-"""Over whose mean torque Ω may be."""
+"""Whose mean torque Ω may be over."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloatStatistics(Comparable):
-    """How a float scatters.
+    """Statistics of a float.
 
     Attributes
     ----------
     gear : str
     way : Summary
-        Way of its centre, the largest over the positions [m].
+        Displacement of its centre, the largest over the positions [m].
     boundary_force : Summary or None
-        Force of the hardest pressed contact of its ring [N]; None without a ring.
+        Largest force on a contact of its ring [N]; None without a ring.
     pressed : float or None
-        Share of the samples in which it presses on its ring at some position.
+        Share of the samples in which it presses against its ring at some position.
     """
 
     gear: str
@@ -49,7 +49,7 @@ class FloatStatistics(Comparable):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Tolerance(Viewed):
-    """A tolerance study.
+    """The result of a tolerance study.
 
     Attributes
     ----------
@@ -57,12 +57,12 @@ class Tolerance(Viewed):
         Name of the case.
     inputs : Inputs
     settings : mapping
-        All on which the samples depend, as ``study.json`` has it.
+        Everything on which the samples depend, as in ``study.json``.
     limit : float or None
     samples, refused : int
-        All samples; those without a certified answer, which are in no statistic.
+        Number of all samples, and of those without a certified answer, which enter no statistic.
     messages : mapping of str to int
-        Why samples were refused, and how many.
+        Why samples were refused, and how many for each reason.
     omega : tuple of OmegaStatistics
     torque : mapping of mesh to Summary
         Largest driver torque over the positions [N·m].
@@ -70,9 +70,9 @@ class Tolerance(Viewed):
     design_refused : int
         Samples for the shares of variance without a certified answer; their rows are left out.
     overs : tuple of str
-        "stage", and "group" where Ω of the system over the mean of the group differs from it.
+        "stage", and "group" if the system's Ω over the mean of the group differs.
     worst : tuple of WorstCase
-        One for each of these.
+        One for each of `overs`.
     residual : float
         Largest scaled residual of all certificates.
     folder : Folder
@@ -96,12 +96,12 @@ class Tolerance(Viewed):
     folder: Folder = field(compare=False)
 
     def of(self, stage: str = "system", over: Over = "stage") -> OmegaStatistics:
-        """Return how Ω of a stage scatters.
+        """Return the statistics of Ω of a stage.
 
         Raises
         ------
         KeyError
-            If there is no such stage, or Ω is over no such mean.
+            If there is no such stage or mean.
         """
         for one in self.omega:
             if (one.stage, one.over) == (stage, over):
@@ -129,11 +129,11 @@ class Tolerance(Viewed):
         return self.folder.frame(columns)
 
     def to_dataframe(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
-        """Read the samples, as `to_frame` does; heads have the unit."""
+        """Read the samples, as `to_frame` does; column names include the unit."""
         return self.to_frame(columns)
 
     def to_xarray(self) -> xr.Dataset:
-        """The statistics as labelled arrays, `dataset`."""
+        """Return the statistics as labelled arrays, `dataset`."""
         return self.dataset
 
     @cached_property
@@ -142,27 +142,27 @@ class Tolerance(Viewed):
         return unchanging(labelled(self))
 
     def plot(self, stage: str = "system", over: Over = "stage") -> Figure:
-        """Picture of how Ω of a stage scatters, and from which inputs it comes.
+        """Plot how Ω of a stage scatters, and which inputs cause it.
 
         Parameters
         ----------
         stage : str
         over : {"stage", "group"}
-            Over whose mean torque Ω is.
+            Whose mean torque Ω is over.
 
         Raises
         ------
         LoadshareError
             If there is no such stage, or none at all.
         ValueError
-            If Ω is over no such mean.
+            If there is no such mean.
         """
         if not self.omega:
             raise LoadshareError("a case without stages has torques, but no Ω to draw")
         return picture(self, stage, over)
 
     def _view(self) -> View:
-        """Show how many samples have an answer, the distribution of Ω, and the worst case self."""
+        """Show how many samples have an answer, the distribution of Ω, and the worst case found."""
         certified = f"{self.samples - self.refused} of {self.samples}"
         facts = (
             ("certified", f"{certified} samples, largest residual {self.residual:.1e}"),

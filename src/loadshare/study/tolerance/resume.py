@@ -1,7 +1,7 @@
-"""Going on with a study: parts that are there are sampled, some of their samples solved again.
+"""Resuming a study: parts that exist are checked by solving some of their samples again.
 
-A part is some ten thousand certified answers of which only the largest figures are kept, so it
-cannot be certified by itself. A few of its samples can: the study says how all of them were drawn.
+A part holds only the largest figures of some ten thousand certified answers, so it cannot itself be
+certified. A few of its samples can, because the study says how all of them were drawn.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ AGAIN = "Remove this file and give the same command: the part is then solved aga
 
 
 def check_part(folder: Folder, part: Part) -> None:
-    """Solve some samples of a part again; which ones follows from the study and the part.
+    """Solve some samples of a part again; the study and the part determine which.
 
     Parameters
     ----------
     folder : Folder
     part : Part
-        One that is there.
+        One that exists.
 
     Raises
     ------
     ResultError
         If the part's inputs are not those that the study draws, or a sample's figures are not those
-        of its answer. Where a float rests is not compared: it may be undetermined.
+        of its answer. Displacements of floats are not compared: they may be undetermined.
     """
     job, file = folder.job, str(folder.file(part))
     table = read_part(folder.file(part))
@@ -67,9 +67,9 @@ def check_part(folder: Folder, part: Part) -> None:
 
 
 def _round_off(job: Job, columns: Mapping[str, Array]) -> dict[str, float]:
-    """What a certificate leaves open of figures, by unit: its tolerance of the largest one.
+    """Return what a certificate leaves open of figures, by unit: its tolerance times the largest.
 
-    A stop that a gear just touches carries nothing, or what rounding makes of that.
+    A stop that a gear just touches carries nothing but round-off.
     """
     train, known = job.solver.train, job.solver.tolerance
     torque = {

@@ -1,6 +1,6 @@
 """Moments, quantiles, probabilities and shares of variance, with their confidence intervals.
 
-How Ω scatters over samples: of every stage and of the system, over both means.
+They describe how Ω of every stage and of the system scatters over samples, over both means.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 
 ROUND_OFF = 1e-12
-"""Deviation over the mean that is round-off."""
+"""Deviation, over the mean, up to which it is round-off."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +39,12 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Summary(Comparable):
-    """How a figure scatters over the samples.
+    """Statistics of a figure over the samples.
 
     Attributes
     ----------
     count : int
-        Samples that have it.
+        Number of samples that have it.
     mean : Estimate
     deviation : float
         Standard deviation.
@@ -70,7 +70,7 @@ class Summary(Comparable):
 
 
 def summary(values: Array, levels: Sequence[float], replicated: bool) -> Summary | None:
-    """Describe a figure; None if no sample has it.
+    """Return the statistics of a figure; None if no sample has it.
 
     Parameters
     ----------
@@ -79,8 +79,8 @@ def summary(values: Array, levels: Sequence[float], replicated: bool) -> Summary
     levels : sequence of float
         Of the quantiles.
     replicated : bool
-        Whether the samples are of some sequences in turn, by whose scatter intervals are then
-        judged.
+        Whether the samples are of several sequences in turn, whose scatter then gives the
+        intervals.
     """
     known = values[~np.isnan(values)]
     if not len(known):
@@ -102,7 +102,7 @@ def summary(values: Array, levels: Sequence[float], replicated: bool) -> Summary
 
 
 def _range(ordered: Array) -> tuple[float, float]:
-    """Ends of a histogram: those of the values, with some room where these hardly differ."""
+    """Return the ends of a histogram: those of the values, with some room if they hardly differ."""
     low, high = float(ordered[0]), float(ordered[-1])
     least = TOLERANCE.least_width * max(abs(low), abs(high), 1e-300)
     if high - low < least:
@@ -111,13 +111,13 @@ def _range(ordered: Array) -> tuple[float, float]:
 
 
 def _replicates(values: Array) -> list[Array]:
-    """Split samples into the sequences from which they come, those without a figure left out."""
+    """Split samples into the sequences from which they come, leaving out those without a figure."""
     parts = [values[r :: TOLERANCE.sequences] for r in range(TOLERANCE.sequences)]
     return [known for part in parts if len(known := part[~np.isnan(part)])]
 
 
 def _from_replicates(value: float, found: Sequence[float]) -> Estimate:
-    """Student's interval from independent estimates of one figure."""
+    """Return Student's interval from independent estimates of one figure."""
     count = len(found)
     if count < 2:
         return Estimate(value, math.nan, math.nan)
@@ -138,7 +138,7 @@ def _mean(known: Array, deviation: float, replicates: list[Array] | None) -> Est
 
 
 def quantile(ordered: Array, level: float, replicates: list[Array] | None) -> Estimate:
-    """Return a quantile, its interval from order statistics or from replicates.
+    """Return a quantile, with an interval from order statistics or from replicates.
 
     Parameters
     ----------
@@ -146,8 +146,8 @@ def quantile(ordered: Array, level: float, replicates: list[Array] | None) -> Es
         Figures in rising order.
     level : float
     replicates : list of ndarray or None
-        Their own quantiles would be biased far out in a tail. How the share of each at or below the
-        common quantile differs tells for which levels that quantile may stand.
+        Their own quantiles would be biased far out in a tail. The scatter of their shares at or
+        below the common quantile instead gives the levels for which that quantile may stand.
     """
     value = float(np.quantile(ordered, level))
     shares = [float((part <= value).mean()) for part in replicates or ()]
@@ -179,7 +179,7 @@ def wilson(hits: int, count: int) -> Estimate:
     middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count)
     inner = share * (1.0 - share) / count + z * z / (4.0 * count * count)
     half = z / (1.0 + z * z / count) * math.sqrt(inner)
-    # Round-off must not keep an interval from its end.
+    # Round-off must not keep the interval from reaching 0 or 1.
     low = 0.0 if hits == 0 else max(middle - half, 0.0)
     high = 1.0 if hits == count else min(middle + half, 1.0)
     return Estimate(share, low, high)
@@ -194,8 +194,8 @@ def exceedance(values: Array, limit: float, replicated: bool) -> Estimate | None
         By sample; NaN where a sample has none.
     limit : float
     replicated : bool
-        As for `summary`. Where no sequence differs from another, Wilson's interval is given, which
-        is then too wide rather than too narrow.
+        As for `summary`. If all sequences agree, Wilson's interval is given, which is then too
+        wide rather than too narrow.
     """
     known = values[~np.isnan(values)]
     if not len(known):
@@ -212,16 +212,16 @@ def exceedance(values: Array, limit: float, replicated: bool) -> Estimate | None
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """What a unit of inputs contributes to the variance of a figure.
+    """The contribution of a unit of inputs to the variance of a figure.
 
     Attributes
     ----------
     unit : str
         An input, or correlated ones joined by `` + ``.
     first : Estimate
-        Share that goes if the unit becomes exact, the others scattering.
+        Share of the variance that vanishes if the unit becomes exact while the others scatter.
     total : Estimate
-        Share that stays if all others become exact: with all its interactions.
+        Share that remains if all others become exact; includes all interactions of the unit.
     """
 
     unit: str
@@ -230,12 +230,12 @@ class Share:
 
 
 def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ...]:
-    """Return the shares of all units.
+    """Return the shares of variance of all units.
 
     Parameters
     ----------
     figures : ndarray, shape (2 + units, rows)
-        Of the matrices A, B, and A with each unit taken from B. A row of which one figure is
+        Of the matrices A, B, and A with each unit taken from B. A row in which any figure is
         missing is left out.
     units : tuple of str
     seed : int
@@ -244,7 +244,7 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     Returns
     -------
     tuple of Share
-        Empty where the figure does not vary, or too few rows are left.
+        Empty if the figure does not vary or too few rows are left.
 
     Notes
     -----
@@ -262,7 +262,7 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     middle = base.mean()
     a, b, mixed = a - middle, b - middle, mixed - middle
     rows = len(a)
-    # Every estimate is a ratio of means over rows: a resample only weighs the rows again.
+    # Every estimate is a ratio of means over rows, so a resample only reweights the rows.
     sums = np.concatenate([[a, b, a * a, b * b], b * (mixed - a), 0.5 * (a - mixed) ** 2])
     first, total = _ratios(sums.mean(axis=1)[:, None], len(units), still)
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(0, 2)))
@@ -281,9 +281,9 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
 
 
 def _ratios(means: Array, units: int, still: float) -> tuple[Array, Array]:
-    """First-order and total indices, (units, resamples), from means of the terms.
+    """Return first-order and total indices, (units, resamples), from means of the terms.
 
-    Resamples in which nothing varies, as a few rows may have, are left out.
+    Resamples without variance, which can occur with few rows, are left out.
     """
     variance = 0.5 * (means[2] + means[3]) - (0.5 * (means[0] + means[1])) ** 2
     varies = variance > (0.5 * still) ** 2
@@ -293,12 +293,12 @@ def _ratios(means: Array, units: int, still: float) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OmegaStatistics(Comparable):
-    """How the largest Ω of a stage scatters.
+    """Statistics of the largest Ω of a stage.
 
     Attributes
     ----------
     over : {"stage", "group"}
-        Over whose mean torque Ω is.
+        Whose mean torque Ω is over.
     stage : str
         Stage, or "system".
     summary : Summary
@@ -316,7 +316,7 @@ class OmegaStatistics(Comparable):
 
 
 Columns = Callable[[str], Array]
-"""Gives a column of the samples' figures by its name."""
+"""Function that returns a column of the samples' figures by its name."""
 
 
 def omega_statistics(
@@ -326,7 +326,7 @@ def omega_statistics(
     limit: float | None,
     replicated: bool,
 ) -> Iterator[OmegaStatistics]:
-    """Yield the statistics of Ω, without shares of variance, where any sample has it.
+    """Yield the statistics of Ω, without shares of variance, for stages where a sample has it.
 
     Parameters
     ----------
@@ -338,7 +338,7 @@ def omega_statistics(
         Of the quantiles.
     limit : float or None
     replicated : bool
-        As for `statistics.summary`.
+        As for `summary`.
     """
     for (kind, over), stage in product(KINDS.items(), stages):
         values = column(f"{kind}.{stage}")
@@ -349,7 +349,7 @@ def omega_statistics(
 
 
 def apart_kinds(column: Columns) -> list[str]:
-    """Kinds of Ω that differ: where groups share alike, as without groups, both are one."""
+    """Return the kinds of Ω that differ; if groups share alike, or there are none, only one."""
     one, other = (column(f"{kind}.{SYSTEM}") for kind in KINDS)
     same = np.allclose(one, other, rtol=TOLERANCE.same, atol=0.0, equal_nan=True)
     return list(KINDS)[:1] if same else list(KINDS)

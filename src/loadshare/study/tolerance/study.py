@@ -44,7 +44,7 @@ from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
 from loadshare.train import build_train
 
 NAME = "tolerance"
-"""Of a study that is requested in Python only."""
+"""Name of a study that is requested in Python only."""
 
 
 def tolerance(
@@ -68,35 +68,36 @@ def tolerance(
     engine: str = "auto",
     progress: Progress | None = None,
 ) -> Tolerance:
-    """Let inputs of a case scatter, and find how load sharing does.
+    """Find how load sharing scatters if inputs of a case do.
 
     Every sample is a certified equilibrium at every position. Samples are drawn in blocks of 4096,
-    each from its own seed: results are bit-identical whatever the workers and whatever was solved
-    before. A run that was killed goes on where it stopped when called again with the same `out`.
+    each from its own seed, so results are bit-identical for any workers and whatever was solved
+    before. A run that was killed continues where it stopped if called again with the same `out`.
 
     Parameters
     ----------
     case : Case or path
     inputs : mapping of str to dict or Spread, optional
-        How inputs scatter, by key, as ``[study.NAME.inputs]`` in a case file has it.
+        Distributions by key, as in ``[study.NAME.inputs]`` of a case file.
     study : str, optional
-        Study of the case that gives whatever is not given here; by default its only one of this
-        kind, where `inputs` is not given.
+        Study of the case that supplies whatever is not given here. If neither this nor `inputs` is
+        given, the only tolerance study of the case.
     groups, samples, seed, sampling, limit, indices, quantiles, positions : optional
         As the keys of ``[study.NAME]``. By default 16384 samples, seed 0, "random" sampling, 1024
         rows for the shares of variance, and quantiles 0.5, 0.9, 0.95, 0.99 and 0.999.
     worst : bool
-        Look for the worst case within the tolerances as well.
+        Whether to search for the worst case within the tolerances as well.
     out : path, optional
-        Folder for the samples; without one they are kept as long as the answer is.
+        Folder for the samples; without one they are kept as long as the result exists.
     scheduler : str, optional
         Address of a Dask scheduler; its workers then solve the samples.
     workers, chunk : int
-        Processes on this machine; blocks of 4096 samples in a part, the unit of work and files.
+        Processes on this machine; blocks of 4096 samples per part, the unit of work and of files.
     engine : {"auto", "compiled", "vectorised"}
         As for `solve_many`.
     progress : Progress, optional
-        Called after every part with samples done and in all, those for the shares included.
+        Called after every part with the number of samples done and the number of all, those for
+        the shares of variance included.
 
     Raises
     ------
@@ -104,9 +105,9 @@ def tolerance(
         If the study, an input or its distribution cannot be used; all problems are listed.
     LoadshareError
         If `out` holds a study with other settings, another process works there, workers fail,
-        or samples have no place.
+        or there is no place for samples.
     OSError
-        If a file cannot be written; what is there is whole, and the same call goes on.
+        If a file cannot be written; files already there are intact, and the same call continues.
     ValueError
         If a position or an engine does not exist, or `workers` or `chunk` is below 1.
 
@@ -137,15 +138,15 @@ def requested_job(
     chunk: int = CHUNK,
     engine: str = "auto",
 ) -> tuple[Job, Study]:
-    """Return a study as it is requested, checked: what its samples depend on, and its settings.
+    """Return the job of a requested study, checked, and the study's settings.
 
     Parameters
     ----------
     case : Case
     study : str or None
-        Study of the case that gives whatever is not given here.
+        Study of the case that supplies whatever is not given here.
     given : mapping of str to object
-        As the keys of ``[study.NAME]``; None where something is not given.
+        By the keys of ``[study.NAME]``; None for a key that is not given.
     chunk, engine
         As for `tolerance`.
 
@@ -163,10 +164,10 @@ def requested_job(
 
 @contextmanager
 def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
-    """Open a study's folder; one that nobody named is removed with the last who uses it."""
+    """Open a study's folder; a temporary one is removed when it is no longer used."""
     if out is not None:
         path = Path(out)
-        # What stands in the way is reported by the folder.
+        # Whatever prevents this is reported by the folder.
         with suppress(OSError):
             path.mkdir(parents=True, exist_ok=True)
         with alone_in(path):
@@ -183,7 +184,7 @@ def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
 
 
 def _requested(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case, str]:
-    """Return the case with the study as it is requested, checked, and the study's name."""
+    """Return the case with the study as requested, checked, and the study's name."""
     own = [key for key, block in case.study.items() if block.kind == NAME]
     settings = {key: value for key, value in given.items() if value is not None}
     if name is None:
@@ -243,7 +244,7 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
 
 
 def _solve(folder: Folder, scheduler: str | None, workers: int, progress: Progress | None) -> None:
-    """Solve what is missing, after a look at what is there."""
+    """Check the parts that exist, then solve the missing ones."""
     missing = folder.missing()
     for part in folder.all:
         if part not in missing:
@@ -269,7 +270,7 @@ def _solved(
         return solve_on_cluster(folder, missing, scheduler)
     from loadshare.study.tolerance.local import solve_here, solve_parts
 
-    # By all parts and not by the missing ones: where a sample is solved shall not depend on when.
+    # By all parts, not by the missing ones: where a sample is solved must not depend on when.
     settings = folder.job.settings
     if sum(part.rows for part in folder.all) * len(settings["positions"]) <= TOLERANCE.small:
         return solve_here(folder, missing)
@@ -277,7 +278,7 @@ def _solved(
 
 
 class _Reader:
-    """Reads the statistics of a study from its parts."""
+    """Reader of a study's statistics from its parts."""
 
     def __init__(self, folder: Folder, block: Study) -> None:
         self.folder, self.limit = folder, block.limit
@@ -286,7 +287,7 @@ class _Reader:
         self.replicated = self.settings["sampling"] == "sobol"
 
     def found(self, worst: bool) -> Tolerance:
-        """Return all that was found."""
+        """Return the result of the study."""
         folder, job = self.folder, self.folder.job
         certified, residual = folder.column("certified"), folder.column("residual")
         messages = folder.column("message")[~certified]
@@ -342,7 +343,7 @@ class _Reader:
 
 
 def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
-    """Return the worst cases: those that an earlier run found, or what a search finds."""
+    """Return the worst cases, from an earlier run or from a search."""
     known = folder.worst()
     if known is not None:
         # A file that something else wrote under this name holds other keys.
@@ -357,7 +358,7 @@ def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
 
 
 def sought(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
-    """Search the worst case of every kind of Ω, from the worst samples on."""
+    """Search for the worst case of every kind of Ω, starting from the worst samples."""
     solver, seed = folder.job.solver, folder.job.settings["seed"]
     for kind in kinds:
         values = np.nan_to_num(folder.column(f"{kind}.{SYSTEM}"), nan=-np.inf)

@@ -1,4 +1,4 @@
-"""Folders of samples that nobody asked to keep: gone with who made them, at the latest later."""
+"""Temporary folders of samples, removed by the process that made them or by a later one."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from loadshare.lock import LOCK, alone_in
 
 PREFIX = "loadshare-samples-"
 INSIDE = "samples"
-"""What holds the study; next to it is only the lock, so that nobody's own folder is taken for
-one of these."""
+"""The folder that holds the study; only the lock is next to it, so that no folder of a user is
+mistaken for one of these."""
 NEW = 60.0
-"""Seconds for which a lock that nobody holds is one that its process is about to take."""
+"""Age in seconds up to which a free lock is taken for one that its process is about to hold."""
 
 
 class TemporaryFolder:
     """A folder for samples, locked by the system for as long as this process lives.
 
-    A process that is killed cannot remove it. Whoever makes the next one does.
+    A process that is killed cannot remove its folder; whichever process makes the next one does.
 
     Attributes
     ----------
@@ -50,14 +50,14 @@ class TemporaryFolder:
             ) from None
 
     def remove(self) -> None:
-        """Remove it with all that it holds."""
+        """Remove the folder with all its content."""
         shutil.rmtree(self.path, ignore_errors=True)
         self._held.close()
         shutil.rmtree(self._above, ignore_errors=True)
 
 
 def remove_left(folder: Path) -> None:
-    """Remove what processes left that were killed: their locks are nobody's."""
+    """Remove folders that killed processes left: nobody holds their locks."""
     for path in folder.glob(f"{PREFIX}*"):
         with suppress(OSError, LoadshareError):
             if _is_left(path):
@@ -67,7 +67,7 @@ def remove_left(folder: Path) -> None:
 
 
 def _is_left(path: Path) -> bool:
-    """Whether a folder looks like one of these, and is this user's own."""
+    """Return whether a folder looks like a temporary one, is not new, and belongs to this user."""
     own = not hasattr(os, "getuid") or path.lstat().st_uid == os.getuid()
     if not own or path.is_symlink() or not path.is_dir():
         return False

@@ -23,18 +23,18 @@ class WorstCase:
     Attributes
     ----------
     over : str
-        "stage" or "group": over whose mean Ω is.
+        "stage" or "group": whose mean Ω is over.
     omega : float
         Ω of the system, the largest over positions and branches, of a certified equilibrium that
-        was solved by itself.
+        was solved on its own.
     inputs : mapping of str to float
-        By input, in its unit.
+        Value of each input, in its unit.
     changes : mapping of str to str or float
         The same, as `Case.replace` takes it.
     at : mapping of str to str
         "low", "high" or "between", by input.
     solved : int
-        Samples that were solved to find it.
+        Number of samples that were solved to find it.
     """
 
     over: str
@@ -65,24 +65,24 @@ class Box:
         return np.asarray(self.low + scaled * (self.high - self.low))
 
     def scaled(self, values: Array) -> Array:
-        """Return inputs as parts of their range; what is beyond is at its end."""
+        """Return inputs as fractions of their range, clipped to its ends."""
         width = self.high - self.low
-        # One that scatters by less than the precision of numbers has no range.
+        # An input that scatters by less than the precision of numbers has no range.
         return np.asarray(
             np.clip((values - self.low) / np.where(width > 0.0, width, 1.0), 0.0, 1.0)
         )
 
     def within(self, scaled: Array) -> Array:
-        """Bring points back into the box: angles around, others to the side."""
+        """Bring points back into the box: angles wrap around, others are clipped."""
         return np.where(self.periodic, scaled % 1.0, np.clip(scaled, 0.0, 1.0))
 
 
 def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> WorstCase | None:
-    """Look for the worst case from many starting points at once.
+    """Search for the worst case from many starting points at once.
 
-    From each point every input is tried a step up and down; the point moves to the best of these,
-    or to what the gains of several inputs give together, and narrows its step where nothing gains.
-    All trials of all points are solved as one batch.
+    From each point, every input is tried a step up and down. The point moves to the best of these
+    trials or of several that gain, taken together; if nothing gains, its step is reduced. The
+    trials of all points are solved as one batch.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> 
     Returns
     -------
     WorstCase or None
-        None if no starting point has an answer, or none of the best is certified by itself.
+        None if no starting point has an answer, or no point found is certified on its own.
     """
     box = Box(solver.inputs)
     search = _Search(solver, box, f"{kind}.{SYSTEM}")
@@ -135,7 +135,7 @@ class _Search:
     solved: int = 0
 
     def omega(self, scaled: Array) -> Array:
-        """Ω at points of the box; minus infinity where there is no certified answer."""
+        """Return Ω at points of the box; minus infinity where there is no certified answer."""
         found = np.full(len(scaled), -np.inf)
         for at in range(0, len(scaled), JOB.block):
             part = slice(at, at + JOB.block)
@@ -145,14 +145,14 @@ class _Search:
         return found
 
     def round(self, points: Array, best: Array, step: Array) -> tuple[Array, Array]:
-        """Return for each point the best place tried around it, and its Ω."""
+        """Return, for each point, the best point tried around it, and its Ω."""
         count, width = points.shape
         ways = np.concatenate([np.eye(width), -np.eye(width)])
         around = points[:, None, :] + step[:, None, None] * ways
         trials = self.box.within(around.reshape(-1, width)).reshape(around.shape)
         omega = self.omega(trials.reshape(-1, width)).reshape(count, 2 * width)
         gain = np.where(np.isfinite(omega), omega - best[:, None], -np.inf)
-        # What gains by itself often gains together: all of it, and the better half.
+        # Steps that gain alone often gain together: all of them, and the better half, are tried.
         up, down = gain[:, :width], gain[:, width:]
         sign = np.where(up >= down, 1.0, -1.0)
         each = np.maximum(up, down)
@@ -174,7 +174,7 @@ class _Search:
 
 
 def _confirmed(solver: Solver, box: Box, kind: str, place: Array, solved: int) -> WorstCase | None:
-    """Solve the place by itself, with a full certificate."""
+    """Solve a point of the box on its own, with a full certificate."""
     values = box.values(place).tolist()
     changes = solver.inputs.changes(values)
     omega = _omega_with(solver, changes, kind)
@@ -195,7 +195,7 @@ def _confirmed(solver: Solver, box: Box, kind: str, place: Array, solved: int) -
 
 
 def _omega_with(solver: Solver, changes: dict[str, Any], kind: str) -> float | None:
-    """Ω of the system with some inputs changed; None where that is not certified, or Ω is none."""
+    """Return Ω of the system with inputs changed; None if it is not certified or has no Ω."""
     try:
         result = solve(
             solver.case.replace(changes), positions=solver.positions, tolerance=solver.tolerance
@@ -207,7 +207,7 @@ def _omega_with(solver: Solver, changes: dict[str, Any], kind: str) -> float | N
 
 
 def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
-    """Solve a worst case that an earlier run found again.
+    """Check a worst case that an earlier run found, by solving it again.
 
     Raises
     ------
