@@ -1,1 +1,1 @@
-"""Follow an equilibrium along a parameter: its equations on a set, and proof that the set holds."""
+"""Follow an equilibrium along a parameter: equations on an active set, and proof that it holds."""

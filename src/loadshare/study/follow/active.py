@@ -26,10 +26,10 @@ class WorkingSet:
     states : tuple of int
         Of all elements; see `loadshare.solver.hot.contact_states`.
     pieces : tuple of int
-        On which piece of its table each tabulated contact stands.
+        Which piece of its table each closed tabulated contact is on.
     tied : frozenset of int
-        Closed contacts, by number, that are held as if they were rigid: those that begin to carry
-        under a law which is infinitely soft at first (c > 0), where nothing else can.
+        Closed contacts, by number, that are treated as rigid: those that begin to carry under a law
+        that is infinitely soft at first (c > 0), where nothing else can.
     """
 
     states: tuple[int, ...]
@@ -37,19 +37,19 @@ class WorkingSet:
     tied: frozenset[int] = frozenset()
 
     def changes(self, other: WorkingSet, structure: Structure) -> list[int]:
-        """Numbers of the elements whose state differs, contacts first, these by name."""
+        """Return the numbers of the elements whose state differs, contacts first, by name."""
         names, rows = structure.row_names, structure.rows
         changed = np.flatnonzero(np.not_equal(self.states, other.states)).tolist()
         return sorted(changed, key=lambda k: (k >= rows, names[k] if k < rows else ""))
 
 
 def switch_names(structure: Structure) -> tuple[str, ...]:
-    """Names of contacts and radial elements, in the order of an active set."""
+    """Return the names of contacts and radial elements, in the order of an active set."""
     return (*structure.row_names, *(radial.name for radial in structure.radials))
 
 
 def coordinates(structure: Structure, situation: Situations, found: Equilibrium) -> Array:
-    """Coordinates x of an equilibrium, in the units of the elements."""
+    """Return the coordinates x of an equilibrium, in the units of the elements."""
     at, order = structure.coordinates, structure.train.order
     x, turned = np.zeros(at.size), structure.turned(situation)[0]
     for gear, where in at.displacement.items():
@@ -61,7 +61,7 @@ def coordinates(structure: Structure, situation: Situations, found: Equilibrium)
 
 
 def read_states(structure: Structure, numbers: Numbers, found: Equilibrium, x: Array) -> States:
-    """Read which elements act from the forces and radii of an equilibrium.
+    """Read the contact states from the forces and radii of an equilibrium.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def _parts(law: at.Graph) -> Iterator[Part]:
     if stick > 0.0:
         yield Part(at.STICK, 0.0, stick, 0.0, 0.0, first)
     if reach > stick:
-        # Inside a ring nothing acts; a spline without friction may have some beside.
+        # Inside a ring nothing acts; a spline without friction may have some at values beside.
         yield Part(at.SLIP if first > 0.0 else at.OPEN, stick, reach, bound, bound, 0.0)
     if np.isfinite(last):
         yield Part(at.STOP, reach, np.inf, bound, bound, last)
@@ -115,7 +115,7 @@ def set_of(
     x: Array,
     tied: frozenset[int] = frozenset(),
 ) -> WorkingSet:
-    """Return the set of states at one value: reads on which pieces tabulated contacts stand."""
+    """Return the set of given states at one value; pieces of tabulated contacts are read from x."""
     found, tabulated = [], numbers.tabulated[0]
     for k in np.flatnonzero(tabulated >= 0).tolist():
         if states[k - structure.springs] == at.CLOSED:

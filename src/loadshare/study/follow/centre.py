@@ -1,7 +1,8 @@
 """Bodies that nothing holds, moved to where they have most room.
 
-What floats may rest anywhere; a place on a limit would make its gauge vanish for no reason. Rooms
-are compared in deflections, and all points are found in one linear programme, a block for each.
+A floating body may rest anywhere; on a limit it would make the limit's gauge vanish for no reason.
+Rooms are compared in deflections, and all points are found in one linear programme, with a block
+for each.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ def _into_the_middle(
 ) -> Array:
     """Move points (S, size) along moves (k, n) that nothing resists, to where room is largest.
 
-    A round limit is the polygon of its tangents, at first in equal turns, then closer and closer
-    around where points came to stand, until there is as much room as the polygon promises.
+    A round limit is replaced by a polygon of tangents, at first at equal angles, then refined
+    around the points reached, until there is as much room as the polygon promises.
     """
     z = z.copy()
     moves = [m / np.maximum(np.abs(m).max(axis=1, initial=0.0), 1e-300)[:, None] for m in moves]
@@ -66,7 +67,7 @@ def _into_the_middle(
             promised[i] = scale[i] * step[-1]
         along, actual = _round(equations, z[rows], here)
         short = (promised > FOLLOW.spent) & (actual < (1.0 - FOLLOW.full) * promised)
-        # Arcs are straight around the point: the second time they are nearly exact.
+        # Arcs are linearised at the point: in the second pass they are nearly exact.
         again = short | (bends and number == 0) & np.isfinite(promised)
         if not again.any():
             break
@@ -77,7 +78,7 @@ def _into_the_middle(
 
 
 def _turned(ways: Array, angles: Array) -> Array:
-    """Directions (…, 2) turned by every angle (k): (…, k, 2)."""
+    """Return directions (…, 2) turned by every angle (k), as (…, k, 2)."""
     across = np.stack([-ways[..., 1], ways[..., 0]], axis=-1)
     return (
         ways[..., None, :] * np.cos(angles)[:, None]
@@ -86,14 +87,14 @@ def _turned(ways: Array, angles: Array) -> Array:
 
 
 def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
-    """How far to go along every move of a block, so that its least room becomes largest; that room.
+    """Return the steps along a block's moves that make its least room largest, and that room.
 
     Parameters
     ----------
     blocks : sequence of (ndarray, ndarray), shapes (rows, moves + 1) and (rows,)
-        How fast the moves close every limit, then 1 for the least room; rooms.
+        How fast the moves close every limit, then 1 for the least room; the rooms.
     most : ndarray, shape (blocks,)
-        Room that is as good as any more.
+        Room beyond which more is of no use.
     """
     if not blocks:
         return []
@@ -116,7 +117,7 @@ def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
         return [np.zeros(width) for width in widths]
     steps = []
     for (rows, room), found in zip(blocks, np.split(answer.x, last[:-1] + 1), strict=True):
-        # The programme is solved to its tolerance; what binds is met to round-off.
+        # The programme is solved to its tolerance only; binding limits are then met to round-off.
         left = room - rows @ found
         binds = left <= FOLLOW.binds
         more = np.linalg.lstsq(rows[binds], left[binds], rcond=None)[0]
@@ -125,9 +126,9 @@ def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
 
 
 def _rooms(equations: Equations, z: Array, numbers: Numbers, facets: Array) -> tuple[Array, Array]:
-    """Room before open limits (S, k), infinite where there is none, and how fast it closes.
+    """Return the room before open limits (S, k), infinite without one, and how fast it closes.
 
-    Round limits are the polygons whose sides face the ways `facets` (S, radials, sides, 2).
+    Round limits are polygons whose sides face the directions `facets` (S, radials, sides, 2).
     """
     state = equations.state(z, numbers)
     count, n = len(z), equations.n
@@ -152,7 +153,7 @@ def _rooms(equations: Equations, z: Array, numbers: Numbers, facets: Array) -> t
 
 
 def _round(equations: Equations, z: Array, numbers: Numbers) -> tuple[Array, Array]:
-    """Ways (S, radials, 2) of floats from the centres of round limits, and the least room."""
+    """Return directions (S, radials, 2) of floats from centres of round limits, and least room."""
     state = equations.state(z, numbers)
     ways, least = np.zeros((len(z), len(equations.radials), 2)), np.full(len(z), np.inf)
     for j, k in enumerate(equations.radials):

@@ -13,7 +13,7 @@ from loadshare.study.follow.line import Missing
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Point:
-    """A certified point on a set, or one between two of them that its equations lead to.
+    """A certified point on a set, or one between two such points, found by the set's equations.
 
     Attributes
     ----------
@@ -21,7 +21,7 @@ class Point:
     active : WorkingSet
     z : ndarray
     worst : float
-        Worst scaled residual of its certificate, or of theirs.
+        Worst scaled residual of its certificate, or of those of the two points.
     """
 
     value: float
@@ -39,11 +39,11 @@ class Change:
     value : float
     before, after : WorkingSet
     confirmed : bool
-        Whether both sides were proved up to it.
+        Whether both sides were proved up to the change.
     worst : float
-        Larger one of the worst residuals on both sides.
+        Larger of the worst residuals on both sides.
     apart : float
-        Distance of the points on both sides.
+        Larger of the distances of the points on both sides.
     """
 
     value: float
@@ -74,13 +74,13 @@ class Gap:
 
 
 def distinct(changes: Iterable[Change], least: float) -> list[Change]:
-    """Return changes by value, those joined that are too close to each other to be two events.
+    """Return changes by value, joining those that are too close together to be two events.
 
     Parameters
     ----------
     changes : iterable of Change
     least : float
-        Distance of values below which they are the same.
+        Distance below which two values are the same.
     """
     found: list[Change] = []
     for change in sorted(changes, key=lambda c: c.value):

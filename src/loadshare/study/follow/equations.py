@@ -1,12 +1,12 @@
-r"""The equations of a machine on one set, for many points at once.
+r"""The equations of a machine on one active set, for many points at once.
 
-Contacts that yield are eliminated by their closed form F(δ), continued oddly below zero, so that a
-branch can be followed across the point where it ends. Rigid contacts, steps and rigid stops keep
-their forces as unknowns. With coordinates x and forces p the unknowns are z = (x, p), and
+Contacts that yield are eliminated by their closed form F(δ), continued as an odd function below
+zero, so that a branch can be followed across the point where it ends. Rigid contacts, steps and
+rigid stops keep their forces as unknowns. With coordinates x and forces p, z = (x, p) and
 
 .. math:: G(z) = \Big(\sum_e a_e F_e(a_e x - g_e) + \sum_j P_j^T \Phi_j - f,\; c(x)\Big) = 0.
 
-An arc is an element with a direction like a radial one: its force acts along the line of centres.
+An arc has a direction, like a radial element: its force acts along the line of centres.
 Source: formulation, sections 3 to 6.
 """
 
@@ -41,9 +41,9 @@ class Polar:
     size, slope : ndarray, shape (S,)
         φ, the force along it, and its derivative with respect to the radius.
     beyond : ndarray, shape (S,), or None
-        Distance beyond the radius at which an unknown force holds it.
+        Distance beyond the radius at which an unknown force holds the element.
     sense : float
-        What an unknown force is to be multiplied by to act along the offset.
+        Factor that makes an unknown force act along the offset.
     spring : bool
         Whether its force is proportional to the offset.
     """
@@ -78,7 +78,7 @@ class Polar:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
-    """Everything at S points z.
+    """Approaches, forces and offsets of all elements at S points z.
 
     Attributes
     ----------
@@ -104,14 +104,14 @@ class Evaluation:
 
 
 class Equations:
-    """A machine on an active set.
+    """The equations of a machine on an active set.
 
     Parameters
     ----------
     structure : Structure
     active : WorkingSet
     numbers : Numbers
-        At any value: they tell which contacts are rigid, linear, curved or tabulated.
+        At any value; they decide which contacts are rigid, linear, curved or tabulated.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class Equations:
         self.curved = np.flatnonzero(self.acts & curved[part])
         self.tables = np.flatnonzero(self.acts & (tabulated[part] >= 0))
         self._free: bool | None = None
-        # Every force that does not follow from a displacement has its place in z.
+        # Every force that does not follow from a displacement is an unknown in z.
         self.rigid_at = self.n + np.arange(len(self.rigid))
         self.size = self.n + len(self.rigid)
         self.polar_at: dict[int, int | None] = {}
@@ -155,17 +155,17 @@ class Equations:
                 self.size += width
 
     def serve(self, numbers: Numbers) -> bool:
-        """Whether contacts are rigid, linear, curved or tabulated with other numbers as here."""
+        """Return whether `numbers` have the same rigid, linear, curved and tabulated contacts."""
         return all(map(np.array_equal, self._kinds, numbers.kinds))
 
     def _forces_of(self, k: int, yields: Flags) -> int:
-        """How many unknown forces an arc or radial element has that acts."""
+        """Return the number of unknown forces of an acting arc or radial element."""
         if k in self.arcs:
             return int(not yields[self.structure.springs + k])
         return {at.PINNED: 2, at.CORNER: 1, at.WALL: 1}.get(int(self.states[k]), 0)
 
     def matrix(self, k: int, numbers: Numbers) -> Array:
-        """Offset of an arc or radial element per unit of the coordinates, (S or 1, 3 or 2, n)."""
+        """Return the offset of an arc or radial element per unit of x, (S or 1, 3 or 2, n)."""
         if k in self.arcs:
             return np.asarray(numbers.relative[:, k - self.arcs.start])
         return np.asarray(numbers.vectors[:, self._columns(k)])
@@ -177,7 +177,7 @@ class Equations:
     # --- At points ------------------------------------------------------------------------------
 
     def state(self, z: Array, numbers: Numbers, every: bool = True) -> Evaluation:
-        """Return approaches, forces and offsets at points z (S, size); of all, or what acts."""
+        """Return approaches, forces, offsets at points z (S, size); if not `every`, acting ones."""
         x = z[:, : self.n]
         vectors = numbers.vectors[:, : self.scalars]
         approach = (vectors @ x[:, :, None])[:, :, 0] - numbers.gap[:, : self.scalars]
@@ -205,7 +205,7 @@ class Equations:
         return Evaluation(approach, force, slope, polars, margin, laws, transmitted)
 
     def _laws(self, z: Array, numbers: Numbers, transmitted: Array) -> dict[int, at.Graph]:
-        """Return the laws of the radial elements, all found at once."""
+        """Return the laws of the radial elements, evaluated in one call."""
         if not self.radials:
             return {}
         offsets = np.stack([self._offset(k, z, numbers) for k in self.radials], axis=1)
@@ -303,7 +303,7 @@ class Equations:
         return found
 
     def _follow(self, k: int, state: Evaluation, numbers: Numbers) -> Array:
-        """Derivative (S, size) of a friction bound that follows the torque; zero for others."""
+        """Return the derivative (S, size) of a friction bound that follows the torque, or zero."""
         j, count = k - self.radials.start, len(state.transmitted)
         number = np.broadcast_to(numbers.radial[:, j], (count, numbers.radial.shape[2]))
         follows = np.isnan(number[:, 3])
@@ -314,7 +314,7 @@ class Equations:
         return np.asarray(per[:, None] * self.along_forces(arms, state, numbers)[:, 0])
 
     def along_forces(self, weights: Array, state: Evaluation, numbers: Numbers) -> Array:
-        """Derivative (S, k, size) of sums of forces, weighted by (S or 1, k, scalars)."""
+        """Return the derivative (S, k, size) of sums of forces by weights (S or 1, k, scalars)."""
         count = len(state.slope)
         rate = np.zeros((count, weights.shape[1], self.size))
         rate[:, :, : self.n] = (weights * state.slope[:, None]) @ numbers.vectors[:, : self.scalars]
@@ -322,9 +322,9 @@ class Equations:
         return rate
 
     def sizes(self, z: Array, numbers: Numbers, state: Evaluation, yields: bool = True) -> Array:
-        """Sum of the sizes of the terms of every equation, shape (S, size).
+        """Return the sum of the sizes of the terms of every equation, shape (S, size).
 
-        With or without what the terms of a displacement move the force that follows it.
+        With `yields`, the terms of a displacement also count by the force that follows it.
         """
         vectors = np.abs(numbers.vectors[:, : self.scalars])
         x = np.abs(z[:, : self.n])
@@ -345,7 +345,7 @@ class Equations:
         return found
 
     def lengths(self, x: Array, numbers: Numbers) -> Array:
-        """Sum of the sizes of the terms of every approach (S, scalars), by those of x."""
+        """Return the sum of the sizes of the terms of every approach (S, scalars), from |x|."""
         gap = np.where(np.isfinite(numbers.gap), np.abs(numbers.gap), 0.0)
         vectors = np.abs(numbers.vectors[:, : self.scalars])
         return np.asarray((vectors @ x[:, :, None])[:, :, 0] + gap[:, : self.scalars])
@@ -353,13 +353,13 @@ class Equations:
     # --- Answers --------------------------------------------------------------------------------
 
     def solve(self, z: Array, numbers: Numbers) -> tuple[Array, Flags]:
-        """Solve from points z by Newton's method, by steps of least norm where z is not determined.
+        """Solve from points z by Newton's method, with least-norm steps where z is undetermined.
 
         Returns
         -------
         ndarray, shape (S, size)
         ndarray of bool, shape (S,)
-            Whether there is a solution near by.
+            Whether there is a solution nearby.
         """
         z = z.copy()
         count = len(z)
@@ -396,21 +396,21 @@ class Equations:
 
     @property
     def floats(self) -> bool:
-        """Whether the set leaves moves free, where it was solved."""
+        """Whether the set leaves moves free, at the points where it was first solved."""
         return bool(self._free)
 
     def leaves_free(self, jacobian: Array) -> bool:
-        """Whether the set leaves moves free, found at the first points at which it is solved."""
+        """Return whether the set leaves moves free, as found where it is first solved."""
         if self._free is None:
             self._free = bool(free_moves(balanced(jacobian)[1])[1].any())
         return self._free
 
     def start(self, x: Array, numbers: Numbers) -> Array:
-        """Return unknowns (S, size) at coordinates (S, n): forces that fit the balance best."""
+        """Return unknowns (S, size) at coordinates (S, n); their forces fit the balance best."""
         z = np.zeros((len(x), self.size))
         z[:, : self.n] = x
         if self.size > self.n:
-            # On a set that cannot act here, nothing is finite: there is no solution near by.
+            # On a set that cannot act here, nothing is finite: there is no solution nearby.
             with np.errstate(all="ignore"):
                 off = self.residual(z, numbers)[:, : self.n]
                 borders = self.jacobian(z, numbers)[:, : self.n, self.n :]
@@ -419,7 +419,7 @@ class Equations:
 
 
 def pressed(b: Array, c: Array, approach: Array) -> tuple[Array, Array]:
-    """Force and slope of closed contacts, δ = bF + cF^(2/3), continued oddly below zero."""
+    """Return F and dF/dδ of closed contacts, δ = bF + cF^(2/3); F is odd in δ below zero."""
     size = np.abs(approach)
     with np.errstate(divide="ignore", invalid="ignore"):
         curved = roots(b, np.where(c > 0.0, c, 1.0), np.where(size > 0.0, size, 1.0))
@@ -434,7 +434,7 @@ def balanced(jacobian: Array) -> tuple[Array, Array]:
     Returns
     -------
     ndarray, shape (S, size)
-        Factors of rows, and of columns.
+        Factors of the rows, which are those of the columns as well.
     ndarray, shape (S, size, size)
         The scaled Jacobian.
     """
@@ -447,7 +447,7 @@ def balanced(jacobian: Array) -> tuple[Array, Array]:
 
 
 def least_norm_step(jacobian: Array, off: Array, singular: bool = True) -> Array:
-    """Solve J step = off, by the least step in scaled unknowns where J is singular."""
+    """Solve J step = off, with the least step in scaled unknowns where J is singular."""
     factor, scaled = balanced(jacobian)
     if not singular:
         try:
@@ -462,14 +462,14 @@ def least_norm_step(jacobian: Array, off: Array, singular: bool = True) -> Array
 
 
 def free_moves(jacobian: Array) -> tuple[Array, Flags]:
-    """Moves of the unknowns that a Jacobian (S, size, size) does not resist.
+    """Return the moves of the unknowns that a Jacobian (S, size, size) does not resist.
 
     Returns
     -------
     ndarray, shape (S, size, size)
-        In unknowns scaled as by `balanced`, orthonormal, one a row.
+        Orthonormal moves, one per row, in unknowns scaled as by `balanced`.
     ndarray of bool, shape (S, size)
-        Which of the rows are such moves.
+        Which of the rows are not resisted.
     """
     _, sizes, right = np.linalg.svd(jacobian)
     return right, sizes <= FOLLOW.rank * sizes.max(axis=1, initial=0.0)[:, None]

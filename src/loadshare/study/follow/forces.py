@@ -1,4 +1,4 @@
-"""Forces that vary nonlinearly along stretches: how they enter, and by how much they do."""
+"""Forces that vary nonlinearly along stretches: how they enter equations, how much they vary."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from loadshare.study.follow.stretches import Around, Stretches
 
 
 class Force(NamedTuple):
-    """A force, or a condition, that depends on quantities V z nonlinearly.
+    """A force, or a condition, that depends nonlinearly on quantities V z.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Force(NamedTuple):
     slack : ndarray, shape (B, width)
         A row of ρ: by how much its slopes with respect to the quantities vary.
     rate, spread : ndarray, shape (B,)
-        Its derivative along the chord.
+        Its derivative along the chord lies within `spread` of `rate`.
     """
 
     into: Array
@@ -51,7 +51,7 @@ class Bound(NamedTuple):
     felt : ndarray, shape (B, width)
         Largest size of its slope with respect to the quantities.
     varies : ndarray, shape (B, width)
-        By how much that varies.
+        By how much this slope varies.
     """
 
     value: Range
@@ -101,7 +101,7 @@ def forces(s: Stretches, dev: Array) -> Iterator[Force]:
 
 
 def _slack(s: Stretches, columns: int | slice, slack: Array) -> Array:
-    """Row of ρ with respect to some of the quantities."""
+    """Return a row of ρ, which is zero except for some of the quantities."""
     found = np.zeros((s.count, s.width))
     found[:, columns] = slack
     return found
@@ -111,7 +111,7 @@ def _slack(s: Stretches, columns: int | slice, slack: Array) -> Array:
 
 
 def varying_slopes(s: Stretches, dev: Array) -> dict[int, Slope]:
-    """Contacts whose slope varies: by how much, and how their force changes on the chord."""
+    """Return contacts whose slope varies: by how much, and how their force changes on the chord."""
     e, found = s.equations, {}
     if len(e.curved):
         every = _curved(s, dev)
@@ -140,7 +140,7 @@ def _curved(s: Stretches, dev: Array) -> Slope:
     force_middle, middle = pressed(b.middle, c.middle, approach.middle)
     off = np.maximum(most - middle, middle - least)
     moved, spread = _times(middle, off, approach.rate, approach.spread)
-    # What b and c themselves add: -F F' b' - F^(2/3) F' c', with the sign of F.
+    # Changes of b and c add -F F' b' - F^(2/3) F' c', with the sign of F.
     sign = np.sign(approach.middle)
     crosses = low * high < 0.0
     for part, power in ((b, 1.0), (c, 2.0 / 3.0)):
@@ -154,7 +154,7 @@ def _curved(s: Stretches, dev: Array) -> Slope:
 
 
 def _times(one: Array, one_off: Array, other: Array, other_off: Array) -> tuple[Array, Array]:
-    """Product of two ranges given by middle and half width."""
+    """Return the product of two ranges, each given by its middle and half width."""
     off = np.abs(one) * other_off + one_off * (np.abs(other) + other_off)
     return np.asarray(one * other), np.asarray(off)
 
@@ -163,7 +163,7 @@ def _times(one: Array, one_off: Array, other: Array, other_off: Array) -> tuple[
 
 
 def friction_bound(s: Stretches, k: int, slopes: dict[int, Slope]) -> Bound:
-    """Friction bound of a radial element along the chord, and how it follows the contacts."""
+    """Return a radial element's friction bound on the chord, and how it follows the contacts."""
     e, j = s.equations, k - s.equations.radials.start
     value = s.sampled(s.state.laws[k].bound)
     given = s.split(s.numbers.radial[:, j])
@@ -200,7 +200,7 @@ def friction_bound(s: Stretches, k: int, slopes: dict[int, Slope]) -> Bound:
 def _turning_force(
     s: Stretches, k: int, where: int | None, dev: Array, slopes: dict[int, Slope]
 ) -> Iterator[Force]:
-    """Yield the components of a force that turns, and the condition that an unknown one meets."""
+    """Yield the components of a force that turns, and the condition on an unknown one."""
     e, offset, here = s.equations, s.offsets[k], s.columns[k]
     bound = None
     if where is None and k in e.radials:
@@ -208,7 +208,7 @@ def _turning_force(
     around = s.around(k, dev)
     push = _push(s, k, where, dev, bound)
     width = offset.rate.shape[1]
-    # By how much the way itself may differ, along that in the middle and across.
+    # By how much the direction itself may differ from that in the middle, along and across it.
     turn = np.stack([around.rise, *[around.turn] * (width - 1)], axis=1)
     slack, stiff = _turned(s, k, around, push, width)
     moved = np.abs(offset.rate) + offset.spread
@@ -234,15 +234,15 @@ def _turning_force(
 
 
 def _turned(s: Stretches, k: int, around: Around, push: Push, width: int) -> tuple[Array, Array]:
-    """By how much the stiffness of a force that turns varies, (B, width, width), and its diagonal.
+    """Return by how much a turning force's stiffness varies, (B, width, width), and its diagonal.
 
-    Along its way the stiffness is that of the push, across it the force over the radius.
+    Along the force's direction the stiffness is that of the push, across it force over radius.
     """
     largest = np.maximum(np.abs(push.value.low), np.abs(push.value.high)) + push.extra
     radius = s.radii[k]
     across = push.value.middle / radius
     across_off = (push.value.off + push.extra + np.abs(across) * around.off) / around.least
-    # What is stiff one way and soft the other, turned.
+    # Turning mixes the stiffness along the direction with that across it.
     twist = push.steep + largest / around.least
     diagonal = np.stack([push.off, *[across_off] * (width - 1)], axis=1)
     slack = np.tile((twist * around.turn**2)[:, None, None], (1, width, width))
@@ -255,7 +255,7 @@ def _turned(s: Stretches, k: int, around: Around, push: Push, width: int) -> tup
 
 
 def _limit(s: Stretches, k: int) -> Range:
-    """Radius of a step; for an arc, minus its clearance's effect on the margin."""
+    """Return the radius of a step; for an arc, the clearance less the nominal length."""
     e = s.equations
     if k in e.arcs:
         # The row is −margin = a − c − |d|.
@@ -268,7 +268,7 @@ def _limit(s: Stretches, k: int) -> Range:
 
 
 def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | None) -> Push:
-    """Force of an arc or radial element along its offset."""
+    """Return the force of an arc or radial element along its offset."""
     e, still = s.equations, np.zeros(s.count)
     polar = s.state.polars[k]
     if where is not None:
@@ -277,7 +277,7 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
         return Push(value, value.rate, value.spread, dev[:, s.z_in + where], still, still)
     around = s.around(k, dev)
     value, give = s.sampled(polar.size), s.sampled(polar.slope)
-    # The chord's own sagitta is far below the band of the offset; it is bounded by it.
+    # The chord's own sagitta is far smaller than the band of the offset, which bounds it.
     felt = s.felt(k, dev, around.turn) + around.sagitta
     if bound is None:
         clearance = s.sampled(s.numbers.clearance[:, k - e.arcs.start])
@@ -308,11 +308,11 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
 def _rolling_push(
     s: Stretches, k: int, felt: Array, value: Range, give: Range, power: float
 ) -> Push:
-    """Force of a bearing's wall, K (R − clearance)^power; the radius may be off by `felt`."""
+    """Return the force of a bearing's wall, K (R − clearance)^power, with R known to `felt`."""
     numbers = s.numbers.radial[:, k - s.equations.radials.start]
     reach, stiffness = s.sampled(numbers[:, 2]), s.sampled(numbers[:, 5])
     gap = s.sampled(s.state.polars[k].radius).low - felt - reach.high
-    # Off the chord the slope varies as well: it grows with the gap's power − 1.
+    # Off the chord the slope varies as well: it grows as the gap to the power − 1.
     bends = np.where(gap > 0.0, (power - 1.0) * give.most / gap, np.inf) * felt
     off, most = give.off + bends, give.most + bends
     extra = most * felt

@@ -23,11 +23,11 @@ class Gauge(NamedTuple):
     switch : int
         The element, by its number in an active set.
     to : int
-        Code of the state to which it then goes.
+        Code of the state to which it then changes.
     value : Enclosure
         In deflections (an approach, a radius) or loads (a force).
     instead : Enclosure or None
-        What may be positive in its place.
+        A quantity that may be positive in its place.
     """
 
     switch: int
@@ -37,12 +37,12 @@ class Gauge(NamedTuple):
 
     @property
     def first(self) -> Array:
-        """Value at the first ends, shape (B,)."""
+        """Value at the first end of every stretch, shape (B,)."""
         first = self.value.chord.nodes[:, 0]
         return first if self.instead is None else np.maximum(first, self.instead.chord.nodes[:, 0])
 
     def holds(self, verge: float) -> Flags:
-        """Whether it is positive between the ends."""
+        """Return whether it is positive between the ends."""
         clear = self.value.clear(verge)
         return clear if self.instead is None else clear | self.instead.clear(verge)
 
@@ -64,7 +64,7 @@ def gauges(
     dev, bend : ndarray, shape (B, width)
         Deviations from the chord of the quantities on which laws depend, and of their derivatives.
     only : collection of int, optional
-        Their numbers in an active set; all by default.
+        Numbers of the elements in an active set; all by default.
     """
     e = s.equations
     for k in range(e.radials.stop):
@@ -120,11 +120,11 @@ def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[tu
     if states == at.OPEN:
         if ends:
             yield at.STOP, reach - radius
-        # Without friction it moves freely; any friction ends that. A ring has none.
+        # Without friction a spline moves freely; any friction ends that. A ring has none.
         if given[:, :, 3:5].any():
             yield at.SLIP, -bound
     elif states == at.STICK and np.isnan(given[:, 0, 1]).all():
-        # It bends throughout as long as its clearance closes before it slips.
+        # The spline bends throughout as long as its clearance closes before it slips.
         yield at.SLIP, stick - radius, stick - reach
     elif states == at.STICK:
         yield at.SLIP, stick - radius
@@ -135,7 +135,7 @@ def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[tu
             yield at.STOP, reach - radius
     elif states == at.STOP:
         yield at.SLIP, radius - reach
-        # What has no shaft to bend first has no such piece, even without clearance.
+        # An element without a shaft that bends first has no such piece, even without clearance.
         if given[:, :, 0].any():
             yield at.STICK, reach - stick
     elif states == at.WALL and where is not None:
@@ -145,7 +145,7 @@ def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[tu
         yield at.STICK, force - _known(s.split(law.first * law.stick))
         yield at.SLIP, bound - force
     elif np.isinf(law.last).all():
-        # A rigid ring without any play pins its gear, but as soon as it has some.
+        # A rigid ring pins its gear only as long as it has no play at all.
         yield at.WALL, -reach
     elif where is not None:
         yield at.STICK, -stick
@@ -153,13 +153,13 @@ def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[tu
 
 
 def _known(nodes: Array) -> Enclosure:
-    """Enclose what follows from the parameter alone, known at the nodes (B, NODES)."""
+    """Enclose a quantity that depends on the parameter alone, known at the nodes (B, NODES)."""
     still = np.zeros(len(nodes))
     return Enclosure(sampled(nodes), still, still)
 
 
 def _radius(s: Stretches, k: int, dev: Array, bend: Array) -> Enclosure:
-    """Radius of an offset; of an arc, its margin."""
+    """Enclose the radius of an offset, or the margin of an arc."""
     offset = s.offsets[k]
     around = s.around(k, dev)
     if k in s.equations.arcs:
@@ -171,7 +171,7 @@ def _radius(s: Stretches, k: int, dev: Array, bend: Array) -> Enclosure:
     straight, across = offset.rate[:, 0], np.sqrt((offset.rate[:, 1:] ** 2).sum(axis=1))
     varies = np.sqrt((offset.spread**2).sum(axis=1))
     spread = around.rise * np.abs(straight) + around.turn * across
-    # The radius is no faster than the offset itself, however its way turns.
+    # The radius changes no faster than the offset itself, however its direction turns.
     moved = np.sqrt((offset.rate**2).sum(axis=1))
     spread = np.fmin(spread, np.abs(straight) + moved) + varies
     chord = Range(nodes, straight + clearance.rate, spread + clearance.spread)
@@ -179,14 +179,14 @@ def _radius(s: Stretches, k: int, dev: Array, bend: Array) -> Enclosure:
 
 
 def _bound(s: Stretches, k: int, dev: Array, bend: Array) -> Enclosure:
-    """Friction bound of a radial element."""
+    """Enclose the friction bound of a radial element."""
     follows = np.isnan(s.numbers.radial[:, k - s.equations.radials.start, 3]).any()
     bound = friction_bound(s, k, varying_slopes(s, dev) if follows else {})
     return Enclosure(bound.value, (bound.felt * dev).sum(axis=1), (bound.felt * bend).sum(axis=1))
 
 
 def _stick(s: Stretches, k: int, bound: Enclosure) -> Enclosure:
-    """Radius S1 at which slip starts, as given or F_m/K_w."""
+    """Enclose the radius S1 at which slip starts, as given or F_m/K_w."""
     given = s.split(s.numbers.radial[:, k - s.equations.radials.start, 1])
     known = ~np.isnan(given[:, 0])
     first, friction = s.sampled(s.state.laws[k].first), bound.chord
@@ -209,7 +209,7 @@ def _stick(s: Stretches, k: int, bound: Enclosure) -> Enclosure:
 
 
 def _pull(s: Stretches, where: int, dev: Array, bend: Array) -> Enclosure:
-    """Size of the force of an element that is pinned at its centre."""
+    """Enclose the size of the force of an element that is pinned at its centre."""
     p = s.chord[np.array([where, where + 1])]
     size = np.sqrt((p.nodes**2).sum(axis=2))
     speed = np.sqrt((p.rate**2).sum(axis=1)) + np.sqrt((p.spread**2).sum(axis=1))

@@ -1,7 +1,7 @@
-"""A case along one parameter: its numbers at many values at once, its certified equilibria.
+"""A case along one parameter: its numbers and certified equilibria, at many values at once.
 
-Where the parameter's keys become arrays (`loadshare.train.array_keys`) one machine does for all
-values; otherwise every value is a train of its own, written in the units of the first.
+Where the parameter's keys may become arrays (`loadshare.train.array_keys`), one machine serves all
+values; otherwise every value has a train of its own, written in the units of the first.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Solved:
     ----------
     value : float
     states : ndarray of int8, shape (switches,)
-        Which elements act, and where radial elements stand.
+        Contact states of all elements.
     x : ndarray, shape (n,)
         Coordinates.
     worst : float
@@ -87,7 +87,7 @@ class Line:
         return train if self._placed is None else train_at(train, self._placed)
 
     def at(self, position: int) -> Line:
-        """Return the line as a position (1-based) has it: itself, unless each has its own train."""
+        """Return the line at a position (1-based): itself, unless each has a train of its own."""
         if not self.first.is_placed_anew:
             return self
         line = copy(self)
@@ -97,7 +97,7 @@ class Line:
         return line
 
     def _array_like(self, start: float, stop: float) -> Samples | None:
-        """Samples that share one machine; None where the parameter changes the machine."""
+        """Return samples that share one machine; None if the parameter changes the machine."""
         table = table_of([self.parameter], np.array([[start], [stop]]))
         groups = samples_of(self.case, table)
         samples = groups[0][1]
@@ -105,7 +105,7 @@ class Line:
         return samples if alike else None
 
     def _at(self, values: Array) -> Samples:
-        """Samples at other values of the same keys."""
+        """Return samples at other values of the same keys."""
         assert self._samples is not None
         columns = tuple(replace(column, values=values) for column in self._samples.columns)
         si = values * Value(1.0, self.parameter.unit).factor
@@ -121,11 +121,11 @@ class Line:
 
     @property
     def structure(self) -> Structure:
-        """Its elements, in whose units everything is given."""
+        """The structure of the machine, in whose units everything is given."""
         return self.machine.structure
 
     def _own(self, value: float) -> tuple[Train, Structure]:
-        """Train and elements at a value that makes a machine of its own."""
+        """Return train and structure at a value that has a machine of its own."""
         if value not in self._known:
             train = self.train(value)
             self._known[value] = train, structure_like(self.structure, train)
@@ -175,7 +175,7 @@ class Line:
         return Solved(value, found.states[k].copy(), x, float(found.verdicts.worst[k]))
 
     def _from_ladder(self, position: int, value: float) -> Solved | Missing:
-        """Answer of the slower ways, its set read from forces and radii."""
+        """Return the answer of a slower method, with states read from forces and radii."""
         try:
             train = self.train(value)
             answer = certified(train, position)

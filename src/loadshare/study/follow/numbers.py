@@ -1,4 +1,4 @@
-"""What the equations of a machine consist of, at many values of an input at once."""
+"""The coefficients of a machine's equations, at many values of an input at once."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from loadshare.train.situations import Situations
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Numbers:
-    """What the equations of a machine consist of at S values, in the units of its elements.
+    """The coefficients of a machine's equations at S values, in the units of its elements.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Numbers:
     def kinds(self) -> tuple[Flags, Flags, NDArray[np.intp]]:
         """Which elements have a Hertz part and which bend, at any value; tables and their points.
 
-        Of every element the number of its table; then how many points the tables have.
+        The last array has the number of every element's table, then the points of a table.
         """
         points = np.append(self.tabulated[0], self.tables.shape[-1])
         curved, bends = (np.asarray((v > 0.0).any(axis=0)) for v in (self.hertz, self.bending))
@@ -97,9 +97,9 @@ class Numbers:
 
 
 def _idle(structure: Structure, situations: Situations) -> list[int]:
-    """Radial elements of gears that no shaft and no load turns: no torque passes over them.
+    """Return radial elements of gears without shaft, load or hold: no torque passes over them.
 
-    The torques of such a gear's meshes balance; their sum is round-off, whose sign says nothing.
+    The torques of such a gear's meshes balance; their sum is round-off, whose sign is meaningless.
     """
     train = situations.train
     turned = {gear for s in train.shafts.values() for gear in (s.first, s.second)}
@@ -110,15 +110,15 @@ def _idle(structure: Structure, situations: Situations) -> list[int]:
 
 
 def structure_like(base: Structure, train: Train) -> Structure:
-    """Return the elements of a train that differs from another in an input, in its units.
+    """Return the structure of a train that differs from `base` in an input, in the latter's units.
 
-    Where a support's matrix changes, the directions in which it acts turn; coordinates stay those
-    of the other.
+    If a support's matrix changes, the directions in which it acts turn; coordinates stay those of
+    `base`.
 
     Raises
     ------
     ValueError
-        If it has other elements.
+        If the train has other elements.
     """
     turned = dict(_turned(base.train, train))
     seen = replace(train, gears={**train.gears, **turned}) if turned else train
@@ -139,7 +139,7 @@ def structure_like(base: Structure, train: Train) -> Structure:
 
 
 def _turned(base: Train, train: Train) -> Iterator[tuple[str, Gear]]:
-    """Yield gears whose support acts in other directions of the same plane, in those before."""
+    """Yield gears whose support acts in other directions of the same plane, in their old frame."""
     for (name, before), now in zip(base.gears.items(), train.gears.values(), strict=True):
         same = before.frame is now.frame or np.array_equal(before.frame, now.frame)
         if not same and np.array_equal(before.plane, now.plane):

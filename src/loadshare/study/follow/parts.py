@@ -1,7 +1,7 @@
-"""A set followed between solved points: stretches are proved whole, or in parts.
+"""A set followed between solved points: stretches are proved as a whole or in parts.
 
-Between two points of one set its own equations lead on: as long as they hold, a certified solve
-would find the same. Parts are cut at points that only these equations were solved for.
+Between two points of one set its own equations are followed: as long as the set holds, a certified
+solve would find the same. Parts are cut at points at which only these equations were solved.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Part(NamedTuple):
         Of the stretch.
     ends : Ends
     why : str
-        Empty where the set does not hold in its middle: another may be found there.
+        Empty if the set does not hold in the part's middle: another may be found there.
     """
 
     number: int
@@ -49,7 +49,7 @@ class _Alone(NamedTuple):
 
 
 class Prover:
-    """Proves that sets hold along stretches of a position.
+    """Prover that sets hold along stretches of a position.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Prover:
     position : int
         1-based.
     least : float
-        Width of a stretch that is not cut any more.
+        Width up to which a stretch is not cut any more.
     """
 
     def __init__(self, line: Line, position: int, least: float) -> None:
@@ -71,7 +71,7 @@ class Prover:
         return prove(Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers))
 
     def unproved(self, equations: Equations, ends: Sequence[Ends]) -> list[Part]:
-        """Prove stretches, whole or in parts, and return what is left."""
+        """Prove stretches, as a whole or in parts, and return the parts that are not proved."""
         left: list[Part] = []
         parts = list(enumerate(ends))
         known: dict[float, _Alone] = {}
@@ -99,20 +99,20 @@ class Prover:
     def _middles(
         self, equations: Equations, ends: Sequence[Ends]
     ) -> tuple[list[tuple[float, Array]], list[bool]]:
-        """Points at which to cut stretches, solved from their chords, and whether they are."""
+        """Return points at which to cut stretches, and whether each is solved, from its chord."""
         values = np.array([low + FOLLOW.cut * (high - low) for low, high, *_ in ends])
         near = np.array([first + FOLLOW.cut * (last - first) for *_, first, last in ends])
         z, good = equations.solve(near, self.line.numbers(self.position, values))
         return list(zip(values.tolist(), z, strict=True)), good.tolist()
 
     def _alone(self, equations: Equations, points: dict[float, Array]) -> dict[float, _Alone]:
-        """Tell of points, by value, what is proved of each alone."""
+        """Return what is proved of each point alone, by value."""
         found = self.proof(equations, [(v, v, z, z) for v, z in points.items()])
         flags = zip(found.holds.tolist(), found.enclosed.tolist(), strict=True)
         return {value: _Alone(*both) for value, both in zip(points, flags, strict=True)}
 
     def _hopeless(self, alone: Sequence[_Alone], width: float) -> str:
-        """Why no part of a stretch can be proved, by its ends and its middle; empty if one may."""
+        """Return why no part of a stretch can be proved, by ends and middle; empty if one may."""
         if not (alone[0].enclosed or alone[-1].enclosed):
             return HIDDEN
         if not any(point.holds for point in alone):

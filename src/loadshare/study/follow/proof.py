@@ -8,13 +8,13 @@ Jacobian in the middle, a true branch z(s) lies within d of the chord z̃(s) if
 for the quantities V z that the nonlinear laws depend on, whose forces enter through U and whose
 slopes stay within ρ of those in the middle (Krawczyk's test, written for the few quantities that
 are nonlinear). The residual of the chord vanishes at both ends, so a quarter of the range of its
-derivative bounds it. Gauges are bounded alike: one is positive throughout if its chord clears zero
-by more than the enclosure, or if it leaves zero at one end and its derivative keeps its sign.
+derivative bounds it. Gauges are bounded likewise: one is positive throughout if its chord clears
+zero by more than the enclosure, or if it leaves zero at one end and its derivative keeps its sign.
 
-Laws and directions are enclosed over whole ranges. What the parameter itself moves (errors, loads,
-clearances, compliances) is sampled at five values of a stretch, and its derivative taken from the
-range of their differences, that range added once more to either side. Round-off is bounded by the
-size of the terms. Source: formulation, section 16; Neumaier, Interval Methods, chapter 5.
+Laws and directions are enclosed over whole ranges. What the parameter itself changes (errors,
+loads, clearances, compliances) is sampled at five values of a stretch; its derivative is taken to
+lie in the range of their differences, doubled about its middle. Round-off is bounded by the size of
+the terms. Source: formulation, section 16; Neumaier, Interval Methods, chapter 5.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from loadshare.study.follow.stretches import Stretches
 
 
 class Proof(NamedTuple):
-    """What was proved on stretches.
+    """The outcome of a proof on stretches.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ def prove(s: Stretches) -> Proof:
 
 
 def _inverse(s: Stretches) -> tuple[Array, Flags]:
-    """Inverse of the Jacobian in the middle, moves that nothing resists held fixed."""
+    """Return the Jacobian's inverse in the middle, free moves held, and if nothing feels these."""
     jacobian = s.equations.jacobian(s.flat[s.middle], s.at_middle)
     jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
     factor, scaled = balanced(jacobian)
@@ -76,7 +76,7 @@ def _inverse(s: Stretches) -> tuple[Array, Flags]:
 
 
 def _acting(s: Stretches) -> Array:
-    """Directions (B, k, n) in which elements act."""
+    """Return the directions (B, k, n) in which elements act."""
     e = s.equations
     acting = [s.vectors[:, : e.scalars][:, e.acts]]
     acting += [s.own(e.matrix(k, s.at_middle)) for k in e.polar_at]
@@ -84,7 +84,7 @@ def _acting(s: Stretches) -> Array:
 
 
 def _unmixed(s: Stretches, moves: Array, factor: Array) -> Array:
-    """Moves (B, size, size) without what round-off mixed into them of moves barely resisted."""
+    """Remove from moves (B, size, size) what round-off mixed into them of barely resisted ones."""
     n = s.equations.n
     rows = _acting(s) * factor[:, None, :n]
     free = np.zeros_like(moves)
@@ -96,7 +96,7 @@ def _unmixed(s: Stretches, moves: Array, factor: Array) -> Array:
 
 
 def _unfelt(s: Stretches, moves: Array, loose: Flags) -> Flags:
-    """Whether no acting element feels the moves (B, size, size) that are held fixed."""
+    """Return whether no acting element or load feels the moves (B, size, size) held fixed."""
     if not loose.any():
         return np.ones(s.count, dtype=bool)
     e = s.equations
@@ -116,7 +116,7 @@ def _unfelt(s: Stretches, moves: Array, loose: Flags) -> Flags:
 
 
 def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
-    """Find deviations of the quantities, and of their derivatives."""
+    """Return whether an enclosure was found, with deviations of quantities and derivatives."""
     residual = s.equations.residual(s.flat, s.numbers, s.state)
     reach = s.inputs @ inverse
     across = reach.transpose(0, 2, 1)
@@ -133,7 +133,7 @@ def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
         through = reach @ into.transpose(0, 2, 1)
         spread = straight.spread + (np.abs(through) @ spreads[:, :, None])[:, :, 0]
         matrix = np.abs(through) @ slack + drift
-        # The chord itself does not deviate.
+        # The base is that of the chord itself, which does not deviate.
         base = ends + noise + 0.5 * spread if base is None else base
         fresh = base + (matrix @ dev[:, :, None])[:, :, 0]
         fits = (fresh <= dev).all(axis=1) & np.isfinite(fresh).all(axis=1) & ~done
@@ -149,10 +149,10 @@ def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
 
 
 def _roundings(s: Stretches, reach: Array) -> Array:
-    """What moves the quantities by round-off, (B, width), in units of the last digit.
+    """Return how far round-off moves the quantities, (B, width), in units of the last digit.
 
-    Errors of a displacement move a force along its direction. Where that is the direction in which
-    a body is held well, they say nothing of the other, in which forces that vanish hold it.
+    Errors of a displacement change a force along its direction. Where that is the direction in
+    which a body is held well, they do not count in the other, in which vanishing forces hold it.
     """
     e = s.equations
     follows = np.isnan(s.numbers.radial[:, :, 3]) & (s.numbers.radial[:, :, 4] > 0.0)
@@ -183,7 +183,7 @@ def _roundings(s: Stretches, reach: Array) -> Array:
 
 
 def _stacked(s: Stretches, dev: Array) -> tuple[Array, Array, Array, Array]:
-    """U, ρ, and derivatives along the chord with their spreads, of all forces that vary."""
+    """Return U, ρ, and derivatives along the chord with their spreads, of all forces that vary."""
     every = list(forces(s, dev))
     if not every:
         shapes = ((0, s.equations.size), (0, s.width), (0,), (0,))
@@ -194,7 +194,7 @@ def _stacked(s: Stretches, dev: Array) -> tuple[Array, Array, Array, Array]:
 
 
 def _wider(matrix: Array, base: Array, fresh: Array) -> Array:
-    """Deviations to try next: a little more than what the last slopes ask for."""
+    """Return the deviations to try next: a little more than the last slopes require."""
     usable = np.asarray(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(base).all(axis=1))
     solved = _series(
         np.where(usable[:, None, None], matrix, 0.0), np.where(usable[:, None], base, 1.0)
@@ -211,14 +211,14 @@ def _contracted(matrix: Array, base: Array, these: Flags) -> Array:
     found = np.full(base.shape, np.inf)
     rows = np.flatnonzero(these)
     solved = _series(matrix[rows], base[rows])
-    # A nonnegative solution proves that it bounds the series; round-off is given a part more.
+    # A solution that is nonnegative bounds the series; it is enlarged a little for round-off.
     good = (solved >= 0.0).all(axis=1)
     found[rows[good]] = (1.0 + FOLLOW.more) * solved[good]
     return found
 
 
 def _series(matrix: Array, base: Array) -> Array:
-    """Solve d = base + M d for (B, k, k) and (B, k); NaN where there is no one solution."""
+    """Solve d = base + M d for (B, k, k) and (B, k); NaN where there is no unique solution."""
     try:
         return np.asarray(np.linalg.solve(np.eye(base.shape[1]) - matrix, base[:, :, None])[..., 0])
     except np.linalg.LinAlgError:
@@ -228,7 +228,7 @@ def _series(matrix: Array, base: Array) -> Array:
 
 
 def _linear(s: Stretches, residual: Array) -> Array:
-    """Residual at the nodes without the parts whose slopes vary: (B, NODES, size)."""
+    """Return the residual at the nodes, (B, NODES, size), without the parts whose slopes vary."""
     e = s.equations
     found = residual.copy()
     curved = s.state.force[:, e.curved]
@@ -242,7 +242,7 @@ def _linear(s: Stretches, residual: Array) -> Array:
 
 
 def _drift(s: Stretches, reach: Array) -> Array:
-    """What directions that vary add to the contraction, (B, width, width)."""
+    """Return what varying directions add to the contraction, (B, width, width)."""
     e = s.equations
     found = np.zeros((s.count, s.width, s.width))
     if len(s.numbers.vectors) == 1:

@@ -1,4 +1,4 @@
-"""Ranges of quantities along stretches of the parameter, and what is known of them between."""
+"""Ranges of quantities along stretches of the parameter, including what lies between samples."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from loadshare.settings import FOLLOW
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Range:
-    """A quantity along stretches, in parts τ ∈ [0, 1] of each; shape (B, ...).
+    """A quantity along stretches, as a function of the fraction τ ∈ [0, 1]; shape (B, ...).
 
     Attributes
     ----------
     nodes : ndarray, shape (B, NODES, ...)
-        Along the chord.
+        Values along the chord.
     rate, spread : ndarray
         Its derivative with respect to τ lies within `spread` of `rate`.
     """
@@ -48,7 +48,7 @@ class Range:
 
     @property
     def most(self) -> Array:
-        """Largest size, as far as the distance from the middle shows."""
+        """Upper bound on the size: that in the middle and the largest distance from it."""
         return np.asarray(np.abs(self.middle) + self.off)
 
     def __getitem__(self, key: object) -> Range:
@@ -70,19 +70,19 @@ def sampled(nodes: Array) -> Range:
     slopes = (FOLLOW.nodes - 1) * np.diff(nodes, axis=1)
     low, high = slopes.min(axis=1), slopes.max(axis=1)
     noise = 4.0 * FOLLOW.nodes * np.finfo(float).eps * np.abs(nodes).max(axis=1)
-    # Half the range is what the samples show; as much again is what may lie between them.
+    # Half the range is the spread that the samples show; as much again may lie between them.
     return Range(nodes, 0.5 * (low + high), (high - low) + noise)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Enclosure:
-    """A quantity of the true branch: its range along the chord, and how far it may be from that.
+    """A quantity of the true branch: its range along the chord, and its distance from that.
 
     Attributes
     ----------
     chord : Range
     off, bend : ndarray, shape (B,)
-        Distance from the chord, of the quantity and of its derivative.
+        Largest distance from the chord, of the quantity and of its derivative.
     """
 
     chord: Range
@@ -96,7 +96,7 @@ class Enclosure:
         return Enclosure(self.chord - other.chord, self.off + other.off, self.bend + other.bend)
 
     def clear(self, verge: float) -> Flags:
-        """Whether it is positive between the ends: off zero, or leaving it at one end."""
+        """Return whether it is positive between the ends: off zero, or leaving it at one end."""
         chord = self.chord
         rises = chord.rate - chord.spread - self.bend > 0.0
         falls = chord.rate + chord.spread + self.bend < 0.0

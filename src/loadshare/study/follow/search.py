@@ -1,10 +1,10 @@
-"""Every change of the set along a parameter: stretches are proved, or cut until they are.
+"""Search for all changes of the set along a parameter: stretches are proved, or cut until they are.
 
-A stretch between two certified points that stand on one set is proved to hold no event. One whose
-ends differ is cut at the value where a gauge of either end vanishes: its two parts are proved on
-their own sets, up to the event itself. What more points may help with is cut again, down to a width
-at which it is named; where round-off hides what holds a body they do not, and it is named at once.
-Nothing depends on where the range ends.
+A stretch between two certified points on one set is proved to hold no event. One whose ends have
+different sets is cut at the value where a gauge of either end vanishes: its two parts are proved on
+their own sets, up to the event itself. Where more points may help, a stretch is cut again, down to
+a width at which it is listed as not proved; where round-off hides what holds a body, they do not
+help, and it is listed at once. Nothing depends on where the range ends.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from loadshare.study.follow.stretches import Stretches
 from loadshare.study.follow.zero import first_zero
 
 UNREAD = "the active set of its equilibrium could not be identified"
-"""Why a certified answer is no point."""
+"""Why a certified answer is not a point."""
 
 
 class Search:
@@ -54,7 +54,7 @@ class Search:
 
     def __init__(self, line: Line, position: int, low: float, high: float) -> None:
         self.line, self.position, self.low, self.high = line, position, low, high
-        # Which contacts are rigid or curved anywhere on the way.
+        # Decides which contacts are rigid or curved anywhere in the range.
         self._anywhere = line.numbers(position, np.linspace(low, high, 3))
         self.least = FOLLOW.least * max(abs(low), abs(high))
         self.prover = Prover(line, position, self.least)
@@ -64,7 +64,7 @@ class Search:
         self._hints: dict[tuple[float, float], float] = {}
 
     def run(self) -> None:
-        """Find all changes, by value, and what could not be proved.
+        """Find all changes, by value, and the gaps that could not be proved.
 
         Raises
         ------
@@ -98,14 +98,14 @@ class Search:
     # --- Points ---------------------------------------------------------------------------------
 
     def points(self, values: Array) -> list[Point | Missing]:
-        """Return certified points, solved to round-off on the set of what carries."""
+        """Return certified points, solved to round-off on the set of elements that carry."""
         answers, structure = self.line.solved(self.position, values), self.line.structure
         solved = {k: a for k, a in enumerate(answers) if isinstance(a, Solved)}
         found: list[Point | Missing] = [
             Missing(a.value, UNREAD) if isinstance(a, Solved) else a for a in answers
         ]
         waiting = [(k, tuple(s.states.tolist()), s.x) for k, s in solved.items()]
-        # Of contacts that idle one may be let go at a time.
+        # Idle contacts may open one at a time.
         for _ in range(structure.switches + 1):
             if not waiting:
                 break
@@ -131,7 +131,7 @@ class Search:
         return found
 
     def _carrying(self, equations: Equations, z: Array, numbers: Numbers) -> States:
-        """Contact states (S, switches) of the elements that carry something at points z."""
+        """Return the contact states (S, switches) at points z, idle elements open."""
         states = np.repeat(equations.states[None], len(z), axis=0)
         state = equations.state(z, numbers)
         push = np.abs(numbers.load).max(axis=1, initial=0.0)
@@ -140,7 +140,7 @@ class Search:
         columns = np.arange(springs, equations.scalars)
         moved = np.abs(state.approach[:, columns])
         moved[:, np.isin(columns, equations.rigid)] = 0.0
-        # A body that idles may touch: what its place is off by is no compression.
+        # An idle body may touch: an error of its displacement is no compression.
         lengths = equations.lengths(np.abs(z[:, : equations.n]), numbers)
         rounding = FOLLOW.rounded * np.finfo(float).eps * lengths[:, columns]
         light = np.maximum(band[:, None], state.slope[:, columns] * rounding)
@@ -152,7 +152,7 @@ class Search:
             if k in equations.arcs and where is None:
                 loose &= np.abs(state.margin[k]) <= FOLLOW.idle
             elif k in equations.radials and equations.states[k] != at.WALL:
-                # Whether it slips or sticks hangs on rounding once its friction is gone.
+                # Once its friction is gone, whether it slips or sticks depends on rounding.
                 loose &= np.abs(state.laws[k].bound) <= band
             states[loose, k] = at.OPEN
         return states
@@ -166,7 +166,7 @@ class Search:
     # --- Proofs ---------------------------------------------------------------------------------
 
     def _settled(self, stretch: Stretch) -> bool:
-        """Give up a stretch that is not worth cutting."""
+        """Return whether a stretch is not worth cutting; it is then given up."""
         first, last = stretch
         if isinstance(first, Missing) and isinstance(last, Missing):
             self.gaps.append(Gap(first, last, first.why))
@@ -177,7 +177,7 @@ class Search:
         return False
 
     def _hopeful(self, stretches: list[Stretch], values: Array) -> list[Stretch]:
-        """Give up all of a stretch between first values of which no part was proved so far."""
+        """Give up stretches between two of the first values if no part there was proved so far."""
         width = np.array([last.value - first.value for first, last in stretches])
         middle = np.array([0.5 * (first.value + last.value) for first, last in stretches])
         of = np.searchsorted(values, middle) - 1
@@ -187,13 +187,13 @@ class Search:
         return list(compress(stretches, ~hopeless))
 
     def _unconfirmed(self, gap: Gap) -> Change | None:
-        """Return the change between the ends of what is not proved, if there is one."""
+        """Return the change between the ends of a gap, if there is one."""
         first, last = gap.first, gap.last
         if not (isinstance(first, Point) and isinstance(last, Point)):
             return None
         if first.active.states == last.active.states:
             return None
-        # What was found last was found from nearest.
+        # The last hint was found from the nearest points.
         value = 0.5 * (first.value + last.value)
         for hint in self._hints.values():
             value = hint if first.value <= hint <= last.value else value
@@ -223,11 +223,11 @@ class Search:
         return left
 
     def _crossed(self, stretch: Stretch) -> bool:
-        """Find and prove the change between two ends; on failure note where it may be."""
+        """Find and prove the change between two ends; if that fails, note where it may be."""
         first, last = stretch
         if isinstance(first, Missing) or isinstance(last, Missing) or first.active == last.active:
             return False
-        # Where a body comes to float, room is exacter than forces that vanish all together.
+        # Where a body begins to float, its room is more exact than forces that all vanish there.
         ways = [(first, last), (last, first)]
         ways.sort(key=lambda way: not self._equations[way[0].active].floats)
         exits = ((self.exit(*way), *way) for way in ways)
@@ -235,7 +235,7 @@ class Search:
         if value is None:
             return False
         self._hints[first.value, last.value] = value
-        # If there are several changes between the ends, the far one's set does not hold here.
+        # If there are several changes between the ends, the far end's set does not hold here.
         beyond = self._reached(far, value)
         before = self._reached(near, value) if beyond else None
         if not (before and beyond):
@@ -248,16 +248,16 @@ class Search:
         return True
 
     def _reached(self, point: Point, value: float) -> Point | None:
-        """Return up to where a point's set is proved to hold on the way to an event at a value.
+        """Return how far a point's set is proved to hold towards an event at a value, as a point.
 
-        Short of the event only where round-off hides all that is nearer, None where more points
-        may help.
+        It is short of the event only where round-off hides everything nearer; None where more
+        points may help.
         """
         if value == point.value:
             return point
         equations = self._equations[point.active]
-        # Bodies active by vanishing forces alone: their equations become singular at the event, so
-        # stretches shrink towards it, down to what counts as the event itself.
+        # Where bodies are held by vanishing forces alone, the equations become singular at the
+        # event, so stretches shrink towards it, down to what counts as the event itself.
         steps = [(value - point.value) * FOLLOW.grade**k for k in range(200)]
         near = FOLLOW.resolved * max(abs(value), abs(value - point.value))
         values = [value - step for step in steps if abs(step) > near]
@@ -282,14 +282,14 @@ class Search:
         beyond = self.prover.proof(
             equations, [(values[k], values[k], z[k], z[k]) for k in range(proved + 1, len(values))]
         )
-        # The set is not left on the way: it holds wherever this can be told; at the end it cannot.
+        # The set is not left on the way: it holds where that can be decided; at the end it cannot.
         hidden = not beyond.enclosed[-1] and (beyond.holds == beyond.enclosed).all()
         return replace(point, value=values[proved], z=z[proved]) if hidden else None
 
     def _solved(
         self, equations: Equations, values: Array, near: Array
     ) -> tuple[Array, Flags, Numbers]:
-        """Solve a set at values (S,), from unknowns near by; what nothing holds is centred."""
+        """Solve a set at values (S,) from nearby unknowns; bodies that float free are centred."""
         numbers = self.line.numbers(self.position, values)
         z, good = equations.solve(np.repeat(near[None], len(values), axis=0), numbers)
         return centred(equations, z, numbers), good, numbers
@@ -297,7 +297,7 @@ class Search:
     def exit(self, near: Point, far: Point) -> float | None:
         """Return the value at which a set is left on the way to another, None if it is not found.
 
-        There the first gauge of the near end's set vanishes.
+        This is where the first gauge of the near end's set vanishes.
         """
         equations = self._equations[near.active]
         values = np.linspace(near.value, far.value, FOLLOW.sections)
@@ -330,7 +330,7 @@ class Search:
     def _sections(
         self, equations: Equations, values: Array, near: Array
     ) -> tuple[Array, Array] | None:
-        """Gauges of a set at values, up to the first at which it has no solution."""
+        """Return the gauges of a set at values, up to the first at which it has no solution."""
         z, good, numbers = self._solved(equations, values, near)
         with np.errstate(all="ignore"):
             found = gauges_at(Stretches.at_points(equations, z, numbers))

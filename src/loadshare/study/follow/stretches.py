@@ -15,18 +15,18 @@ from loadshare.study.follow.ranges import Enclosure, Range, sampled
 
 
 class Around(NamedTuple):
-    """Where offsets may be along stretches; every entry of shape (B,).
+    """Bounds on an offset along stretches; every entry of shape (B,).
 
     Attributes
     ----------
     least : ndarray
-        No radius is smaller.
+        Lower bound of the radius.
     off : ndarray
         By how much the radius may differ from that in the middle.
     sagitta : ndarray
-        By how much the radius may exceed the part along the way in the middle.
+        By how much the radius may exceed its part along the direction in the middle.
     turn : ndarray
-        How far the way may turn: the part across over that along, at most.
+        How far the direction may turn: largest ratio of the part across to that along.
     """
 
     least: Array
@@ -36,7 +36,7 @@ class Around(NamedTuple):
 
     @property
     def rise(self) -> Array:
-        """By how much a unit vector of the way may fall short of that in the middle, along it."""
+        """By how much the unit vector's part along that in the middle may fall short of one."""
         return np.asarray(np.minimum(0.5 * self.turn**2, 2.0))
 
 
@@ -59,9 +59,9 @@ class Stretches:
     inputs : ndarray, shape (B, width, size)
         V.
     frames : mapping of switch to ndarray, shape (B, k, k)
-        Directions in which an offset is told: its own in the middle, then those across. A force
-        along an offset is stiff along it and may be soft across; told in other directions each
-        would count as both.
+        Directions in which an offset is expressed: its own in the middle, then those across. A
+        force along an offset is stiff along it and may be soft across; in other directions each
+        component would count as both.
     """
 
     def __init__(self, equations: Equations, ends: Array, numbers: Numbers) -> None:
@@ -116,14 +116,14 @@ class Stretches:
         return np.broadcast_to(values, (self.count, *values.shape[1:]))
 
     def turning(self) -> list[tuple[int, int | None]]:
-        """Arcs and radial elements whose force turns, and where it stands if it is unknown."""
+        """Return arcs and radial elements whose force turns, and where in z it is if unknown."""
         e = self.equations
         turning = (at.SLIP, at.STOP, at.WALL, at.CORNER)
         acting = e.polar_at.items()
         return [(k, w) for k, w in acting if k in e.arcs or int(e.states[k]) in turning]
 
     def around(self, k: int, dev: Array) -> Around:
-        """Where an offset may be, and how far its way may turn from that in the middle."""
+        """Bound an offset, and how far its direction may turn from that in the middle."""
         off = self.offsets[k].off + dev[:, self.columns[k]]
         least = self.radii[k] - off[:, 0]
         across = np.sqrt((off[:, 1:] ** 2).sum(axis=1))
@@ -132,7 +132,7 @@ class Stretches:
         return Around(np.where(least > 0.0, least, 0.0), off[:, 0] + sagitta, sagitta, turn)
 
     def felt(self, k: int, dev: Array, turn: Array) -> Array:
-        """By how much the deviation of an offset may change its radius."""
+        """Bound by how much the deviation of an offset may change its radius."""
         part = dev[:, self.columns[k]]
         across = np.sqrt((part[:, 1:] ** 2).sum(axis=1))
         whole = np.sqrt((part * part).sum(axis=1))
@@ -145,7 +145,7 @@ class Stretches:
 
 
 def _framed(along: Array) -> Array:
-    """Orthonormal directions (B, k, k) that begin with given ones (B, k), if those are not zero."""
+    """Return orthonormal directions (B, k, k) that begin with given ones (B, k) unless zero."""
     first = np.eye(along.shape[1])[0]
     ways = np.where(np.any(along, axis=1, keepdims=True), along, first)
     mirror = ways + np.where(ways[:, :1] < 0.0, -1.0, 1.0) * first

@@ -1,8 +1,8 @@
 """The value at which the first of several gauges vanishes.
 
-Beyond it a set no longer holds, and its gauges may go on with other slopes: a chord across the zero
-then converges slowly, always from one side. So a bracket is closed from the chord, from what the
-gauges do before it, and from what they do beyond, whichever is nearer.
+Beyond it a set no longer holds, and its gauges may continue with other slopes: chords across the
+zero then converge slowly, always from one side. So a bracket is narrowed by chords across, before
+and beyond the zero, whichever is nearest.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ _AROUND = np.array(FOLLOW.around)
 def first_zero(
     of: Callable[[Array], Array | None], values: Array, gauges: Array, beyond: int
 ) -> float | None:
-    """Return the first value at which a gauge is not positive any more.
+    """Return the first value at which a gauge is no longer positive.
 
     Parameters
     ----------
     of : callable
-        Gauges (k, n) at values (k,); None where there are none.
+        Returns gauges (k, n) at values (k,), or None where there are none.
     values : ndarray, shape (m,)
         Rising or falling.
     gauges : ndarray, shape (m, n)
-        At these; all are positive before `beyond`.
+        At these values; all are positive before `beyond`.
     beyond : int
-        The first at which one is negative.
+        Index of the first value at which one is negative.
 
     Returns
     -------
     float or None
-        None where the gauges end on the way, or do not settle.
+        None if the gauges end on the way, or the bracket does not converge.
     """
     largest = float(np.abs(values).max())
     for _ in range(FOLLOW.refinements):
@@ -58,7 +58,7 @@ def first_zero(
 
 
 def _inner(values: Array, gauges: Array, beyond: int) -> Array:
-    """Values inside a bracket at which to look next."""
+    """Return the values inside a bracket that are evaluated next."""
     low, high = values[beyond - 1], values[beyond]
     guesses = np.array(list(_guesses(values, gauges, beyond)))
     inner = np.append(guesses[:, None] + (high - low) * _AROUND, 0.5 * (low + high))
@@ -66,7 +66,7 @@ def _inner(values: Array, gauges: Array, beyond: int) -> Array:
 
 
 def _guesses(values: Array, gauges: Array, beyond: int) -> Iterator[float]:
-    """Yield where the first gauge vanishes by chords before, across and beyond the zero."""
+    """Yield where the first gauge vanishes, by chords before, across and beyond the zero."""
     low, high = values[beyond - 1], values[beyond]
     for k in (beyond - 1, beyond, beyond + 1):
         if not 1 <= k < len(values):
