@@ -1,4 +1,4 @@
-"""What a position claims, as plain numbers: all that its certificate needs besides the case."""
+"""The claim of a position in plain numbers: all that its certificate needs besides the case."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Triple = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """Displacements and forces of one position, every one that its certificate asks for.
+    """All displacements and forces of one position that its certificate needs.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Claim:
     support_force : mapping of gear to (float, float)
         On every bearing [N], in the gear's transverse frame.
     slip : mapping of gear to (float, float, float), or None
-        Slip of every spline at the position before [m], where there are some that remember it.
+        Slip of every spline at the previous position [m]; None without splines that remember it.
     """
 
     rotation: Mapping[str, float]
@@ -68,14 +68,14 @@ class Claim:
         )
 
     def train(self, train: Train) -> Train:
-        """Return the train as this position finds it."""
+        """Return the train at this position, with the slip from which it starts."""
         if self.slip is None:
             return train
         return train.remembering({gear: np.array(s) for gear, s in self.slip.items()})
 
 
 def claim_of(train: Train, found: Equilibrium) -> Claim:
-    """Return what an equilibrium claims, with what it leaves to follow from displacements."""
+    """Return the claim of an equilibrium; forces that it lacks follow from displacements."""
     torque, force = carried(train, found)
     return Claim(
         rotation=_plain(found.rotation),
@@ -90,7 +90,7 @@ def claim_of(train: Train, found: Equilibrium) -> Claim:
 
 
 def misnamed(train: Train, claim: Claim) -> Iterator[tuple[str, str, str]]:
-    """Yield what a claim lacks, or has too much, for a train: field, name, and what is wrong."""
+    """Yield names that a claim lacks or must not have for a train: field, name, what is wrong."""
     known = _names(train, memory=claim.slip is not None)
     if claim.slip is not None and not train.splines:
         yield "slip", "", "is not known: no spline holds a gear"
@@ -101,7 +101,7 @@ def misnamed(train: Train, claim: Claim) -> Iterator[tuple[str, str, str]]:
 
 
 def _names(train: Train, *, memory: bool) -> dict[str, tuple[str, ...]]:
-    """Names under which each field of a claim must hold a figure, and no others."""
+    """Return the names under which each field of a claim must hold a figure, and no others."""
     names = Names(train)
     stops = tuple(s.stop_name for s in train.splines.values()) if memory else ()
     return {

@@ -27,12 +27,12 @@ JUDGED_ARRAYS = ("residual", "torque_bound")
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A figure in labelled arrays: its dimensions, its unit, what it is, where it is kept.
+    """A variable of labelled arrays: its dimensions, its unit, and what it is.
 
     Attributes
     ----------
     dims : tuple of str
-        Besides the position. The first names elements.
+        Besides the position. The first is that of the elements.
     units, long_name : str
     """
 
@@ -41,7 +41,7 @@ class Variable:
     long_name: str
 
     def labelled(self, values: np.ndarray, *over: str) -> tuple[Any, ...]:
-        """Return values as xarray takes them, the dimensions `over` before the variable's own."""
+        """Return values in xarray's form, with dimensions `over` before the variable's own."""
         attributes = {"units": self.units, "long_name": self.long_name}
         return (*over, *self.dims), values, attributes
 
@@ -100,11 +100,11 @@ VARIABLES = {
         ("measure",), "1", "size of the displacements for the geometry in which they were found"
     ),
 }
-"""Every variable of a result, an attribute of `Figures`; samples and studies take theirs here."""
+"""Every variable of a result, each an attribute of `Figures`; samples and studies use them too."""
 
 
 def unchanging(arrays: xr.Dataset) -> xr.Dataset:
-    """Return labelled arrays whose variables can be written to no more.
+    """Return labelled arrays with their variables made read-only.
 
     Pictures and files are made from them.
     """
@@ -120,7 +120,7 @@ def dataset(result: Result) -> xr.Dataset:
     -------
     xarray.Dataset
         Dimensions position, mesh, gear, shaft, side, component, end, float, figure and measure;
-        every variable carries its unit. Its arrays cannot be written to.
+        every variable carries its unit. Its arrays are read-only.
     """
     stamp, positions = result.stamp, result.positions
     # A train that is placed may have a shift to report at some positions only.
@@ -146,7 +146,7 @@ def dataset(result: Result) -> xr.Dataset:
 
 
 def _groups(result: Result) -> Iterator[tuple[Figures, list[int]]]:
-    """Yield the figures of positions that were looked at together, and their rows in these."""
+    """Yield the figures of positions that were evaluated together, and their rows in these."""
     for figures, some in groupby(result.positions, attrgetter("figures")):
         yield figures, [p.row for p in some]
 
@@ -191,7 +191,7 @@ def _alike(name: str, expected: xr.Variable, found: xr.Variable) -> bool:
 
 
 def frame(result: Result) -> pd.DataFrame:
-    """Tabulate position by mesh: torque [N·m], coefficients, the position's worst residual."""
+    """Tabulate torque [N·m], coefficients and worst residual, one row per position and mesh."""
     positions = result.positions
     names = positions[0].figures.names
     meshes = len(names["mesh"])
@@ -199,7 +199,7 @@ def frame(result: Result) -> pd.DataFrame:
         "position": np.repeat([p.position for p in positions], meshes),
         "mesh": [*names["mesh"]] * len(positions),
     }
-    # Made without labelled arrays: to import those takes longer than to solve and write.
+    # Made without labelled arrays: importing these takes longer than solving and writing.
     for name in ("torque", "coast_torque", "share", "pair_share"):
         columns[name] = _stacked(result, name, names).ravel()
     columns["worst_residual"] = np.repeat([p.certificate.worst for p in positions], meshes)
@@ -215,9 +215,9 @@ def with_units(table: pd.DataFrame, arrays: xr.Dataset) -> pd.DataFrame:
 
 
 def frames(result: Result) -> dict[str, pd.DataFrame]:
-    """Tabulate everything by what it belongs to: train, meshes, gears, shafts, floats.
+    """Tabulate all variables, in a table each for train, meshes, gears, shafts and floats.
 
-    A row for every position and element; heads have the unit.
+    A table has a row for every position and element; column names include the unit.
     """
     arrays, found = result.dataset, {}
     for dim in ("side", "mesh", "gear", "shaft", "float"):

@@ -1,4 +1,4 @@
-"""Everything in a result, from the claims and the train: the only way to make one."""
+"""Derive everything in a result from the claims and the train: the only way to make one."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from loadshare.results.share import (
 from loadshare.train.train import Train
 
 Found = tuple[Train, int, Mapping[str, float], Answered]
-"""Train as a position finds it, 1-based index, forces of flanks [N], and the answer."""
+"""Train at a position, 1-based index of the position, forces of flanks [N], and the answer."""
 
 
 def positions_of(found: Sequence[Found]) -> list[Position]:
-    """Return what the answers of one machine say of their positions."""
+    """Return the positions of a result from the answers of one machine."""
     if not found:
         return []
     train = found[0][0]
@@ -51,7 +51,7 @@ def positions_of(found: Sequence[Found]) -> list[Position]:
 def _tables(
     meshes: Sequence[str], figures: Array, wanted: Sequence[str] | None = None
 ) -> Iterator[Table[Any]]:
-    """Yield figures of meshes, (S, meshes), answer by answer: of all or some; None for NaN."""
+    """Yield a table for each answer of figures (S, meshes) of all or some meshes; None for NaN."""
     names = meshes if wanted is None else wanted
     columns = [meshes.index(name) for name in names]
     for row in figures[:, columns].tolist():
@@ -67,14 +67,14 @@ def result_from(
     positions: Sequence[Position],
     stamped: Callable[[], Stamp],
 ) -> Result:
-    """Put positions together as a result.
+    """Assemble a result from positions.
 
     Parameters
     ----------
     case : Case
         As it was given.
     solved : Case
-        The same, its mesh laws computed.
+        The same with its mesh laws computed.
     train : Train
         Of that case.
     positions : sequence of Position

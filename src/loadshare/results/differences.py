@@ -1,4 +1,4 @@
-"""Two documents compared leaf by leaf: what a file says against what was computed again."""
+"""Comparison of two documents leaf by leaf: a file with what was computed again."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from loadshare.case.keys import Path
 from loadshare.case.words import as_given
 
 ROUND_OFF = 1e-12
-"""Difference over the largest figure of its kind that another processor or library may make: some
-thousand times the last digit, for figures that are sums of larger ones."""
+"""Difference, over the largest figure of its kind, that another processor or library may cause:
+some thousand times the last digit, for figures that are sums of larger ones."""
 DIGITS = 1e-9
-"""Difference over the figure itself that counts as round-off: figures far below the largest of
+"""Difference, over the figure itself, that counts as round-off: figures far below the largest of
 their kind have lost some digits, but not nine."""
 JUDGED = ("certificate", "residuals")
-"""Figures of a certificate are round-off themselves and another machine's are others: the file's
-are for readers, and those that were computed again take their place."""
+"""Figures of a certificate, which are themselves round-off and differ on another machine: those in
+a file are for readers only, and those computed again take their place."""
 
 
 def differences(
@@ -33,16 +33,16 @@ def differences(
     expected, found : plain data
         Tables, lists, texts, numbers, truth values, None.
     names : frozenset of str
-        Keys that name elements: figures under them are of one kind.
+        Keys that name elements: figures under such keys are of one kind.
     least : mapping of key path to float, optional
-        Sizes of the figures from which those of a kind are computed, which may all be smaller.
+        Sizes of the figures from which those of a kind are computed; the latter may be smaller.
 
     Yields
     ------
     tuple of (key path, str, str, str)
         The key, what was found there, what is wrong with it, what was expected.
     """
-    # On the machine that wrote a file every digit agrees, and text is compared at once.
+    # On the machine that wrote a file every digit agrees, and comparing text is faster.
     if json.dumps(expected) == json.dumps(found):
         return
     sizes = dict(least or {})
@@ -55,7 +55,7 @@ def _kind(path: Path, names: frozenset[str]) -> Path:
 
 
 def _measure(data: Any, path: Path, names: frozenset[str], sizes: dict[Path, float]) -> None:
-    """Write down the largest figure of every kind."""
+    """Record the largest figure of every kind in `sizes`."""
     if isinstance(data, Mapping):
         for key, value in data.items():
             _measure(value, (*path, key), names, sizes)

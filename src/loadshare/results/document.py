@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from loadshare.results.result import Position, Result
 
 FORMAT = 5
-"""Of the files that are written; it changes with what a file holds."""
+"""Format of the files that are written; it changes when the content of a file changes."""
 OLDER = {4: ("elastic",)}
-"""Forms that are read as well, with what their positions lack."""
+"""Older formats that are also read, with the keys that their positions lack."""
 _FIELDS = (
     "position",
     "torque",
@@ -34,7 +34,7 @@ _FIELDS = (
     "effort",
     "claim",
 )
-"""Of a position, as it is; certificate, validity and uniqueness in more words."""
+"""Attributes of a position that are written as they are; others are written in more detail."""
 
 _LOADS = ("meshes", "shafts", "gears", "bearings")
 _ELASTIC = (
@@ -53,7 +53,7 @@ def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
     ----------
     result : Result
     form : int
-        One that is read.
+        A format that is read.
     """
     lacking = OLDER.get(form, ())
     document = {
@@ -87,12 +87,12 @@ def netcdf_content(result: Result) -> bytes:
 
 
 def as_data(given: Any) -> Any:
-    """Return dataclasses, mappings and tuples as JSON knows them; what is infinite is null."""
+    """Return dataclasses, mappings and tuples as data for JSON; infinite numbers become null."""
     if isinstance(given, float):
         return None if isinf(given) else given
     if given is None or isinstance(given, str | int):
         return given
-    # Most are numbers, and a call takes longer than to look at one.
+    # Most are numbers, and a call takes longer than checking one.
     if isinstance(given, list | tuple):
         return [v if type(v) is float and isfinite(v) else as_data(v) for v in given]
     if isinstance(given, Mapping):
@@ -105,7 +105,7 @@ def as_data(given: Any) -> Any:
 
 
 def _position_document(p: Position) -> dict[str, Any]:
-    """What is written of a position; the parts of its certificate side by side."""
+    """Return the document of a position, in which the certificate is split into parts."""
     document = {name: as_data(getattr(p, name)) for name in _FIELDS}
     document["validity"] = {"verdict": p.validity.verdict} | as_data(p.validity)
     document["uniqueness"] = as_data(p.uniqueness) | {"told": p.uniqueness.text}

@@ -1,4 +1,4 @@
-"""Everything that answers say, as arrays: the claims of many, or of one, worked out at once."""
+"""All figures of answers as arrays, computed from many claims, or from one, at once."""
 
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 COMPONENTS = ("x", "y")
-"""Of a displacement in the gear's transverse frame."""
+"""Components of a displacement in the gear's transverse frame."""
 SIDES = ("input", "output")
-"""To which figures of the whole train are referred."""
+"""Sides to which figures of the whole train are referred."""
 
 
 class Figures:
-    """What S answers of a train say; every array has them as its first axis.
+    """Figures of S answers of a train, which are the first axis of every array.
 
-    Elements are in the order of the train; what does not exist is not a number.
+    Elements are in the order of the train; figures that do not exist are NaN.
 
     Parameters
     ----------
     train : Train
-        As the answers are: placed, and remembering, where it is.
+        Of the answers, placed and remembering slip where they are.
     situations : Situations
     answers : Equilibria
-        At their places of least norm.
+        With displacements of least norm.
     undetermined : sequence of mapping of coordinate to (float, float)
-        What the forces of each answer leave open.
+        Ranges of the coordinates that the forces of each answer leave open.
     proved : ndarray, shape (S,)
         Largest distance of a torque from the exact one, over the largest torque.
     """
@@ -69,18 +69,18 @@ class Figures:
 
     @cached_property
     def state(self) -> ClaimedState:
-        """The claims seen as mechanics."""
+        """The mechanics evaluated at the claims."""
         with np.errstate(all="ignore"):
             return ClaimedState(mechanics_of(self.train), self.situations, self.answers)
 
     @cached_property
     def columns(self) -> Columns:
-        """The mechanics as columns."""
+        """The mechanics as columns of a matrix."""
         return columns_of(self.train)
 
     @property
     def measuring(self) -> Measuring:
-        """What is measured on displacements."""
+        """The measures of displacements."""
         return measuring(self.train)
 
     @cached_property
@@ -110,7 +110,7 @@ class Figures:
 
     @cached_property
     def mesh_position(self) -> Array:
-        """Position at which every mesh is in its own cycle, from 1, (S, meshes)."""
+        """Position of every mesh in its own cycle, from 1, (S, meshes)."""
         index = np.broadcast_to(self.situations.index, self.count)
         every = self.train.mesh_positions(index).values()
         return np.array([at + 1 for at in every]).reshape(-1, self.count).T
@@ -133,9 +133,9 @@ class Figures:
 
     @cached_property
     def gear_torque(self) -> Array:
-        """Torque from outside on every gear, counter-clockwise about its axis [N·m], (S, gears).
+        """External torque on every gear, counter-clockwise about its axis [N·m], (S, gears).
 
-        Loads; and on the output and on held gears what balances all others.
+        Loads, and on the output and on held gears the torque that balances all others.
         """
         of, state = self.state.of, self.state
         torque = np.broadcast_to(state.here.torque, (len(of.order), self.count)).copy()
@@ -149,8 +149,7 @@ class Figures:
     def bearing_force(self) -> Array:
         """Force of every gear on its bearing, of a planet on its pin [N], (S, gears, 2).
 
-        In its frame; supports and bearings with clearance together. Those of splines and rings
-        stand apart.
+        In its frame; supports and bearings with clearance together, without splines and rings.
         """
         of, state = self.state.of, self.state
         pushing = of.pushing.reshape(-1, len(of.order), 3)
@@ -184,8 +183,8 @@ class Figures:
     def transmission_error(self) -> Array:
         """Loaded transmission error of the train, referred to input and output [rad], (S, 2).
 
-        How far the input turns beyond what its ratio to the output says; positive in its running
-        sense, in which the output lags behind. Referred to the output it is smaller by the ratio of
+        How far the input turns beyond what its ratio to the output gives; positive in its running
+        sense, where the output lags behind. Referred to the output it is smaller by the ratio of
         the speeds.
         """
         ahead = self.answers.rotation[:, self.train.order[self.train.input]]
@@ -195,8 +194,8 @@ class Figures:
     def torsional_stiffness(self) -> Array:
         """Tangent stiffness dT/dφ, referred to input and output [N·m/rad], (S, 2).
 
-        Of the torque on the input by its rotation, the output held. What carries is taken to go on
-        carrying, what slips to go on slipping. 0 where nothing resists.
+        Torque on the input per rotation, with the output held. Elements that carry are taken to
+        continue to carry, those that slip to continue to slip. 0 where nothing resists.
         """
         stiffness, ratio = self._tangents.torsion(self.train.input), self._ratio**2
         output = stiffness / ratio if ratio else np.zeros(self.count)
@@ -220,7 +219,7 @@ class Figures:
     def mesh_stiffness(self) -> Array:
         """Tangent stiffness of every mesh along its line of action, (S, meshes) [N/m].
 
-        At its force; of both flanks where both carry, 0 where none does.
+        At its force; the sum of both flanks where both carry, 0 where none does.
         """
         force = self.answers.flank_force
         carry = carries(force, force.max(axis=1, initial=0.0)[:, None])
@@ -228,7 +227,7 @@ class Figures:
 
     @cached_property
     def mesh_torsional_stiffness(self) -> Array:
-        """The same as torque by angle at the gear that the mesh names first [N·m/rad]."""
+        """The same as torque per angle at the gear that the mesh names first [N·m/rad]."""
         radii = np.array([mesh.first_radius for mesh in self.train.meshes.values()])
         return np.asarray(self.mesh_stiffness * radii**2)
 
@@ -244,7 +243,7 @@ class Figures:
         return np.asarray(np.einsum("gak,sgk->sga", planes, self.answers.displacement))
 
     def _ranges(self, what: str) -> Array:
-        """Least and largest value of what is open of every gear, (S, gears, 2)."""
+        """Return the least and largest value of every gear's open coordinate, (S, gears, 2)."""
         found = np.full((self.count, len(self.train.gears), 2), np.nan)
         for s, open_ in enumerate(self.undetermined):
             for g, gear in enumerate(self.train.gears if open_ else ()):
@@ -295,7 +294,7 @@ class Figures:
 
     @cached_property
     def torque_bound(self) -> Array:
-        """Largest distance of every torque from the exact equilibrium's [N·m], (S, meshes)."""
+        """Bound on every torque's distance from the exact equilibrium's [N·m], (S, meshes)."""
         return torque_bounds(self.columns, self.situations, self.answers, self.proved)
 
     @cached_property
@@ -306,7 +305,7 @@ class Figures:
 
     @cached_property
     def measured(self) -> dict[str, Array]:
-        """Size of the displacements for the geometry, by what is measured, (S,) each."""
+        """Size of the displacements for the geometry, by measure, (S,) each."""
         every = self.measuring.every(self.situations, self.answers, self.state.deflection)
         largest = {name: values.max(axis=0) for name, values in every.items()}
         return {name: np.where(v < 0.0, np.nan, v) for name, v in largest.items()}
@@ -331,7 +330,7 @@ class Figures:
         return dict(zip(self.names[dim], getattr(self, name)[row].tolist(), strict=True))
 
     def as_numbers(self, name: str, names: Mapping[str, Sequence[str]]) -> Array:
-        """Return a figure by its name as numbers; sizes of displacements in the order of names."""
+        """Return a figure by its name as numbers; of "validity", the measures in `names`."""
         if name != "validity":
             return np.asarray(getattr(self, name), dtype=float)
         none = np.full(self.count, np.nan)

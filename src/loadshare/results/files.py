@@ -1,4 +1,4 @@
-"""Results from disk: JSON and netCDF, certified again."""
+"""Results loaded from JSON and netCDF files, and certified again."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def load_result(path: str | Path) -> Result:
     Returns
     -------
     Result
-        Equal to the one that was saved, bit for bit, where the same machine loads it.
+        Equal to the one that was saved, bit for bit, if the same machine loads it.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def _unread(path: Path, why: str = "holds no result of loadshare") -> ResultErro
 
 
 def _read_netcdf(path: Path, content: bytes) -> Result:
-    """Load the result, and compare the arrays next to it with its own."""
+    """Load the result, and compare the file's arrays with those of the result."""
     if not is_sealed(content):
         why = "holds no result of loadshare, or one that was changed: it lacks its digest"
         raise ResultError([Problem(str(path), "", "", why, hint=AGAIN)])

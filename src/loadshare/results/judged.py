@@ -16,7 +16,7 @@ from loadshare.results.figures import Figures
 
 
 class Judged(Figures):
-    """Figures of claims, what their certificates know taken from there.
+    """Figures of claims that reuse what their certificates have computed.
 
     Parameters
     ----------
@@ -31,17 +31,17 @@ class Judged(Figures):
 
     @property
     def state(self) -> ClaimedState:
-        """The claims seen as mechanics."""
+        """The mechanics evaluated at the claims."""
         return self._claims.state
 
     @property
     def columns(self) -> Columns:
-        """The mechanics as columns."""
+        """The mechanics as columns of a matrix."""
         return self._claims.judge.columns
 
     @property
     def measuring(self) -> Measuring:
-        """What is measured on displacements."""
+        """The measures of displacements."""
         return self._claims.judge.measuring
 
     @property
@@ -50,6 +50,6 @@ class Judged(Figures):
 
     @cached_property
     def torque_bound(self) -> Array:
-        """Bounds of torques as the certificates have them; not a number where there is none."""
+        """Bounds on torques from the certificates; NaN where there is none."""
         every = [bound.torque for bound in self._claims.bounds]
         return np.array([[b.get(mesh, np.nan) for mesh in self.train.meshes] for b in every])

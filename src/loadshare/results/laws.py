@@ -1,4 +1,4 @@
-"""What the law of every mesh is from, and whether its load is one for which that holds."""
+"""The origin of every mesh's law, and whether the law holds for the mesh's load."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from loadshare.case.line_of_action import facing
 from loadshare.results.share import carries
 
 GIVEN = "given"
-"""Basis of a law in numbers of which the case says no more."""
+"""Basis of a law that is given in numbers whose origin the case does not state."""
 MOST = 4
-"""Meshes that a line names."""
+"""Largest number of names of meshes in a line."""
 MISFIT = 0.03
-"""Part of the elastic angle by which a law may be off between the loads of its fit and need no
+"""Error of a law between the loads of its fit, over the elastic angle, from which on there is a
 warning: the models of the teeth are themselves off by as much [-]."""
 ROUNDED = 1e-6
-"""Part of a torque by which it may pass a limit by rounding [-]."""
+"""Amount by which rounding may take a torque past a limit, over the limit [-]."""
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]\d+)?")
-"""In a note."""
+"""A number in a note."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,14 +30,14 @@ class LawUse:
     Attributes
     ----------
     basis : str
-        What it is from.
+        Where the law is from.
     torque : tuple of float
-        Least and largest torque at the driver over the positions, without its sign [N·m].
+        Least and largest size of the torque at the driver over the positions [N·m].
     line_load : float or None
         Largest tangential force at the reference circle per face width [N/m]; None where the case
         does not give teeth and face widths.
     note : str
-        That the load lies outside what the law holds for, or that the law is far off
+        Says that the load is outside the range in which the law holds, or that the law is far off
         between the loads it was fitted to; else empty.
     """
 
@@ -53,7 +53,7 @@ def laws_of(case: Case, torques: Sequence[Mapping[str, float]]) -> dict[str, Law
     Parameters
     ----------
     case : Case
-        As it was solved, its mesh laws computed.
+        As it was solved, with its mesh laws computed.
     torques : sequence of mapping of mesh to float
         On the driver, position by position [N·m].
     """
@@ -81,7 +81,7 @@ def laws_of(case: Case, torques: Sequence[Mapping[str, float]]) -> dict[str, Law
 
 
 def law_lines(laws: Mapping[str, LawUse]) -> list[str]:
-    """Lines that say what laws are from and where they are stretched; none if all are given."""
+    """Return lines on the origin of laws and warnings; none if all are given, without notes."""
     if all(use.basis == GIVEN and not use.note for use in laws.values()):
         return []
     bases = _alike((use.basis, name) for name, use in laws.items())
@@ -122,7 +122,7 @@ def _alike(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
 
 
 def _noted(laws: Mapping[str, LawUse], names: Sequence[str]) -> str:
-    """Write one note of meshes whose notes differ in numbers alone, with the ranges of these."""
+    """Return one note for meshes whose notes differ in numbers only, with the ranges of these."""
     notes = [laws[name].note for name in names]
     columns = zip(*map(NUMBER.findall, notes), strict=True)
     ends = [list(dict.fromkeys(pick(c, key=float) for pick in (min, max))) for c in columns]

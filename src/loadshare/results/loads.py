@@ -1,6 +1,6 @@
-"""What an engineer sizes by: forces of meshes, torques of shafts, what bearings and mounts take.
+"""Loads for sizing: forces of meshes, torques of shafts, forces on bearings and mounts.
 
-How a train yields: transmission error of train and meshes, stiffness of both.
+Also how a train yields: transmission error and stiffness of the train and of its meshes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class _OfAnswer:
     Attributes
     ----------
     figures : Figures
-        Of the answer among others.
+        Of this answer and others.
     row : int
         Its number among them.
     """
@@ -45,9 +45,9 @@ class Loads(_OfAnswer):
 
     @property
     def gears(self) -> dict[str, float]:
-        """Torque from outside on every gear [N·m], counter-clockwise about its axis.
+        """External torque on every gear [N·m], counter-clockwise about its axis.
 
-        Loads; and on the output and on held gears what balances all others.
+        Loads, and on the output and on held gears the torque that balances all others.
         """
         return self._of_bodies(self.figures.by_name(self.row, "gear_torque", "gear"))
 
@@ -55,14 +55,14 @@ class Loads(_OfAnswer):
     def bearings(self) -> dict[str, Pair]:
         """Force of every gear on its bearing, of a planet on its pin [N], in its frame.
 
-        Supports and bearings with clearance together; those of splines and rings stand apart.
+        Supports and bearings with clearance together, without splines and rings.
         """
         force = self.figures.bearing_force[self.row]
         found = zip(self.figures.train.gears, force.tolist(), strict=True)
         return self._of_bodies({name: (x, y) for name, (x, y) in found})
 
     def _of_bodies(self, found: dict[str, Value]) -> dict[str, Value]:
-        """Without the harmonics of rims."""
+        """Return figures without those of the harmonics of rims."""
         gears = self.figures.train.gears
         return {name: value for name, value in found.items() if gears[name].rim_of is None}
 
@@ -70,8 +70,8 @@ class Loads(_OfAnswer):
 class Elastic(_OfAnswer):
     """Transmission errors and tangent stiffnesses of one answer; `Figures` says what each is.
 
-    Gaps, errors and displacements of the gears count as well as what teeth and shafts yield. Where
-    forces leave a rotation open, the errors are those of the least one.
+    Gaps, errors and displacements of the gears count, as well as the deflection of teeth and
+    shafts. Where forces leave a rotation open, the errors are those of the least one.
     """
 
     @property
@@ -96,5 +96,5 @@ class Elastic(_OfAnswer):
 
     @property
     def mesh_torsional_stiffness(self) -> dict[str, float]:
-        """The same as torque by angle at the gear that the mesh names first [N·m/rad]."""
+        """The same as torque per angle at the gear that the mesh names first [N·m/rad]."""
         return self.figures.by_name(self.row, "mesh_torsional_stiffness", "mesh")

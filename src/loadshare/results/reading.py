@@ -44,7 +44,7 @@ AGAIN = "Solve the case again: loadshare run CASE.toml -o FILE.json."
 
 @dataclass(frozen=True, slots=True)
 class _Position:
-    """What is read of a position; all else in it is computed again, and compared."""
+    """The part of a position that is read; all else in it is computed again and compared."""
 
     position: int
     claim: Claim
@@ -53,7 +53,7 @@ class _Position:
 
     @property
     def ranges(self) -> dict[str, Range]:
-        """What is undetermined, with infinite ends where there is no limit."""
+        """Ranges of undetermined coordinates, with infinite ends where there is no limit."""
         return {
             name: (-math.inf if low is None else low, math.inf if high is None else high)
             for name, (low, high) in self.undetermined.items()
@@ -62,7 +62,7 @@ class _Position:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Claimed:
-    """What a file claims of a position, judged."""
+    """The claim of a file about a position, with its certificate."""
 
     equilibrium: Equilibrium
     certificate: Certificate
@@ -71,7 +71,7 @@ class _Claimed:
 
 @dataclass(frozen=True, slots=True)
 class _File:
-    """What is read of a file."""
+    """The part of a file that is read."""
 
     stamp: Stamp
     input: dict[str, Any]
@@ -79,7 +79,7 @@ class _File:
 
 
 def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
-    """Rebuild a result from its JSON text: certify what it claims, compute all else and compare.
+    """Rebuild a result from its JSON text: certify its claims, compute all else and compare.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     _raise(_loosened(positions, train), file)
     stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
     result = result_from(case, case, train, positions, known(stamp))
-    # The digest is of the very digits that are written there, whichever processor computed them.
+    # The digest is that of the digits in the file, whichever processor computed them.
     expected = to_document(result, document.get("format", 1)) | {DIGEST: document.get(DIGEST)}
     _raise(differences(expected, document, names=_elements(given, train)), file)
     _raise(_altered(document), file)
@@ -134,14 +134,14 @@ def _fail(file: str, message: str, hint: str = AGAIN, key: Path = (), given: str
 
 
 def _altered(document: dict[str, Any]) -> Iterator[Wrong]:
-    """Yield that a digit or a word was changed of which no figure follows."""
+    """Yield a problem if a digit or word was changed on which no figure depends."""
     if document.get(DIGEST) != digest_of(document):
         message = "is not that of what this file holds: it was changed after it was written"
         yield (DIGEST,), as_given(document.get(DIGEST)), message, ""
 
 
 def _parsed(text: str, file: str) -> dict[str, Any]:
-    """Parse JSON in which every number is finite and no key appears twice; look at its head."""
+    """Parse JSON in which every number is finite and no key appears twice; check its format."""
 
     def number(written: str) -> float:
         value = float(written)
@@ -190,7 +190,7 @@ def _read(text: str, file: str) -> _File:
         return _reader().validate_json(text, strict=True)
     except ValidationError as error:
         if error.error_count() > ALLOWED.problems:
-            # Each of them reported takes a thousand times its room in the file.
+            # A report of each would take a thousand times its room in the file.
             _fail(file, f"holds {error.error_count()} values that cannot stand there")
         raise ResultError(
             Problem(
@@ -229,7 +229,7 @@ def _tolerance(given: _File, file: str) -> float:
 
 
 def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
-    """Yield positions that are missing, there twice, or no position of the case."""
+    """Yield positions that are missing, repeated, not requested, or not positions of the case."""
     requested, there = given.stamp.positions, [p.position for p in given.positions]
     if not requested:
         yield ("stamp", "positions"), "[]", "is empty", "the positions that were asked for"
@@ -261,7 +261,7 @@ def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
 
 
 def _positions(train: Train, given: Sequence[_Position], tolerance: float) -> list[Position]:
-    """Certify what is claimed of positions, and return what it says of them."""
+    """Certify the claims about positions, and return the positions that follow from them."""
     trains = [train_at(p.claim.train(train), p.position) for p in given]
     found = [p.claim.equilibrium(p.position, p.ranges) for p in given]
     positions = []
@@ -274,7 +274,7 @@ def _positions(train: Train, given: Sequence[_Position], tolerance: float) -> li
 
 
 def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
-    """Yield positions whose claims are no equilibrium of the case, or meaningless as one."""
+    """Yield positions whose claims are no equilibrium of the case, or too large to be valid."""
     for at, p in enumerate(positions):
         path: Path = ("positions", at, "claim")
         if not p.certificate.passed:
@@ -286,7 +286,7 @@ def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
 
 
 def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
-    """Yield positions of a march that do not begin at the slip at which the one before ended."""
+    """Yield positions of a march that do not start from the slip at the end of the previous one."""
     after = {gear: np.zeros(3) for gear in train.splines}
     remembered = False
     for at, p in enumerate(positions):
@@ -312,7 +312,7 @@ def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
 
 
 def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
-    """Yield ranges of what the forces leave open that do not follow from the claim."""
+    """Yield ranges of undetermined coordinates that do not follow from the claim."""
     for at, p in enumerate(positions):
         scene = assemble(p.claim.train(train), p.position)
         ranges = ranges_of(p.equilibrium, scene)
@@ -322,7 +322,7 @@ def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
 
 
 def _sizes(scene: Scene, found: Equilibrium) -> dict[Path, float]:
-    """Sizes of what the ends of an open coordinate are differences of: displacements and gaps."""
+    """Return the sizes of the terms from which ends of open coordinates are found by difference."""
     lengths = [*coordinates_of(scene, found), *(row.gap for row in scene.rows)]
     size = float(np.abs(lengths).max(initial=0.0))
     rates = {f"gear {gear} rotation": abs(r.rate) for gear, r in scene.rotation.items()}
@@ -330,7 +330,7 @@ def _sizes(scene: Scene, found: Equilibrium) -> dict[Path, float]:
 
 
 def _elements(given: _File, train: Train) -> frozenset[str]:
-    """Names of elements, which are keys of tables in which all figures are of one kind."""
+    """Return names of elements, which are keys of tables in which all figures are of one kind."""
     found = {*train.gears, *train.meshes, *(s.name for s in train.stages)}
     for p in given.positions[:1]:
         found |= {key for f in fields(Claim) for key in getattr(p.claim, f.name) or ()}

@@ -1,4 +1,4 @@
-"""A result: what was found at every position, and what it was found from."""
+"""A result: the answer at every position, and the case and settings from which it was found."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Stamp:
-    """Where a result comes from.
+    """The origin of a result.
 
     Attributes
     ----------
@@ -78,12 +78,12 @@ class Effort:
     Attributes
     ----------
     rung : str
-        Which rung of the ladder answered.
+        Rung of the ladder that found the answer.
     method : str
     kind : str
         Class of the programme: "linear", "QP", "SOCP" or "power cone".
     iterations, rounds : int
-        Passes of the outer loop; plans tried.
+        Passes of the outer loop, and plans tried.
     """
 
     rung: str
@@ -98,11 +98,11 @@ class Answered(Protocol):
 
     @property
     def equilibrium(self) -> Equilibrium:
-        """At its place of least norm."""
+        """The equilibrium, with displacements of least norm."""
 
     @property
     def certificate(self) -> Certificate:
-        """Of the equilibrium."""
+        """The certificate of the equilibrium."""
 
     @property
     def effort(self) -> Effort:
@@ -111,9 +111,9 @@ class Answered(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Position(Viewed):
-    """What was found at one position.
+    """The result at one position.
 
-    Rarely used figures are computed when they are first read, for some positions at once. Two
+    Rarely used figures are computed when they are first read, for several positions at once. Two
     positions are equal if their claims, certificates and efforts are.
 
     Attributes
@@ -127,9 +127,9 @@ class Position(Viewed):
     share, pair_share : mapping of mesh to float or None
         Ω over the mean of the stage, and of the branch's group.
     train : Train
-        As this position finds it.
+        The train at this position.
     answer : Answered
-        From which all the rest is computed.
+        The answer, from which all the rest is computed.
     """
 
     position: int
@@ -150,7 +150,7 @@ class Position(Viewed):
 
     @property
     def certificate(self) -> Certificate:
-        """Verdict on the claim."""
+        """The verdict on the claim."""
         return self.answer.certificate
 
     @property
@@ -186,17 +186,17 @@ class Position(Viewed):
 
     @property
     def figures(self) -> Figures:
-        """All figures, as arrays, of the answers that are looked at together with this one."""
+        """All figures, as arrays, of the answers that are evaluated together with this one."""
         return self.certificate.claims.derived(Judged)
 
     @property
     def row(self) -> int:
-        """Its number among them."""
+        """Number of this answer in `figures`."""
         return self.certificate.row
 
     @property
     def loads(self) -> Loads:
-        """Forces of meshes and on bearings, torques of shafts and from outside."""
+        """Forces of meshes and on bearings, torques of shafts and external torques."""
         return Loads(self.figures, self.row)
 
     @property
@@ -206,9 +206,9 @@ class Position(Viewed):
 
     @property
     def undetermined(self) -> Mapping[str, Pair]:
-        """What the forces leave open, as "gear 4 x" [m] or "gear 4 rotation" [rad].
+        """Coordinates that the forces leave open, as "gear 4 x" [m] or "gear 4 rotation" [rad].
 
-        The least and the largest value that it may take, infinite without a limit. Rotation and
+        The least and the largest value that each may take, infinite without a limit. Rotation and
         displacement are those of least norm: Σ r_b²φ² + |p|² over all gears.
         """
         return self.equilibrium.undetermined
@@ -225,7 +225,7 @@ class Position(Viewed):
 
     @property
     def uniqueness(self) -> Uniqueness:
-        """Whether it is proved to be the only answer."""
+        """Whether the answer is proved to be the only one."""
         return self.certificate.claims.uniquenesses[self.row]
 
     def _view(self) -> View:
@@ -258,11 +258,11 @@ class Result(Comparable):
     stages : mapping of stage to tuple of mesh names
     positions : tuple of Position
     omega, pair_omega : mapping of stage to float or None
-        Largest Ω of each stage and of the system, by stage mean and by group mean.
+        Largest Ω of each stage and of the system, over the stage mean and over the group mean.
     case : Case
-        As it was given to `solve`; of a result that was read from a file, as that holds it.
+        As it was given to `solve`; if the result was read from a file, as in the file.
     solved : Case
-        The same, its mesh laws as numbers.
+        The same with its mesh laws as numbers.
     stamped : callable
         Returns the stamp, which holds the hash of the case.
     """
@@ -281,11 +281,11 @@ class Result(Comparable):
 
     @cached_property
     def stamp(self) -> Stamp:
-        """Where it comes from."""
+        """The origin of the result."""
         return self.stamped()
 
     def __repr__(self) -> str:
-        """Tell what was solved, how good the answer is, and how load is shared."""
+        """Show what was solved, how good the answer is, and how load is shared."""
         done, requested = len(self.positions), len(self.stamp.positions)
         omega = ", ".join(f"{s} {'–' if v is None else f'{v:.4f}'}" for s, v in self.omega.items())
         return (
@@ -295,7 +295,7 @@ class Result(Comparable):
 
     @property
     def passed(self) -> bool:
-        """Whether every requested position is there and certified, as all that `solve` returns."""
+        """Whether every requested position is present and certified, as in a result of `solve`."""
         there = [p.position for p in self.positions]
         whole = bool(there) and sorted(there) == sorted(self.stamp.positions)
         return whole and all(p.certificate.passed for p in self.positions)
@@ -307,7 +307,7 @@ class Result(Comparable):
 
     @property
     def validity(self) -> tuple[tuple[str, Measure, int], ...]:
-        """Largest figures of the displacements over the positions: name, figure and position."""
+        """Largest measures of displacements over the positions: name, measure and position."""
         found: dict[str, list[tuple[Measure, int]]] = {}
         for p in self.positions:
             for name, measure in p.validity.measures.items():
@@ -321,7 +321,7 @@ class Result(Comparable):
 
     @property
     def uniqueness(self) -> Uniqueness:
-        """The weakest of the positions' verdicts, whether the answer is the only one."""
+        """The weakest of the positions' verdicts on whether the answer is the only one."""
         order = list(MEANINGS)
         return max(
             (p.uniqueness for p in self.positions),
@@ -330,17 +330,17 @@ class Result(Comparable):
 
     @cached_property
     def laws(self) -> Mapping[str, LawUse]:
-        """What the law of every mesh is from, and under which loads it was used."""
+        """The origin of every mesh's law, and the loads under which the law was used."""
         return Table(laws_of(self.solved, [p.torque for p in self.positions]))
 
     @property
     def floats(self) -> tuple[Mapping[str, FloatState], ...]:
-        """Rest of every float, one mapping per position."""
+        """Where every float rests, one mapping per position."""
         return tuple(p.floats for p in self.positions)
 
     @property
     def dataset(self) -> xr.Dataset:
-        """All figures as labelled arrays with units in their attributes; a copy, to add to."""
+        """All figures as labelled arrays with units in their attributes; a copy, to be extended."""
         return self._arrays.copy()
 
     @cached_property
@@ -376,11 +376,11 @@ class Result(Comparable):
         return cast("Plots", picture(self))
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, as the JSON file holds it."""
+        """Return the result as plain data, as in the JSON file."""
         return to_document(self)
 
     def to_json(self, path: str | Path | None = None) -> str:
-        """JSON text of the result; written to `path` as well, if given."""
+        """Return the JSON text of the result; it is also written to `path`, if given."""
         text = json_text(self.to_dict())
         if path is not None:
             write_whole(Path(path), text)
@@ -391,15 +391,15 @@ class Result(Comparable):
         write_whole(Path(path), netcdf_content(self))
 
     def to_frame(self) -> pd.DataFrame:
-        """Torques and coefficients as a table, one row per position and mesh."""
+        """Return torques and coefficients as a table, one row per position and mesh."""
         return frame(self)
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The table of `to_frame`, with the unit of every column in ``attrs["units"]``."""
+        """Return the table of `to_frame`, with the unit of every column in ``attrs["units"]``."""
         return with_units(self.to_frame(), self.dataset)
 
     def to_xarray(self) -> xr.Dataset:
-        """The labelled arrays, `dataset`: every figure with its unit."""
+        """Return the labelled arrays, `dataset`: every figure with its unit."""
         return self.dataset
 
     def _repr_html_(self) -> str:

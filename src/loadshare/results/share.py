@@ -44,10 +44,10 @@ def forces_of(train: Train, answers: Iterable[Mapping[str, float]]) -> Array:
 
 
 def carries(mean: Torque, largest: Torque) -> Any:
-    """Whether a mesh or a group with a mean torque carries, given the largest on any flank.
+    """Return whether a mesh or group carries, from its mean torque and the largest on any flank.
 
-    Flanks may press against one another, and branches brace one another, where next to nothing
-    passes through: a coefficient over a mean that is round-off says nothing.
+    Flanks may press against one another, and branches brace one another, while almost no torque
+    passes through: a coefficient over a mean that is round-off is meaningless.
     """
     return abs(mean) > CERTIFY.carries * largest
 
@@ -55,7 +55,7 @@ def carries(mean: Torque, largest: Torque) -> Any:
 def largest(
     shares: Iterable[Mapping[str, float | None]], stages: Iterable[Stage]
 ) -> dict[str, float | None]:
-    """Largest Ω of each stage over branches and positions, and of the system (Ω_Z)."""
+    """Return the largest Ω of each stage over branches and positions, and of the system (Ω_Z)."""
     found: dict[str, float | None] = {}
     for stage in stages:
         values = [s[m] for s in shares for m in stage.meshes]
@@ -67,7 +67,7 @@ def largest(
 
 
 def is_load_factor(train: Train) -> bool:
-    """Whether Ω is K_γ in every stage: forces are shared as torques are, by drivers of one size."""
+    """Return whether Ω is K_γ in every stage: with drivers of one size, forces share as torques."""
     return all(
         math.isclose(train.meshes[m].first_radius, train.meshes[stage.meshes[0]].first_radius)
         for stage in train.stages
@@ -76,7 +76,7 @@ def is_load_factor(train: Train) -> bool:
 
 
 def load_factors(train: Train, torque: Mapping[str, float], stage: Stage) -> dict[str, float]:
-    """K_γ of every mesh of a stage: its force over the mean of the stage (ISO 6336-1).
+    """Return K_γ of every mesh of a stage: its force over the mean of the stage (ISO 6336-1).
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def torques_of_flanks(train: Train, force: Array) -> Array:
 
 
 def over_meshes(train: Train, figures: Array) -> Array:
-    """Return the sums of figures of flanks, (S, flanks), over those of every mesh."""
+    """Return figures of flanks, (S, flanks), summed over the flanks of every mesh."""
     flanks = [*map(len, train.driving.values())]
     if len(set(flanks)) != 1:
         return np.asarray(np.add.reduceat(figures, np.cumsum([0, *flanks[:-1]]), axis=1))
@@ -123,7 +123,7 @@ def shares(torques: MeshTorques, stages: Iterable[Stage], pairs: bool = False) -
     torques : MeshTorques
     stages : iterable of Stage
     pairs : bool
-        Over the mean of the branch's group, such as the two idlers of one pinion.
+        Whether over the mean of the branch's group, such as the two idlers of one pinion.
     """
     found = np.full_like(torques.net, np.nan)
     order = {m: k for k, m in enumerate(torques.meshes)}

@@ -1,4 +1,4 @@
-"""What a notebook shows of a result."""
+"""The views of a result and of a position in a notebook."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def result_view(result: Result) -> View:
-    """Tell how good an answer is, how load is shared, where floats rest, and the torques."""
+    """Show how good an answer is, how load is shared, where floats rest, and the torques."""
     stamp, requested = result.stamp, len(result.stamp.positions)
     done = sum(p.certificate.passed for p in result.positions)
     facts = (
@@ -39,7 +39,7 @@ def result_view(result: Result) -> View:
 
 
 def position_view(found: Position) -> View:
-    """Tell how good a position's answer is, where floats rest, and how load is shared."""
+    """Show how good a position's answer is, where floats rest, and how load is shared."""
     facts = rest_facts(found.certificate, found.equilibrium)
     rows = tuple(
         (
@@ -55,7 +55,7 @@ def position_view(found: Position) -> View:
 
 
 def rest_facts(certificate: Certificate, found: Equilibrium) -> tuple[tuple[str, str], ...]:
-    """Tell how good an answer is, where its floats rest, and what forces leave open."""
+    """Return how good an answer is, where its floats rest, and what forces leave open."""
     verdict = "certified" if certificate.passed else "not certified"
     return (
         (verdict, f"worst residual {certificate.worst:.1e}"),
