@@ -98,7 +98,7 @@ def _parts(law: at.Graph) -> Iterator[Part]:
     if stick > 0.0:
         yield Part(at.STICK, 0.0, stick, 0.0, 0.0, first)
     if reach > stick:
-        # Inside a ring nothing acts; a spline without friction may have some at values beside.
+        # Inside a ring nothing acts; a spline without friction may have some at nearby values.
         yield Part(at.SLIP if first > 0.0 else at.OPEN, stick, reach, bound, bound, 0.0)
     if np.isfinite(last):
         yield Part(at.STOP, reach, np.inf, bound, bound, last)

@@ -1,4 +1,4 @@
-"""What a search along a parameter finds: certified points, changes of the set, and gaps."""
+"""The findings of a search along a parameter: certified points, changes of the set, and gaps."""
 
 from __future__ import annotations
 

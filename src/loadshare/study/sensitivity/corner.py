@@ -215,7 +215,7 @@ class Corner:
                 yield group, weights / mean
 
     def _loose(self, motion: Motion | None = None) -> dict[str, Array]:
-        """Return which components of each gear's displacement are undetermined, here or beside.
+        """Return which components of each gear's displacement are undetermined, here or on a side.
 
         A gear that is held here may begin to float as it moves to a side.
         """
