@@ -1,8 +1,9 @@
 r"""The equations of a machine on one active set, for many points at once.
 
 Contacts that yield are eliminated by their closed form F(δ), continued as an odd function below
-zero, so that a branch can be followed across the point where it ends. Rigid contacts, steps and
-rigid stops keep their forces as unknowns. With coordinates x and forces p, z = (x, p) and
+zero, so that a branch can be followed across the point where it ends. The forces of rigid contacts,
+steps and rigid stops remain unknown. With coordinates x and forces p the unknowns are z = (x, p),
+and
 
 .. math:: G(z) = \Big(\sum_e a_e F_e(a_e x - g_e) + \sum_j P_j^T \Phi_j - f,\; c(x)\Big) = 0.
 
@@ -419,7 +420,7 @@ class Equations:
 
 
 def pressed(b: Array, c: Array, approach: Array) -> tuple[Array, Array]:
-    """Return F and dF/dδ of closed contacts, δ = bF + cF^(2/3); F is odd in δ below zero."""
+    """Return F and dF/dδ of closed contacts, δ = bF + cF^(2/3), with F continued as odd in δ."""
     size = np.abs(approach)
     with np.errstate(divide="ignore", invalid="ignore"):
         curved = roots(b, np.where(c > 0.0, c, 1.0), np.where(size > 0.0, size, 1.0))

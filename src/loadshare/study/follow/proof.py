@@ -61,7 +61,7 @@ def prove(s: Stretches) -> Proof:
 
 
 def _inverse(s: Stretches) -> tuple[Array, Flags]:
-    """Return the Jacobian's inverse in the middle, free moves held, and if nothing feels these."""
+    """Return the inverse of the middle Jacobian, free moves held, and if nothing feels them."""
     jacobian = s.equations.jacobian(s.flat[s.middle], s.at_middle)
     jacobian = np.where(np.isfinite(jacobian), jacobian, 0.0)
     factor, scaled = balanced(jacobian)

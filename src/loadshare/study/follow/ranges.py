@@ -76,7 +76,7 @@ def sampled(nodes: Array) -> Range:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Enclosure:
-    """A quantity of the true branch: its range along the chord, and its distance from that.
+    """A quantity of the true branch: its range along the chord, and how far off that it may be.
 
     Attributes
     ----------

@@ -105,7 +105,7 @@ class Search:
             Missing(a.value, UNREAD) if isinstance(a, Solved) else a for a in answers
         ]
         waiting = [(k, tuple(s.states.tolist()), s.x) for k, s in solved.items()]
-        # Idle contacts may open one at a time.
+        # Idle contacts may have to open one at a time.
         for _ in range(structure.switches + 1):
             if not waiting:
                 break

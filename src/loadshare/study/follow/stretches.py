@@ -24,7 +24,7 @@ class Around(NamedTuple):
     off : ndarray
         By how much the radius may differ from that in the middle.
     sagitta : ndarray
-        By how much the radius may exceed its part along the direction in the middle.
+        By how much the radius may exceed the offset's part along the direction in the middle.
     turn : ndarray
         How far the direction may turn: largest ratio of the part across to that along.
     """
