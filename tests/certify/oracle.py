@@ -301,6 +301,17 @@ class ClaimedState:
         """The rigid shafts, and what lies beyond each."""
         return rigid_shafts(self.train)
 
+    def outside(self) -> Iterator[tuple[str, Vector, float]]:
+        """Forces from outside: gear, force [N], moment [N·m]; a pin passes them to the carrier."""
+        for (name, gear), force in zip(
+            self.train.gears.items(), self.situation.push[0], strict=True
+        ):
+            yield name, force, 0.0
+            if gear.carrier is not None:
+                held = self.train.gears[gear.carrier]
+                arm = np.cross(gear.centre - held.centre, force)
+                yield gear.carrier, force, held.sense * float(held.axis @ arm)
+
     @cached_property
     def moment(self) -> dict[str, float]:
         """Moment [N·m] on every gear of the load, its flanks and elastic shafts."""
@@ -324,6 +335,8 @@ class ClaimedState:
                 torque = answer.shaft_torque.get(name, shaft.stiffness * (wind - shaft.clocking))
                 moment[shaft.first] -= torque
                 moment[shaft.second] += torque
+        for gear, _, due in self.outside():
+            moment[gear] += due
         return moment
 
     def bearings(self) -> Iterator[tuple[str, Vector, Vector, Vector]]:
@@ -377,6 +390,7 @@ class ClaimedState:
         gears = self.train.gears
         forces = [abs(f) for f in self.answer.flank_force.values()]
         forces += [abs(t) / gears[g].base_radius for g, t in self.situation.torques.items()]
+        forces += np.abs(self.situation.push[0]).ravel().tolist()
         return max(forces, default=0.0) or 1.0
 
     @cached_property
@@ -425,6 +439,9 @@ def force_balance(state: ClaimedState) -> dict[str, float]:
                     total[body] = total[body] + sign * push.force * push.normal
     for pull in state.pulls:
         total[pull.gear] = total[pull.gear] + pull.reaction
+    for body, outside, _ in state.outside():
+        if body in total:
+            total[body] = total[body] + outside
     return {g: float(np.linalg.norm(train.gears[g].frame @ f)) for g, f in total.items()}
 
 
@@ -529,6 +546,9 @@ def energy_gap(state: ClaimedState) -> dict[str, float]:
     primal, dual = [], []
     for gear, torque in state.situation.torques.items():
         primal.append(-torque * state.answer.rotation[gear])
+    for gear, force, moment in state.outside():
+        work = float(force @ state.answer.displacement[gear])
+        primal.append(-work - moment * state.answer.rotation[gear])
     for push in state.pushes:
         primal.append(push.law.energy(push.approach))
         dual += [-push.law.complementary(max(push.force, 0.0)), push.force * push.at_rest]

@@ -49,6 +49,7 @@ NAMES = (
     "ball bearings",
     "idle ball bearing",
     "idler on a spline",
+    "pushed planets",
 )
 LIKE_OTHERS = {
     "fgfbstts/full_float",

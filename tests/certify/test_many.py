@@ -101,6 +101,12 @@ def idler_on_a_spline() -> ls.Case:
     return families.star(3).replace({"splines": {"planet1": spline}})
 
 
+def pushed() -> ls.Case:
+    """A planetary set on whose planets, one of them on an elastic pin, and sun forces act."""
+    forces = {"planet1": ["3 kN", "-40 N"], "planet3": ["0 N", "-700 N"], "sun": ["0 N", "-90 N"]}
+    return shipped("planetary/four_planets").replace({"operating.forces": forces})
+
+
 WAYS = {name: (lambda name=name: shipped(name)) for name in SHIPPED} | {
     "clocked rigid shaft": clocked,
     "round ring": round_ring,
@@ -111,6 +117,7 @@ WAYS = {name: (lambda name=name: shipped(name)) for name in SHIPPED} | {
     "spline that never slips": never_slipping,
     "ball bearings": rolling,
     "idler on a spline": idler_on_a_spline,
+    "pushed planets": pushed,
     "no load": lambda: loaded(shipped("fgfbstts/limit_ring"), "0 N*m"),
 }
 

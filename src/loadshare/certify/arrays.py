@@ -35,4 +35,4 @@ def _array(name: str, array: Array) -> Array:
     return array.reshape(len(array), math.prod(array.shape[1:])) if name in _OF_GEARS else array
 
 
-_OF_GEARS = {"offset", "displacement", "support_force"}
+_OF_GEARS = {"offset", "push", "displacement", "support_force"}

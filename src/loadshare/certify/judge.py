@@ -66,13 +66,13 @@ class Judge:
         compiled : bool
             With Numba, one answer after another, instead of NumPy: the same verdicts, several
             times as fast once it is compiled. The residuals are then those behind the bound, and
-            the energy gap, which follows from them, is left to single answers. Splines with memory,
-            forces from outside and what is too soft for that are judged with NumPy all the same.
+            the energy gap, which follows from them, is left to single answers. Splines with memory
+            and what is too soft for that are judged with NumPy all the same.
         bounded : bool
             Whether errors are bounded with every effort; without a bound nothing passes, and with
             Numba nothing but what is bounded at once.
         """
-        if compiled and self.compiles(situations):
+        if compiled and self.compiles:
             return self._compiled(situations, answers, tolerance, bounded)
         limits = None
         if bounded:
@@ -80,9 +80,10 @@ class Judge:
             limits = bounds(self.columns, situations, answers, enough=tolerance)
         return self._by_numpy(situations, answers, tolerance, limits)
 
-    def compiles(self, situations: Situations) -> bool:
-        """Tell whether answers in some situations are judged with Numba where that is wanted."""
-        return is_covered(self.columns) and not situations.push.any()
+    @property
+    def compiles(self) -> bool:
+        """Whether answers are judged with Numba where that is wanted."""
+        return is_covered(self.columns)
 
     def _compiled(
         self, situations: Situations, answers: Equilibria, tolerance: float, bounded: bool

@@ -221,7 +221,7 @@ class Machine:
         judging = Judging(self.structure, self.judge, situations, iterate, tolerance, quick)
         # Answers on the verge, which a rule may lead to, take long to bound; other ways may avoid
         # them.
-        at_once = rule_first and quick and self.judge.compiles(situations)
+        at_once = rule_first and quick and self.judge.compiles
         while True:
             found.solved[left] = False
             renewed = ~found.solved

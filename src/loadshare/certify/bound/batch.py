@@ -52,10 +52,10 @@ def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Jud
     """Judge S claims with compiled code."""
     from loadshare.certify.bound import kernel
 
-    held = springs_of(columns, situations)
+    (spring, arm), pushed = springs_of(columns, situations), bool(situations.push.any())
     plan = _plans.get(columns)
-    if plan is None or not np.array_equal(plan.layout.spring, held[0]):
-        plan = _plans[columns] = Plan(columns, *held)
+    if plan is None or plan.key != (spring.tobytes(), pushed):
+        plan = _plans[columns] = Plan(columns, spring, arm, pushed)
     here, claim = arrays_of(situations, answers)
     claims = len(answers.rotation)
     found, sets = plan.found(claims), plan.sets(claims)

@@ -75,10 +75,13 @@ class Plan:
     columns : Columns
     spring, spring_arm : ndarray
         As in `Layout`.
+    pushed : bool
+        Whether forces act on gears from outside.
     """
 
-    def __init__(self, columns: Columns, spring: Numbers, spring_arm: Array) -> None:
-        self.layout = of = layout_of(columns, spring, spring_arm)
+    def __init__(self, columns: Columns, spring: Numbers, spring_arm: Array, pushed: bool) -> None:
+        self.layout = of = layout_of(columns, spring, spring_arm, pushed)
+        self.key = spring.tobytes(), pushed
         self.over_meshes = columns.over_meshes
         self.varying = len(columns.constants)
         matrix, first = columns.matrix.high, columns.arcs.start

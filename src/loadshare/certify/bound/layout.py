@@ -43,6 +43,9 @@ class Layout(NamedTuple):
     place: Numbers  # (places, 2): first coordinate, gear
     load: Numbers  # (loads, 2): coordinate, gear
     load_radius: Array
+    push_start: Places  # (3 gears + 1,): what forces from outside load; (1,) without any
+    push_at: Places
+    push_value: Array
     frame: Array  # (gears, 2, 3)
     radius: Array  # (gears,)
     first_stop: int
@@ -113,8 +116,17 @@ def _twins(columns: Columns, nominal: Array, apart: Array) -> Numbers:
     return twin
 
 
-def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
-    """Return a train with its springs, as `springs_of` finds them, for compiled code."""
+def layout_of(columns: Columns, spring: Numbers, spring_arm: Array, pushed: bool) -> Layout:
+    """Return a train for compiled code.
+
+    Parameters
+    ----------
+    columns : Columns
+    spring, spring_arm : ndarray
+        As `springs_of` finds them.
+    pushed : bool
+        Whether forces act on gears from outside.
+    """
     train, order, of = columns.train, columns.order, mechanics_of(columns.train)
     gears = list(train.gears.values())
     frames = np.array([g.frame for g in gears]).reshape(-1, 2, 3)
@@ -150,6 +162,7 @@ def layout_of(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
         pairs([(at, order[g]) for g, at in columns.places.items()]),
         pairs([t[:2] for t in loads]),
         np.array([t[2] for t in loads]),
+        *_entries(columns.pushed if pushed else columns.pushed[:0]),
         frames,
         of.radius,
         columns.stops.start,

@@ -7,7 +7,14 @@ import numpy as np
 from loadshare.by_reference import by_reference, set_apart
 from loadshare.certify.bound.acts import CLOSED, ENDLESS, LIGHT, OPEN
 from loadshare.certify.bound.claim import EPS
-from loadshare.certify.bound.kernel.abreast import fill, put_largest, put_rows, take_row, take_rows
+from loadshare.certify.bound.kernel.abreast import (
+    fill,
+    put_column,
+    put_largest,
+    put_rows,
+    take_row,
+    take_rows,
+)
 from loadshare.certify.bound.kernel.forces import (
     put_balance,
     put_contacts,
@@ -69,7 +76,7 @@ def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-de
         put_worst(of, here, claim, first, width, work)
         put_displaced(of, work)
         put_pushes(work.left, work.sizes, work.force, of.start, of.at, of.value)
-        put_balance(of, work)
+        put_balance(of, here, first, width, work)
         _take(first, width, work, found)
     return count
 
@@ -124,6 +131,9 @@ def _put_loads(of, here, claim, first, width, work):  # type: ignore[no-untyped-
         due = work.torque[g]
         put_largest(torque, due, 1.0)
         put_largest(load, due, 1.0 / of.radius[g])
+    for k in range(len(of.push_start) - 1):
+        put_column(here.push[:, k], first, width, work.given)
+        put_largest(load, work.given, 1.0)
     for e in range(flanks):
         claimed = work.claimed[e]
         put_largest(top, claimed, 1.0)

@@ -316,7 +316,7 @@ def put_pushes(left, sizes, force, start, at, value):  # type: ignore[no-untyped
 
 
 @within
-def put_balance(of, work):  # type: ignore[no-untyped-def]
+def put_balance(of, here, first, width, work):  # type: ignore[no-untyped-def]
     """Load that is left over [N]: the largest, with its rounding; and over the load of the case."""
     set_apart()
     left, sizes = work.left, work.sizes
@@ -329,6 +329,11 @@ def put_balance(of, work):  # type: ignore[no-untyped-def]
             work.given[v] = due[v] / of.load_radius[k]
         put_sum(left[c], work.given, 1.0)
         put_sizes(sizes[c], work.given, 1.0)
+    for k in range(len(of.push_start) - 1):
+        put_column(here.push[:, k], first, width, work.given)
+        for i in range(of.push_start[k], of.push_start[k + 1]):
+            put_sum(left[of.push_at[i]], work.given, of.push_value[i])
+            put_sizes(sizes[of.push_at[i]], work.given, of.push_value[i])
     fill(largest, 0.0)
     fill(rounding, 0.0)
     fill(residual, 0.0)
