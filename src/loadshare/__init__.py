@@ -107,18 +107,18 @@ __all__ = [
 
 
 if not TYPE_CHECKING:
-    # To a type checker it would say that any name may be asked for.
+    # With it, a type checker would accept any name as an attribute of the module.
     def __getattr__(name: str) -> Any:
-        """Import what is asked for only when it is asked for: the command starts quickly."""
+        """Import a public name when it is first used, so that the command starts quickly."""
         if name in _LAZY:
             return getattr(import_module(_LAZY[name]), name)
         raise AttributeError(f"module 'loadshare' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    """List what is public, also of what is imported only when it is asked for."""
+    """List all public names, including those that are imported on first use."""
     return __all__
 
 
-# Results and studies offer their pictures without knowing the room that draws them.
+# Results and studies offer their pictures without importing the package that draws them.
 drawn_by(lambda: import_module(_LAZY["plot"]).plot)

@@ -7,11 +7,11 @@ import signal
 import sys
 
 KEPT = 200_000
-"""Objects after which cycles among them are looked for: more than a short command makes. What it
-imports and reads stays to its end, and looking through it takes a tenth of its time."""
+"""Objects allocated before the garbage collector searches for cycles: more than a short command
+makes. What a command imports and reads stays to its end; searching it takes a tenth of the time."""
 
 STOPPED = (130, 143)
-"""Exit codes of `loadshare.cli.exits`, which is not loaded to end: interrupted, and terminated."""
+"""Exit codes for interrupted and terminated, as in `loadshare.cli.exits`, not imported here."""
 
 
 def main() -> None:
@@ -20,8 +20,8 @@ def main() -> None:
     Raises
     ------
     SystemExit
-        Always; see `loadshare.cli.main.main`. What is interrupted before there is a command to say
-        so ends in silence.
+        Always; see `loadshare.cli.main.main`. An interrupt before the command line is loaded ends
+        the process without a message.
     """
     gc.set_threshold(KEPT)
     try:
@@ -32,8 +32,8 @@ def main() -> None:
         sys.exit(130)
     except SystemExit as end:
         if end.code in STOPPED:
-            # Python hands signals back to the system before its very end; whoever presses Ctrl-C
-            # again would have it end by that one, without its exit code.
+            # Python restores the system's signal handlers just before it ends; a second Ctrl-C
+            # would then kill it without its exit code.
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_IGN)
         raise

@@ -1,4 +1,4 @@
-"""Arguments besides the case: checked, with errors that say what is allowed."""
+"""Checks of arguments other than the case, with errors that say what is allowed."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from numbers import Integral
 
 
 def whole(name: str, given: object, least: int = 1) -> int:
-    """Return a whole number, of NumPy as well, as Python's.
+    """Return a whole number, Python's or NumPy's, as an int.
 
     Raises
     ------
     ValueError
-        If it is none, or below the least.
+        If it is not a whole number, or below the least.
     """
     if not isinstance(given, Integral) or isinstance(given, bool) or given < least:
         raise ValueError(f"{name} {given!r}; allowed: a whole number from {least} on")
@@ -25,7 +25,7 @@ def check_mapping(wanted: str, example: str, given: object) -> None:
     Raises
     ------
     TypeError
-        If it is none.
+        If it is not a mapping.
     """
     if not isinstance(given, Mapping):
         raise TypeError(f"{wanted} are wanted, as in {example}, not {type(given).__name__}")

@@ -1,4 +1,4 @@
-"""Arrays by what they hold."""
+"""Types of arrays, by their content."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 Array: TypeAlias = NDArray[np.float64]
 Flags: TypeAlias = NDArray[np.bool_]
 Numbers: TypeAlias = NDArray[np.intp]
-"""Of elements, samples, places in another array."""
+"""Indices of elements, samples or places in another array."""
 States: TypeAlias = NDArray[np.int8]
-"""Of elements: how each acts, one small number (`contact_states`)."""
+"""Contact states of elements, one small integer each (`contact_states`)."""
 
 
 def floats(given: Any) -> Any:
-    """Return numbers as an array of floats, and anything else as it is, for a check to name."""
+    """Return numbers as an array of floats, and anything else unchanged, for a check to reject."""
     try:
         return np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):

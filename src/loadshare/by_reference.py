@@ -1,8 +1,8 @@
-"""Named tuples of arrays, handed to compiled functions by reference.
+"""Named tuples of arrays, passed to compiled functions by reference.
 
-Numba hands a named tuple over field by field, and reads all of them wherever one is read: of fifty
-arrays these are some four hundred numbers, and nine tenths of the time to compile a kernel went
-into carrying them about. `reference_type` tells Numba of a better way.
+Numba passes a named tuple field by field, and reads all fields wherever one is read: for fifty
+arrays these are some four hundred numbers, and passing them on took nine tenths of the time to
+compile a kernel. `reference_type` registers a better way with Numba.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ from typing import Any
 
 
 def by_reference(fields: Any) -> Any:
-    """Return a reference to a named tuple; only functions that are `set_apart` may read it.
+    """Return a reference to a named tuple; only functions that call `set_apart` may read it.
 
-    What is not compiled reads the tuple itself.
+    Code that is not compiled gets the tuple itself.
     """
     return fields
 
 
 def set_apart() -> None:
-    """Keep the compiled function that calls this from becoming a part of its callers.
+    """Keep the compiled function that calls this from being inlined into its callers.
 
-    There fields are written, and would not be what they are throughout.
+    The callers write the fields, so that within them the fields would not be invariant.
     """

@@ -1,4 +1,4 @@
-"""Numba's cache of a function, made safe: what is damaged or out of date is compiled again."""
+"""Numba's cache of compiled functions, made safe: damaged or outdated code is compiled again."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from loadshare.lock import one_after_another
 
 
 def fingerprint(function: Callable[..., Any]) -> str:
-    """Return what identifies a function: itself, all that it calls, all numbers from elsewhere.
+    """Return a digest of a function, of all functions it calls and of all constants they read.
 
-    Numba looks at a function's own file only, and would go on with old numbers of another one.
+    Numba checks only the function's own file, and would keep using old constants of another one.
 
     Parameters
     ----------
     function
-        The plain one, as it is written.
+        The plain Python function, not the compiled one.
     """
     parts: list[str] = []
     seen = {function}
@@ -37,13 +37,13 @@ def fingerprint(function: Callable[..., Any]) -> str:
     while waiting:
         one = waiting.pop()
         code = one.__code__
-        # The printed form of a code object contains its address in memory.
+        # Code objects are left out: their printed form contains an address in memory.
         constants = [c for c in code.co_consts if not isinstance(c, CodeType)]
         parts.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
         known = {name: one.__globals__.get(name) for name in code.co_names}
         for module in [value for value in known.values() if isinstance(value, ModuleType)]:
             read = {f"{module.__name__}.{n}": vars(module).get(n) for n in code.co_names}
-            # What is not compiled, such as NumPy's functions, is the compiler's own.
+            # Functions that are not compiled, such as NumPy's, are supplied by the compiler.
             known |= {n: v for n, v in read.items() if not isinstance(v, FunctionType)}
         for name, value in known.items():
             called = getattr(value, "py_func", value)
@@ -52,7 +52,7 @@ def fingerprint(function: Callable[..., Any]) -> str:
                     seen.add(called)
                     waiting.append(called)
             elif isinstance(value, tuple) and hasattr(value, "_fields"):
-                # Of a table only what is read.
+                # Only those entries of a settings table that the function reads.
                 used = [field for field in value._fields if field in code.co_names]
                 parts += [f"{name}.{field} = {getattr(value, field)!r}" for field in used]
             elif isinstance(value, int | float | str | tuple):
@@ -61,14 +61,14 @@ def fingerprint(function: Callable[..., Any]) -> str:
 
 
 class _Files(IndexDataCacheFile):
-    """Index and data of a function; what is damaged or out of date counts as not there."""
+    """Index and data files of a function; damaged or outdated ones count as missing."""
 
     _function: Callable[..., Any]
     _written: Any
 
     @property
     def _source_stamp(self) -> Any:
-        # What it calls may be defined further down, so it is looked at late.
+        # Computed late: the functions that it calls may be defined further down in its module.
         return self._written, fingerprint(self._function)
 
     @_source_stamp.setter
@@ -82,11 +82,11 @@ class _Files(IndexDataCacheFile):
             return {}
 
     def save(self, key: Any, data: Any) -> None:
-        """Keep code, and with it what it is the code of: the index names it before it is there."""
+        """Save code with a note of what it belongs to: the index is written before the data."""
         super().save(key, (self._kept_for(key), data))
 
     def load(self, key: Any) -> Any:
-        """Load what was kept; None where a kill or a full disk left the code of another version."""
+        """Load saved code; None where a kill or a full disk left the code of another version."""
         kept_for, data = super().load(key) or (None, None)
         return data if kept_for == self._kept_for(key) else None
 
@@ -94,7 +94,7 @@ class _Files(IndexDataCacheFile):
         return self._version, self._source_stamp, key
 
     def _load_data(self, name: str) -> Any:
-        """Load what was kept; nothing is unpickled or run before its digest was compared."""
+        """Load saved data; nothing is unpickled or run before its digest has been compared."""
         data = Path(self._data_path(name)).read_bytes()
         size = hashlib.sha256().digest_size
         if hashlib.sha256(data[size:]).digest() != data[:size]:
@@ -108,7 +108,7 @@ class _Files(IndexDataCacheFile):
 
 
 class _Places(CompileResultCacheImpl):
-    """Where compiled code may be kept.
+    """Folders in which compiled code may be kept.
 
     For a user without a home, Numba would make a folder named ``~`` in the working directory.
     """
@@ -131,7 +131,7 @@ def _has_home() -> bool:
 class CodeCache(FunctionCache):
     """Compiled code of a function on disk; what cannot be read or written is compiled again.
 
-    Of several processes that miss the same code one compiles it, and the others wait for that.
+    If several processes need the same missing code, one compiles it and the others wait.
     """
 
     _impl_class = _Places
@@ -148,7 +148,7 @@ class CodeCache(FunctionCache):
         self._alone = ExitStack()
 
     def compiling(self, compile_: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """Return what compiles the function, and lets others do so once it is done."""
+        """Return a compile method that releases the lock on the code once it is done."""
 
         def one_compiles(sig: Any) -> Any:
             with ExitStack() as self._alone:
@@ -157,7 +157,7 @@ class CodeCache(FunctionCache):
         return one_compiles
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Load what was kept for some types; None where it is to be compiled here and now."""
+        """Load the code kept for a signature; None where it must be compiled here and now."""
         found = self._read(sig, target_context)
         if found is None and self._ready():
             file = Path(self._cache_file._index_path).with_suffix(".lock")
@@ -166,7 +166,7 @@ class CodeCache(FunctionCache):
         return found
 
     def _ready(self) -> bool:
-        """Whether there is a folder to keep code in."""
+        """Return whether there is a folder to keep code in."""
         try:
             self._impl.locator.ensure_cache_path()
         except OSError:
@@ -174,25 +174,25 @@ class CodeCache(FunctionCache):
         return True
 
     def _read(self, sig: Any, target_context: Any) -> Any:
-        """Load what was kept for some types; None where that cannot be read."""
+        """Load the code kept for a signature; None where that cannot be read."""
         try:
             return super().load_overload(sig, target_context)
         except Exception:  # noqa: BLE001 -- it is compiled again
             return None
 
     def load_all(self, function: Any) -> bool:
-        """Load all that is kept of a function, and tell whether there is any."""
+        """Load all code that is kept of a function; return whether there is any."""
         for sig, *_ in self._cache_file._load_index():
             code = self._read(sig, function.targetctx)
             if code is not None:
-                # As the dispatcher does when it is called.
+                # The dispatcher does the same when it is called.
                 entry = (code.entry_point, code.fndesc, [code.library])
                 function.targetctx.insert_user_function(*entry)
                 function.add_overload(code)
         return bool(function.signatures)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep what was compiled for some types, if that can be written."""
+        """Save the code compiled for a signature, if that can be written."""
         try:
             super().save_overload(sig, data)
         except Exception as error:  # noqa: BLE001 -- the compiled code is there, and runs
@@ -200,15 +200,15 @@ class CodeCache(FunctionCache):
 
 
 class Lost(NullCache):
-    """Keeps nothing, and says so when something was compiled."""
+    """A cache that keeps nothing, and reports it when something has been compiled."""
 
     def __init__(self, not_kept: Callable[[], None]) -> None:
         self._not_kept = not_kept
 
     def load_all(self, function: Any) -> bool:
-        """Nothing is there."""
+        """Return False: nothing is kept."""
         return False
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Say so."""
+        """Report that the code is not kept."""
         self._not_kept()

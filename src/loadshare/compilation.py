@@ -1,9 +1,9 @@
-"""Compiling with Numba: kept on disk, reported while it lasts, and never the reason for a failure.
+"""Compilation with Numba: kept on disk, reported while it lasts, and never the cause of a failure.
 
-What is compiled is kept where Numba finds a folder to write in: next to the source, else in the
+Compiled code is kept where Numba finds a folder to write in: next to the source, else in the
 user's cache folder (`NUMBA_CACHE_DIR` comes before both). Where there is none, where Numba cannot
-be imported, or where it does not compile, `why_not` says so once, in the log, and those who have
-another kernel use that. What is damaged on disk or out of date is compiled again (`code_cache`).
+be imported, or where it does not compile, `tell_why_not` says so once in the log, and callers that
+have another kernel use that. Code that is damaged or out of date is compiled again (`code_cache`).
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def give_up(reason: str) -> None:
 
 
 def is_failure(error: BaseException) -> bool:
-    """Tell whether an exception comes out of the compiler, and not out of what was compiled."""
+    """Return whether an exception comes from the compiler, not from the compiled code."""
     trace: TracebackType | None = error.__traceback__
     while trace is not None:
         name = str(trace.tb_frame.f_globals.get("__name__", ""))
@@ -79,10 +79,10 @@ def is_failure(error: BaseException) -> bool:
 
 
 def jit(**how: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Return a decorator as `numba.njit`, for functions whose compiled code is to be kept.
+    """Return a decorator like `numba.njit`, for functions whose compiled code is to be kept.
 
-    Without Numba a function stays what it is. Where nothing can be kept, it is compiled in memory.
-    `why_not` knows of both.
+    Without Numba a function is left as it is. Where nothing can be kept, it is compiled in memory.
+    `why_not` returns the reason in both cases.
 
     Parameters
     ----------
@@ -94,13 +94,13 @@ def jit(**how: Any) -> Callable[[Callable[..., Any]], Any]:
         made = _made(function, no_cfunc_wrapper=True, **how)
         if made is function:
             return function
-        # Imports Numba, which is there by now.
+        # This imports Numba, which is known to exist by now.
         from loadshare.code_cache import CodeCache, Lost
 
         try:
             made._cache = cache = CodeCache(function, lambda e: watch.not_kept(words_of(e)))
             made.compile = cache.compiling(made.compile)
-        except Exception as error:  # noqa: BLE001 -- there is another way, whatever it is
+        except Exception as error:  # noqa: BLE001 -- whatever it is, another kernel is used
             why = words_of(error)
             made._cache = Lost(lambda: watch.not_kept(why))
             give_up(
@@ -113,10 +113,10 @@ def jit(**how: Any) -> Callable[[Callable[..., Any]], Any]:
 
 
 def within(**how: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Return a decorator as `numba.njit`, for functions that are compiled into others only."""
+    """Return a decorator like `numba.njit`, for functions that only compiled functions call."""
 
     def decorated(function: Callable[..., Any]) -> Any:
-        # What Python would need to call it takes a fifth of the time to compile.
+        # The wrapper for calls from Python would take a fifth of the time to compile.
         return _made(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, **how)
 
     return decorated
@@ -126,27 +126,27 @@ def _made(function: Callable[..., Any], **how: Any) -> Any:
     try:
         from numba import njit
 
-        from loadshare import reference_type  # noqa: F401 -- tells Numba of references
+        from loadshare import reference_type  # noqa: F401 -- registers references with Numba
 
         watch.attach()
         return njit(**how)(function)
-    except Exception as error:  # noqa: BLE001 -- also an interpreter that Numba does not know
+    except Exception as error:  # noqa: BLE001 -- also an interpreter that Numba does not support
         give_up(f"Numba cannot be used ({words_of(error)})")
         return function
 
 
 def at_hand(*functions: Any) -> bool:
-    """Tell whether functions run without compiling; what was kept on disk is loaded.
+    """Return whether functions can run without compiling; code kept on disk is loaded.
 
     Parameters
     ----------
     *functions
-        Of `jit`.
+        Functions decorated by `jit`.
     """
     return why_not() is None and all(f.overloads or f._cache.load_all(f) for f in functions)
 
 
 def words_of(error: BaseException) -> str:
-    """Return the kind of an exception and the first line of what it says."""
+    """Return the type of an exception and the first line of its message."""
     first = str(error).strip().splitlines()
     return f"{type(error).__name__}: {first[0]}" if first else type(error).__name__

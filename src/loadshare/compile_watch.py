@@ -1,4 +1,4 @@
-"""What the log tells of compiling: that it goes on, for how long, and that it could not be kept."""
+"""Log messages about compiling: that it is going on, for how long, and that code is not kept."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ log = logging.getLogger("loadshare")
 PATIENCE = 1.0
 """Seconds after which compiling is announced; small functions are done by then."""
 AGAIN = 30.0
-"""Seconds after which it is announced again that compiling goes on."""
+"""Seconds between further messages while compiling goes on."""
 PREFIX = "Compiling"
-"""First word of every message that tells of compiling."""
+"""First word of every message about compiling."""
 _FIRST = (
     "the first use of this version here takes from a few seconds (tooth contact) to three minutes "
     "(many samples) of processor time; later ones find what is compiled on disk"
@@ -24,12 +24,12 @@ _FIRST = (
 
 
 class Watch:
-    """Tells while something is compiled, after a moment and then again and again.
+    """Logs that something is being compiled, after a moment and then at intervals.
 
     Attributes
     ----------
     complained : bool
-        Whether it was reported that what is compiled is lost at the end.
+        Whether it has been reported that compiled code is lost when the process ends.
     """
 
     def __init__(self) -> None:
@@ -42,7 +42,7 @@ class Watch:
         self.complained = False
 
     def attach(self) -> None:
-        """Listen to Numba; once."""
+        """Subscribe to Numba's compile events; only once."""
         with self._lock:
             if self._attached:
                 return
@@ -61,7 +61,7 @@ class Watch:
         event.register("numba:compile", Listener())
 
     def started(self) -> None:
-        """One more function is being compiled."""
+        """Count one more function that is being compiled."""
         with self._lock:
             self._depth += 1
             if self._depth > 1:
@@ -72,7 +72,7 @@ class Watch:
                 self._teller.start()
 
     def ended(self) -> None:
-        """One is done."""
+        """Count one function as done."""
         with self._lock:
             self._depth -= 1
             if self._depth == 0:
@@ -80,7 +80,7 @@ class Watch:
 
     @contextmanager
     def waiting(self) -> Iterator[None]:
-        """Another process compiles what is needed here: reported as if this one did."""
+        """Report the wait for another process that compiles as if this one were compiling."""
         self.started()
         try:
             yield
@@ -88,7 +88,7 @@ class Watch:
             self.ended()
 
     def not_kept(self, why: str) -> None:
-        """Say once that what was compiled is lost at the end."""
+        """Log once that compiled code is lost when the process ends."""
         with self._lock:
             if self.complained:
                 return
@@ -96,7 +96,7 @@ class Watch:
         log.warning("%s: what was compiled could not be kept (%s).", PREFIX, why)
 
     def wait(self, seconds: float) -> None:
-        """Wait until the last message on compiling is logged, for so long at most."""
+        """Wait until the last message on compiling is logged, for `seconds` at most."""
         teller = self._teller
         if teller is not None:
             teller.join(seconds)
@@ -106,7 +106,7 @@ class Watch:
         return self._spent + running
 
     def _tell(self) -> None:
-        """Run alongside the compiler until nothing was compiled for a moment."""
+        """Run alongside the compiler until nothing has been compiled for a moment."""
         announced = False
         idle = 0
         following = PATIENCE

@@ -1,4 +1,4 @@
-"""When two results are equal: where they say the same, number by number."""
+"""Equality of results: the same content, number by number."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from typing import Any
 
 
 class Comparable:
-    """What is equal to another of its kind that says the same, such as its own pickle."""
+    """An object that equals another of its class with the same content, such as its own pickle."""
 
     __slots__ = ()
 
     def _said(self) -> Any:
-        """Return all by which it is compared."""
+        """Return all that is compared."""
         return _fields(self)
 
     def __eq__(self, other: object) -> bool:
-        """Whether another of its kind says the same; no number is equal to no number."""
+        """Return whether another of its class has the same content; NaN equals NaN."""
         if not isinstance(other, type(self)):
             return NotImplemented
         return same(self._said(), other._said())
 
     def __hash__(self) -> int:
-        """Let it be kept in sets, without a look at all that it holds."""
+        """Return a hash of the class alone: it may be kept in sets without reading its content."""
         return hash(type(self))
 
 
 def same(one: Any, other: Any) -> bool:
-    """Whether two values are the same, and all that they hold."""
+    """Return whether two values, and all that they hold, are the same."""
     if isinstance(one, Mapping):
         alike = isinstance(other, Mapping) and one.keys() == other.keys()
         return alike and all(same(one[key], other[key]) for key in one)
     if isinstance(one, tuple | list):
         return len(one) == len(other) and all(map(same, one, other))
     if hasattr(one, "dtype"):
-        # Here, so that commands that compute nothing do without it.
+        # Imported here, so that commands that compute nothing do not load it.
         import numpy as np
 
         return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 LONGEST = 400
-"""Characters of a key in a message: more than keys of any length allowed have."""
+"""Most characters of a key in a message: more than any allowed key has."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong with a case, in words by which its author can correct it.
+    """One thing that is wrong with a case, in words that let its author correct it.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Refused(LoadshareError):  # noqa: N818 -- an answer is refused; nothing we
     figures : mapping of str to float
         The figures that failed, by name.
     partial : object, optional
-        The result of what was certified all the same, such as the other positions of a case.
+        The result of what was certified nevertheless, such as the other positions of a case.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class Refused(LoadshareError):  # noqa: N818 -- an answer is refused; nothing we
 
 
 class ResultError(LoadshareError):
-    """A file that holds no result to be believed, with everything that is wrong with it.
+    """A result file that cannot be trusted, with everything that is wrong with it.
 
     Parameters
     ----------

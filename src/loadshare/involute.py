@@ -1,7 +1,7 @@
 """Involute teeth: radii and angles of a gear, and of two gears at a distance (ISO 21771).
 
-Tooth counts are positive, those of internal gears as well. σ is +1 for teeth that point away from
-the axis and −1 for those that point to it; a positive profile shift thickens the tooth of either at
+Tooth numbers are positive, also for internal gears. σ is +1 for teeth that point away from the
+axis and −1 for those that point to it; a positive profile shift thickens the tooth of either at
 the reference circle, and moves the teeth of an internal gear inwards.
 """
 
@@ -12,12 +12,12 @@ from functools import cached_property
 
 
 def inv(angle: float) -> float:
-    """Involute of a pressure angle [rad]: tan α − α."""
+    """Return the involute of a pressure angle [rad]: tan α − α."""
     return math.tan(angle) - angle
 
 
 def inverse_inv(value: float) -> float:
-    """Pressure angle [rad] of an involute value, 0 ≤ α < π/2.
+    """Return the pressure angle [rad] of an involute value, 0 ≤ α < π/2.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class InvoluteTooth:
         return thickness / self.teeth + self.kind * inv(self.transverse_angle)
 
     def addendum_to(self, radius: float) -> float:
-        """Addendum, in modules, of a tip at a radius [m]."""
+        """Return the addendum, in modules, of a tip at a radius [m]."""
         return self.kind * (radius - self.radius) / self.module - self.profile_shift
 
     @cached_property
@@ -127,7 +127,7 @@ class InvoluteTooth:
 
     @cached_property
     def pointed(self) -> float:
-        """Radius at which the flanks of a tooth meet, below the tip where it is pointed [m].
+        """Radius at which the flanks of a tooth meet [m]: below its tip if the tooth is pointed.
 
         Raises
         ------
@@ -137,17 +137,17 @@ class InvoluteTooth:
         return self.base_radius / math.cos(inverse_inv(self.kind * self.base_half_angle))
 
     def half_angle_at(self, pressure_angle: float) -> float:
-        """Half the angle of a tooth where it has a transverse pressure angle [rad]."""
+        """Return half the angle of a tooth at a transverse pressure angle [rad]."""
         return self.base_half_angle - self.kind * inv(pressure_angle)
 
 
 def base_distance(one: InvoluteTooth, two: InvoluteTooth) -> float:
-    """Centre distance below which two gears have no line of action: |r_b2 + σ r_b1| [m]."""
+    """Return the centre distance [m] below which gears lack a line of action, |r_b2 + σ r_b1|."""
     return abs(two.base_radius + one.kind * two.kind * one.base_radius)
 
 
 def working_angle(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:
-    """Transverse working pressure angle α_wt at a centre distance [m], [rad].
+    """Return the transverse working pressure angle α_wt [rad] at a centre distance [m].
 
     cos α_wt = |r_b2 + σ r_b1| / a.
     """
@@ -155,7 +155,7 @@ def working_angle(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> fl
 
 
 def working_angle_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> float:
-    """Transverse working pressure angle at which both flanks touch [rad].
+    """Return the transverse working pressure angle at which both flanks touch [rad].
 
     inv α_wt = inv α_t + 2 tan α_n (x1 + x2)/(z1 ± z2), the lower sign with an internal gear
     (ISO 21771, in which z2 < 0).
@@ -175,7 +175,7 @@ def working_angle_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> fl
 
 
 def distance_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> float:
-    """Centre distance at which both flanks touch, a_w = |r_b2 + σ r_b1| / cos α_wt [m].
+    """Return the centre distance at which both flanks touch, |r_b2 + σ r_b1| / cos α_wt [m].
 
     Raises
     ------
@@ -186,7 +186,7 @@ def distance_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> float:
 
 
 def contact_ratio(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:
-    """Transverse contact ratio ε_α of two gears at a centre distance [m].
+    """Return the transverse contact ratio ε_α of two gears at a centre distance [m].
 
     The paths of contact between pitch point and tips, σ (√(r_a² − r_b²) − r_b tan α_wt) of each,
     over the transverse base pitch.
@@ -197,12 +197,12 @@ def contact_ratio(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> fl
 
 
 def normal_backlash(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:
-    """Normal backlash j_bn at a centre distance [m]; negative where teeth overlap.
+    """Return the normal backlash j_bn at a centre distance [m]; negative where teeth overlap.
 
-    What the teeth leave of the pitch on the working pitch circles, 2 r_w (π/z − ψ) − 2 r_w2 ψ_2
-    with the half angles ψ of the teeth there, times cos α_wt cos β_b. Thickness allowances add
-    −(E_sn1 + E_sn2) cos α_n (ISO/TR 10064-2), a centre distance above that without backlash the
-    rest.
+    It is the part of the pitch that the teeth leave free on the working pitch circles,
+    2 r_w (π/z − ψ) − 2 r_w2 ψ_2 with the half angles ψ of the teeth there, times cos α_wt cos β_b.
+    Thickness allowances contribute −(E_sn1 + E_sn2) cos α_n (ISO/TR 10064-2), a centre distance
+    above that without backlash the rest.
     """
     angle = working_angle(one, two, distance)
     left = one.base_radius * (math.pi / one.teeth - one.half_angle_at(angle))
@@ -211,27 +211,27 @@ def normal_backlash(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> 
 
 
 def tip_limit(gear: InvoluteTooth, other: InvoluteTooth, distance: float) -> float:
-    """Radius of the other gear where the involute of an external gear begins, at its base [m].
+    """Return the radius on the other gear that meets the base of an external gear's involute [m].
 
-    r = √(r_b² + (a sin α_wt)²): a tip of an external gear must not reach beyond it, one of an
-    internal gear must stay outside of it, or teeth interfere.
+    r = √(r_b² + (a sin α_wt)²): the tip of an external gear must not reach beyond it, that of an
+    internal gear must stay outside it, or the teeth interfere.
     """
     return math.hypot(other.base_radius, distance * math.sin(working_angle(gear, other, distance)))
 
 
 def root_clearance(gear: InvoluteTooth, other: InvoluteTooth, distance: float) -> float:
-    """Clearance between the root of a gear and the tip of another [m]."""
+    """Return the clearance between the root of a gear and the tip of another [m]."""
     if other.internal:
-        # Inside an internal gear the centres are nearer one another than the circles.
+        # Seen from the internal gear's centre, the pinion's root is at distance + root.
         return other.tip - distance - gear.root
     return gear.kind * (distance - gear.root) - other.tip
 
 
 def tips_pass(pinion: InvoluteTooth, ring: InvoluteTooth, distance: float) -> bool:
-    """Tell whether the tips of a pinion and an internal gear pass beside the line of action.
+    """Return whether the tips of a pinion and an internal gear pass each other freely.
 
-    Where the tip circles cross, at polar angles θ1 and θ2 from the line of centres, the pinion's
-    tip must have passed the ring's (trimming, fouling):
+    Beside the line of action, where the tip circles cross at polar angles θ1 and θ2 from the line
+    of centres, the pinion's tip must have passed the ring's (trimming, fouling):
     z1 (inv α_a1 + θ1) − z2 (inv α_a2 + θ2) + (z2 − z1) inv α_wt ≥ 0.
     """
     r1, r2 = pinion.tip, ring.tip

@@ -1,4 +1,4 @@
-"""Documents as JSON text that people can read."""
+"""Documents as readable JSON text."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ _HOLDING = dict, list, tuple
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    """Return a document of plain data as text: what holds nothing that holds more is one line.
+    """Return a document of plain data as text, with every innermost list or table on one line.
 
     Raises
     ------
     ValueError
-        If a number is infinite or none, which JSON does not know.
+        If a number is infinite or NaN, which JSON cannot represent.
     """
     import json
 
@@ -26,7 +26,7 @@ def json_text(document: Mapping[str, Any]) -> str:
 def _laid_out(
     value: Any, line: str, on_one_line: Callable[[Any], str], quoted: Callable[[str], str]
 ) -> str:
-    """Return the text of what holds other things; `line` begins a line of it."""
+    """Return the text of a list or table; `line` is the line end and indent before its lines."""
     inner = value.values() if isinstance(value, dict) else value
     for part in inner:
         if isinstance(part, _HOLDING):

@@ -1,4 +1,4 @@
-"""Figures that are computed when they are first asked for: few who solve look at all of them."""
+"""Figures that are computed when they are first read: few users look at all of them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Value = TypeVar("Value")
 
 
 def known(value: Value) -> Callable[[], Value]:
-    """Return what hands out a value that is at hand, where one may be computed later."""
+    """Return a function that returns a known value, where another might compute it later."""
     return partial(_itself, value)
 
 
@@ -21,12 +21,12 @@ def _itself(value: Value) -> Value:
 
 @dataclass(frozen=True, eq=False)
 class Later(Mapping[str, Value]):
-    """A mapping that is made when it is first looked into.
+    """A mapping that is made when it is first read.
 
     Attributes
     ----------
     make : callable
-        Without arguments; returns the mapping.
+        Takes no arguments and returns the mapping.
     """
 
     make: Callable[[], Mapping[str, Value]]
@@ -49,5 +49,5 @@ class Later(Mapping[str, Value]):
         return repr(dict(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Be handed to another process as what it holds."""
+        """Return how to pickle it: as a plain dict of what it holds."""
         return dict, (dict(self),)

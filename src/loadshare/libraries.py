@@ -1,6 +1,6 @@
-"""Libraries that take long to load and that few calls need: each is loaded when it is first used.
+"""Libraries that are slow to load and that few calls need: each is loaded when it is first used.
 
-Modules import their names from here as they would import the libraries themselves.
+Modules import these names from here as they would import the libraries themselves.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 else:
 
     class _Library:
-        """A module that is imported when something of it is asked for."""
+        """A module that is imported when one of its names is first used."""
 
         def __init__(self, name: str) -> None:
             self._name = name

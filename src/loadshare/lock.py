@@ -1,4 +1,4 @@
-"""One at a time in a folder: a lock of the system, which ends with the process that holds it."""
+"""Exclusive work in a folder, by a system lock that ends with the process that holds it."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from loadshare.errors import LoadshareError
 log = logging.getLogger("loadshare")
 
 LOCK = ".loadshare.lock"
-"""File of the lock; it says who holds it, and is removed when that one is done."""
+"""Name of the lock file; it names the holder, which removes it when it is done."""
 TAKEN = (errno.EACCES, errno.EDEADLK) if sys.platform == "win32" else (errno.EWOULDBLOCK,)
-"""What the system answers where another process holds a lock."""
+"""Error codes of the system where another process holds the lock."""
 AGAIN = 0.05
-"""Seconds after which those who wait look again."""
+"""Seconds between two attempts to take a lock."""
 FAR = 1 << 30
-"""Byte that is locked on Windows, beyond the text, which others are to read."""
+"""Byte that is locked on Windows: beyond the text, which others must be able to read."""
 
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Be the only one who works in a folder.
+    """Be the only process that works in a folder.
 
     Where nothing can be written, or the file system has no locks, nobody is kept out.
 
     Parameters
     ----------
     folder : Path
-        One that exists.
+        An existing folder.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def alone_in(folder: Path) -> Iterator[None]:
 
         text = f"process {os.getpid()} on {gethostname()}, since {_now()}"
         with suppress(OSError):
-            # On a full disk it is held all the same, without the name of its holder.
+            # On a full disk the lock is held all the same, but does not name its holder.
             os.ftruncate(handle, 0)
             os.write(handle, text.encode())
         yield
@@ -61,14 +61,14 @@ def alone_in(folder: Path) -> Iterator[None]:
 def one_after_another(
     file: Path, waiting: Callable[[], AbstractContextManager[object]] = nullcontext
 ) -> Iterator[bool]:
-    """Be the only one who does something, once all who were before have done it.
+    """Take a lock in turn, once the processes that took it before have released it.
 
     Where nothing can be written, or the file system has no locks, nobody waits.
 
     Parameters
     ----------
     file : Path
-        Of the lock, in a folder that exists.
+        The lock file, in an existing folder.
     waiting : callable, optional
         Returns a context in which to wait; not called if there is nobody to wait for.
 
@@ -97,11 +97,11 @@ def one_after_another(
 
 @contextmanager
 def _held(file: Path, handle: int) -> Iterator[None]:
-    """Let go of a lock in the end."""
+    """Release a lock at the end."""
     try:
         yield
     finally:
-        # While it is held; on Windows a file can be removed only when it is closed.
+        # Removed while the lock is held; on Windows only a closed file can be removed.
         with suppress(OSError):
             file.unlink()
         _close(handle)
@@ -111,7 +111,7 @@ def _held(file: Path, handle: int) -> Iterator[None]:
 
 
 def _acquired(file: Path, level: int = logging.WARNING) -> int | None:
-    """Return an open file that this process has locked; None where none can be."""
+    """Return an open file that this process has locked; None where no file can be locked."""
     while True:
         try:
             handle = os.open(file, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
@@ -140,14 +140,14 @@ def _acquired(file: Path, level: int = logging.WARNING) -> int | None:
 
 
 def _holder(handle: int) -> str:
-    """Return who wrote that it holds the lock."""
+    """Return the holder that the lock file names."""
     with suppress(OSError):
         return os.read(handle, 200).decode(errors="replace") or "another process"
     return "another process"
 
 
 def _close(handle: int) -> None:
-    # A file that is closed is closed, whatever error that raises.
+    # The file is closed even where closing it raises an error.
     with suppress(OSError):
         os.close(handle)
 

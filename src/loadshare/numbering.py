@@ -1,4 +1,4 @@
-"""Rows of small numbers that many samples have, numbered as they turn up, compiled with Numba."""
+"""Distinct rows of small integers, numbered as samples first show them, compiled with Numba."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ inlined = compilation.within(forceinline=True, nogil=True, error_model="numpy", 
 
 @inlined
 def numbered(s, rows, first, key, count, last):  # type: ignore[no-untyped-def]
-    """Number the row of a sample; returns how many there are, and its number, −1 if there are more.
+    """Return the count of distinct rows so far, and the number of a sample's row; −1 if no room.
 
-    `first` holds the first sample of each, `key` its hash, both with room for the most; `last` is
-    the number of the sample before.
+    `first` holds the first sample with each row, `key` the row's hash, both as long as the most
+    rows that are numbered; `last` is the number of the previous sample's row.
     """
     if last >= 0 and count > 0 and _same(rows, s, first[last]):
         return count, last

@@ -1,9 +1,9 @@
-"""BLAS works with one thread while contacts are solved.
+"""One thread of BLAS while contacts are solved.
 
-Its matrices are small. Threads of BLAS would take the time of those that solve blocks (a third of a
-batch on two cores), wait for one another where another program works as well (eigenvalues of forty
-unknowns take ten milliseconds in place of a fifth of one), and would let sums round differently
-from one machine to the next.
+The matrices are small. Threads of BLAS would take time from the threads that solve blocks (a third
+of a batch on two cores), would wait for one another while another program is running (eigenvalues
+of forty unknowns take ten milliseconds instead of a fifth of one), and would make sums round
+differently from one machine to the next.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _limits: list[Any] = []
 
 @lru_cache(maxsize=1)
 def _libraries(_modules: int) -> Any:
-    """Return the libraries of this process; to find them takes as long as many samples."""
+    """Return the libraries of this process; finding them takes as long as solving many samples."""
     from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController()
@@ -30,11 +30,11 @@ def _libraries(_modules: int) -> Any:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Limit BLAS to one thread until the last of all that asks for it in this process has ended."""
+    """Limit BLAS to one thread until the last such context in this process has ended."""
     asking = object()
     with _lock:
         if not _asking:
-            # Another library comes with another module.
+            # A further BLAS can only have come with a further module, so their number is the key.
             _limits.append(_libraries(len(sys.modules)).limit(limits=1, user_api="blas"))
         _asking.append(asking)
     try:

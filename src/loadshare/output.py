@@ -1,4 +1,4 @@
-"""Files that are written: whole or not at all, and never in place of what is no file."""
+"""Writing of files: whole or not at all, and never replacing a device or a pipe."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from pathlib import Path
 from loadshare.libraries import pd, xr
 
 STANDARD = Path("-")
-"""Means standard output."""
+"""Path that means standard output."""
 
 LONG = 100
-"""Bytes of a name that the temporary file has as well; file systems allow some 250."""
+"""Bytes of a name that the temporary file's name repeats; file systems allow some 250."""
 
 
 class Closed(TextIOWrapper):
-    """In place of a standard stream that is closed: what is printed there goes nowhere."""
+    """Stand-in for a standard stream that is closed: what is printed there is discarded."""
 
 
 class NotWritten(OSError):  # noqa: N818 -- what became of a file
     """A file that could not be written; what was there before is left as it was.
 
-    Its attributes are those of every `OSError`: `filename` is the file that was asked for.
+    Its attributes are those of every `OSError`: `filename` is the file that was to be written.
     """
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
     """Write a file, whole or not at all.
 
-    It is written next to its place, brought to the disk, and put in place in one step. A link is
-    followed; the mode of a file that is there is kept, and its owner where that is allowed. What is
-    no file, a device or a pipe, is written to.
+    It is written next to its place, synced to the disk, and put in place in one step. A link is
+    followed; the mode of an existing file is kept, and its owner where that is allowed. A device or
+    a pipe is written to directly.
 
     Parameters
     ----------
     path : Path
-        Where the file is to be; its folder is made. "-" means standard output.
+        The file; its folder is made if it does not exist. "-" means standard output.
     content : str or bytes
         Text is written as UTF-8.
 
@@ -61,31 +61,31 @@ def write_whole(path: Path, content: str | bytes) -> None:
 
 
 def _encoded(text: str) -> bytes:
-    # What names of files hold that is no UTF-8 is a question mark, as on the screen.
+    # Names of files may contain what is not UTF-8: it becomes a question mark, as on the screen.
     return text.encode(errors="replace")
 
 
 def write_together(contents: Mapping[Path, str], without: Iterable[Path], last: Path) -> None:
-    """Write files of one folder that belong together, in place of those of another time.
+    """Write files of one folder that belong together, replacing those of an earlier time.
 
-    All are written next to their places before the first is put in place. While that is done, the
-    folder lacks one file without which it means nothing, so that no interruption leaves a mixture
-    of both times.
+    All are written next to their places before the first is put in place. While they are put in
+    place, the folder lacks one file without which the others mean nothing, so that no interruption
+    leaves a mixture of old and new.
 
     Parameters
     ----------
     contents : mapping of Path to str
-        None of them "-".
+        None of the paths is "-".
     without : iterable of Path
-        Files that are to be there no more.
+        Files to remove.
     last : Path
-        The file, one of `contents`, that is taken away first and put in place last.
+        The file, one of `contents`, that is removed first and put in place last.
 
     Raises
     ------
     NotWritten
-        If one of them cannot be written. Unless it is put in place already, all that was there
-        before is left as it was.
+        If one of them cannot be written. If that happens before the first is put in place, all that
+        was there before is left as it was.
     """
     with ExitStack() as stack:
         puts = {}
@@ -102,7 +102,7 @@ def write_together(contents: Mapping[Path, str], without: Iterable[Path], last: 
 
 
 def remove(path: Path) -> None:
-    """Remove a file, or a link to one, for good; what is neither stays.
+    """Remove a file or a link, and sync its folder; anything else stays.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def _remove(path: Path) -> None:
 
 @contextmanager
 def _naming(path: Path) -> Iterator[None]:
-    """Say of an error which file could not be written."""
+    """Raise an `OSError` as one that names the file that could not be written."""
     try:
         yield
     except OSError as error:
@@ -142,7 +142,7 @@ def _print(content: bytes) -> None:
 
 @contextmanager
 def _staged(path: Path, content: bytes) -> Iterator[Callable[[], None]]:
-    """Write a file next to its place; yields what puts it there in one step."""
+    """Write a file next to its place; yield a function that puts it there in one step."""
     try:
         known = path.stat()
     except FileNotFoundError:
@@ -155,7 +155,7 @@ def _staged(path: Path, content: bytes) -> Iterator[Callable[[], None]]:
 
         yield pour
         return
-    # Where a link leads; the link itself stays.
+    # The target of a link; the link itself stays.
     place = Path(os.path.realpath(path))
     make_folder(place.parent)
     with _held(place.parent):
@@ -179,12 +179,12 @@ def _staged(path: Path, content: bytes) -> Iterator[Callable[[], None]]:
 
 
 def _begin(name: str) -> str:
-    """Return as much of a name as the temporary file has, in whole letters."""
+    """Return the part of a name that the temporary file's name repeats, in whole letters."""
     return name.encode(errors="replace")[:LONG].decode(errors="ignore")
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder and those above it, and bring their names to the disk."""
+    """Make a folder and those above it, and sync their names to the disk."""
     above = [one for one in (folder, *folder.parents) if not one.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     for made in reversed(above):
@@ -192,14 +192,14 @@ def make_folder(folder: Path) -> None:
 
 
 def clear(files: Iterable[Path]) -> None:
-    """Remove what killed processes left next to files that they were writing.
+    """Remove the temporary files that killed processes left next to files they were writing.
 
-    A folder in which somebody is writing is left as it is.
+    A folder in which another process is writing is left as it is.
 
     Parameters
     ----------
     files : iterable of Path
-        As they were asked for.
+        The files that were to be written.
     """
     names: dict[Path, set[str]] = {}
     for file in files:
@@ -214,12 +214,12 @@ _LEFT = re.compile(r"\.(.+)\.[0-9a-f]{16}", re.DOTALL)
 
 
 def is_left(name: str) -> bool:
-    """Tell whether a name is one that a file has only while it is being written."""
+    """Return whether a name is one that a file has only while it is being written."""
     return _LEFT.fullmatch(name) is not None
 
 
 def _clear(folder: Path, names: set[str]) -> None:
-    # A folder that may be written to, and not be read, shows nothing.
+    # A folder that may be written to but not read cannot be listed.
     with suppress(OSError):
         for file in list(folder.iterdir()):
             left = _LEFT.fullmatch(file.name)
@@ -230,9 +230,9 @@ def _clear(folder: Path, names: set[str]) -> None:
 
 @contextmanager
 def _held(folder: Path, alone: bool = False) -> Iterator[bool]:
-    """Hold a folder as one of those who write in it, or alone; yields whether it is held so.
+    """Lock a folder, shared by all who write in it or alone; yield whether it is locked.
 
-    The lock ends with the process. Windows needs none: it removes no file that is open.
+    The lock ends with the process. Windows needs none: it does not remove open files.
     """
     if os.name != "posix":
         yield True
@@ -241,7 +241,7 @@ def _held(folder: Path, alone: bool = False) -> Iterator[bool]:
 
     how = fcntl.LOCK_EX | fcntl.LOCK_NB if alone else fcntl.LOCK_SH
     handle, held = -1, False
-    # Without locks, and where somebody is writing, what others may be writing is left alone.
+    # Without a lock, the files that others may be writing are left alone.
     with suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
         fcntl.flock(handle, how)
@@ -262,8 +262,8 @@ def csv_of(frame: pd.DataFrame) -> str:
 def without_formulas(frame: pd.DataFrame) -> pd.DataFrame:
     """Return a table in which no text is a formula of a spreadsheet.
 
-    Texts and heads that begin with =, +, -, @, a tab or a line end, and are no quantity, have an
-    apostrophe before them: names are their user's to choose.
+    Texts and column names that begin with =, +, -, @, a tab or a line end, and are not a quantity,
+    get an apostrophe in front: users may choose any names.
     """
     safe = frame.rename(columns=_plain)
     for name in safe.columns:
@@ -275,9 +275,9 @@ def without_formulas(frame: pd.DataFrame) -> pd.DataFrame:
 def netcdf_of(arrays: xr.Dataset) -> bytes:
     """Return labelled arrays as the content of a netCDF file.
 
-    It is made in memory: where a disk is full, HDF5 leaves a file that it cannot close, and takes
-    the process with it. As a slash in a name means a group there, a variable or dimension with one
-    has "|" in its place, and its own name as ``long_name``.
+    It is made in memory: on a full disk, HDF5 leaves a file that it cannot close, and crashes the
+    process. As a slash in a name means a group in such a file, it is replaced by "|" in names of
+    variables and dimensions, and a variable keeps its own name as ``long_name``.
     """
     import h5netcdf
     from xarray.backends import H5NetCDFStore
@@ -304,7 +304,7 @@ def _without_slashes(arrays: xr.Dataset) -> xr.Dataset:
 
 
 FORMULA = re.compile(r"[=@\t\r\n]|[+-](?![\d.])")
-"""How a text begins that a spreadsheet takes for a formula, and that is no quantity."""
+"""Beginning of a text that a spreadsheet takes for a formula, and that is not a quantity."""
 
 
 def _plain(cell: object) -> object:
@@ -320,7 +320,7 @@ def _give(path: Path, known: os.stat_result) -> None:
 
 
 def _sync(path: Path) -> None:
-    """Bring a file to the disk."""
+    """Sync a file to the disk."""
     handle = os.open(path, os.O_RDONLY if os.name == "posix" else os.O_RDWR)
     try:
         os.fsync(handle)
@@ -329,17 +329,17 @@ def _sync(path: Path) -> None:
 
 
 NO_SYNC = (errno.EINVAL, errno.ENOTSUP)
-"""What file systems answer that have no such thing for folders."""
+"""Error codes of file systems that cannot sync a folder."""
 
 
 def _sync_folder(path: Path) -> None:
-    """Bring the names in a folder to the disk."""
+    """Sync the names in a folder to the disk."""
     if os.name != "posix":
         return
     try:
         handle = os.open(path, os.O_RDONLY)
     except PermissionError:
-        return  # it may be written to, and not be read
+        return  # it may be written to but not read
     try:
         os.fsync(handle)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Files outside of the folder of a case: read only where the reader says so."""
+"""Files outside the folder of a case, which are read only if the user allows it."""
 
 OUTSIDE = "LOADSHARE_ALLOW_OUTSIDE"
-"""Environment variable: not empty where cases may name such files."""
+"""Environment variable; if it is not empty, cases may name such files."""

@@ -1,6 +1,6 @@
-"""Pictures of what was found, asked for by the rooms that find it.
+"""Pictures of results, requested by the packages that compute these.
 
-The room that draws is above them; `loadshare`, which knows every room, says here who draws.
+The package that draws lies above them; `loadshare`, which knows every package, registers it here.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ _drawn_by: list[Callable[[], Callable[..., Figure]]] = []
 
 
 def drawn_by(who: Callable[[], Callable[..., Figure]]) -> None:
-    """Let `who`, called when the first picture is asked for, return the function that draws."""
+    """Register `who`, which is called when a picture is requested and returns what draws it."""
     _drawn_by[:] = [who]
 
 
 def picture(found: object, *settings: Any, **named: Any) -> Figure:
-    """Return the picture, or the choice of pictures, of what was found."""
+    """Return the picture, or the choice of pictures, of a result."""
     (who,) = _drawn_by
     return who()(found, *settings, **named)

@@ -1,6 +1,6 @@
-"""Work done side by side in processes of this machine, which loky starts and looks after.
+"""Work done in parallel processes on this machine, which loky starts and supervises.
 
-A worker imports no script of the user's, so nobody needs a guard around what calls this.
+A worker does not import the user's script, so calls from there need no ``__main__`` guard.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
-"""One thread of BLAS in each: matrices are small, and their sums then always round alike."""
+"""One thread of BLAS in each worker: matrices are small, and sums then always round alike."""
 IDLE = 30.0
 """Seconds without work after which a worker ends."""
 WATCH = 1.0
-"""Seconds between two looks of a worker whether its parent is still there."""
+"""Seconds between two checks by a worker that its parent still exists."""
 
 
 def side_by_side(
@@ -39,30 +39,30 @@ def side_by_side(
     workers: int,
     stopped: Callable[[], bool] = lambda: False,
 ) -> Iterator[tuple[Item, Result | None]]:
-    """Do work in processes and yield every item with its result, as they come.
+    """Do work in processes and yield every item with its result, in the order of completion.
 
     Parameters
     ----------
     work : callable
     items : iterable
     workers : int
-        Processes.
+        Number of processes.
     stopped : callable, optional
-        Whether nothing more is to be started; what is under way is then finished.
+        Returns whether to start nothing more; work in progress is then finished.
 
     Yields
     ------
     item
     result
-        None where the process died twice: at first, and once more after all others were started.
+        None where the process died twice: at first, and again after all others had been started.
 
     Raises
     ------
     LoadshareError
-        If the folder in which this process works is gone, without which none can be started.
+        If the current folder no longer exists, without which no process can be started.
     Exception
-        What `work` raises. Processes that are at work then, or when the caller asks for no more or
-        is interrupted, are killed.
+        What `work` raises. Processes that are still at work then, or when the caller stops
+        iterating or is interrupted, are killed.
     """
     from concurrent.futures import FIRST_COMPLETED, wait
 
@@ -79,7 +79,7 @@ def side_by_side(
     busy: dict[Future[Result], tuple[Worker, Item, bool]] = {}
     try:
         while busy or (waiting and not stopped()):
-            # No more than are at work: what has been handed in cannot be called back.
+            # One item for each free worker: work that has been submitted cannot be withdrawn.
             while waiting and free and not stopped():
                 worker = free.pop()
                 item, again = waiting.popleft()
@@ -104,13 +104,13 @@ def side_by_side(
 
 
 class Worker:
-    """One process, and another when it dies: a pool that loses one of many loses them all."""
+    """A pool of one process, replaced if it dies: a pool of many that loses one loses them all."""
 
     def __init__(self) -> None:
         self.pool: ProcessPoolExecutor | None = None
 
     def begin(self, work: Callable[[Item], Result], item: Item) -> Future[Result]:
-        """Begin with an item."""
+        """Start work on an item."""
         from loky import BrokenProcessPool, ProcessPoolExecutor
 
         while True:
@@ -122,20 +122,20 @@ class Worker:
                 with _signals_held():
                     found: Future[Result] = self.pool.submit(work, item)
             except BrokenProcessPool:
-                # It died after the item before.
+                # The process died after the previous item.
                 self.end()
             else:
                 return found
 
     def end(self) -> None:
-        """Kill it, at work or not: nothing that it does is needed any more."""
+        """Kill the process, at work or not: its work is no longer needed."""
         if self.pool is not None:
             self.pool.shutdown(kill_workers=True)
             self.pool = None
 
 
 def _enlist(parent: int) -> None:
-    """Begin as a worker: Ctrl-C is the parent's affair, and its end is the worker's."""
+    """Initialise a worker: it leaves Ctrl-C to its parent, and ends when the parent does."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, HELD)
@@ -149,14 +149,14 @@ def _enlist(parent: int) -> None:
 
 
 HELD = (signal.SIGINT, signal.SIGTERM)
-"""Signals that wait while processes are started or ended."""
+"""Signals that are held back while processes are started or ended."""
 
 
 @contextmanager
 def _signals_held() -> Iterator[None]:
-    """Let no signal come between: none is lost, and none leaves a process that nobody knows of.
+    """Hold back signals: none is lost, and none leaves a process behind that nobody knows of.
 
-    Processes that are started meanwhile hold them too, until they know what to do with them.
+    Processes that are started meanwhile hold them back too, until `_enlist` has run.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield

@@ -1,4 +1,4 @@
-"""Texts for people: no character that commands a terminal, or that no page or table can hold."""
+"""Texts for people, without characters that control a terminal or that no page can hold."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uf
 
 
 def readable(text: str) -> str:
-    """Return a text with a sign in place of each control character."""
+    """Return a text with a replacement character for each control character."""
     return CONTROL.sub("\ufffd", text)

@@ -1,9 +1,10 @@
 """How Numba compiles `by_reference`, and the functions of `extremes`.
 
-The former is a pointer, through which a field is read where it is; the latter are one instruction.
+The former becomes a pointer, through which fields are read in place; each of the latter becomes one
+instruction.
 """
 
-# Numba has no types.
+# Numba has no type annotations.
 # mypy: disable-error-code="misc,no-untyped-def,no-untyped-call,untyped-decorator,call-arg,override"
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from loadshare.extremes import larger, smaller
 
 
 class Reference(types.Type):
-    """Where a named tuple is.
+    """Numba's type of a pointer to a named tuple.
 
     Parameters
     ----------
@@ -62,9 +63,9 @@ def _read(context: Any, builder: Any, reference: Reference, pointer: Any, field:
 
 
 def _loaded(builder: Any, pointer: Any) -> Any:
-    """Load number by number: of loads of a whole array LLVM forgets that they are invariant.
+    """Load number by number: LLVM forgets that loads of a whole array are invariant.
 
-    No store to an array changes a field, so it need not be read again in every turn of a loop.
+    No store to an array changes a field, so it need not be read again in every pass of a loop.
     """
     kind = pointer.type.pointee
     if not isinstance(kind, ir.Aggregate):

@@ -1,7 +1,7 @@
-"""Texts kept among the user's caches.
+"""Texts kept in the user's cache folder.
 
-The first line of an entry is the digest of the rest; what does not match it is as good as absent,
-so a damaged entry is made again and never believed.
+The first line of an entry is the digest of the rest; an entry that does not match it counts as
+absent, so that a damaged one is made again and never used.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ VARIABLE = "LOADSHARE_CACHE"
 
 
 def cache_folder() -> Path | None:
-    """Folder of the cache: ``$LOADSHARE_CACHE``, or ``loadshare`` among the user's caches.
+    """Return the cache folder: ``$LOADSHARE_CACHE``, or ``loadshare`` among the user's caches.
 
     None for a user without a home: services and containers may lack one.
     """
@@ -29,17 +29,17 @@ def cache_folder() -> Path | None:
         found = Path(given).expanduser() if given else user_cache_path("loadshare", appauthor=False)
     except RuntimeError:
         return None
-    # Versions of platformdirs differ in what they make of a home that is not known.
+    # Versions of platformdirs differ in what they return if the home is not known.
     return None if found.parts[:1] == ("~",) else found
 
 
 def digest_of(text: str) -> str:
-    """SHA-256 of a text."""
+    """Return the SHA-256 of a text."""
     return sha256(text.encode()).hexdigest()
 
 
 def read_entry(place: str) -> str | None:
-    """Text kept at a place within the folder; None where there is none or it is damaged."""
+    """Return the text kept at a place in the folder; None where there is none or it is damaged."""
     try:
         file = _file(place)
         if file is None:
@@ -51,7 +51,7 @@ def read_entry(place: str) -> str | None:
 
 
 def write_entry(place: str, text: str) -> None:
-    """Keep a text, whole or not at all; a cache that cannot be written is done without."""
+    """Keep a text, whole or not at all; a cache that cannot be written is no error."""
     file = _file(place)
     if file is None:
         return

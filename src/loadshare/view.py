@@ -1,6 +1,6 @@
-"""What a found thing says of itself: a few lines in a console, a small table in a notebook.
+"""Short displays of cases and results: a few lines in a console, a small table in a notebook.
 
-Both are written from one `View`, so that they cannot differ; what does not fit a screen is counted.
+Both are written from one `View`, so that they cannot differ; rows that are left out are counted.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Any
 from loadshare.equality import Comparable
 
 ROWS = 8
-"""Of a table that are shown."""
+"""Rows of a table that are shown."""
 WIDTH = 88
-"""Characters of a line."""
+"""Most characters of a line."""
 
 _CELL = 'style="text-align:left;padding:.1em .8em .1em 0"'
 
@@ -79,7 +79,7 @@ class View:
 
 
 class Viewed(Comparable):
-    """What shows itself by its view, in a console and in a notebook."""
+    """An object that is shown by its view, in a console and in a notebook."""
 
     __slots__ = ()
 
@@ -87,7 +87,7 @@ class Viewed(Comparable):
         raise NotImplementedError
 
     def _left_open(self) -> list[str]:
-        """Return what a study could not answer, in lines; nothing if it answered everything."""
+        """Return lines that name what a study could not answer; none if it answered everything."""
         return []
 
     def __repr__(self) -> str:
@@ -98,17 +98,17 @@ class Viewed(Comparable):
 
 
 def figure(value: float | None, form: str = ".4g") -> str:
-    """Write a number; a dash for none."""
+    """Return a number as text; a dash for None or NaN."""
     return "–" if value is None or value != value else format(value, form)
 
 
 def by_name(figures: Any, form: str = ".4f") -> str:
-    """Write named figures, as in ``I 1.0000, system 1.0013``."""
+    """Return named figures as text, as in ``I 1.0000, system 1.0013``."""
     return ", ".join(f"{name} {figure(value, form)}" for name, value in dict(figures).items())
 
 
 def listed(values: Sequence[object]) -> str:
-    """Write the first and last of many values."""
+    """Return values as a list in text; of many, only the first ones and the last."""
     words = [str(value) for value in values]
     return ", ".join(words if len(words) <= ROWS else [*words[: ROWS - 1], "…", words[-1]])
 
