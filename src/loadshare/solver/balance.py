@@ -1,6 +1,6 @@
-"""Whether any forces at all can balance a load, found at once.
+"""A quick test whether any forces at all can balance a load.
 
-Exchange and search find out as well, but take their time: nothing they try is an answer.
+Exchange and search find this out as well, but slowly, because nothing they try is an answer.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from loadshare.settings import CERTIFY, PLACES
 
 
 def is_unbalanced(structure: Structure, load: Array, tolerance: float = CERTIFY.tolerance) -> bool:
-    r"""Whether the load drives a move that nothing resists.
+    r"""Return whether the load drives a move that nothing resists.
 
-    The forces nearest to balance, :math:`\min_\mu \lVert f - A^T\mu\rVert` with contacts that push
-    only, leave a residual r. Where it is not zero it is such a move (Farkas):
+    The forces nearest to balance, :math:`\min_\mu \lVert f - A^T\mu\rVert` with contacts that only
+    push, leave a residual r. If it is not zero, it is such a move (Farkas):
     :math:`A r = 0` for springs and radial elements, :math:`a_e\cdot r \le 0` for contacts, and
-    :math:`f\cdot r = \lVert r\rVert^2`. An arc may push any way here.
+    :math:`f\cdot r = \lVert r\rVert^2`. An arc may push in any direction here.
 
     Parameters
     ----------
     structure : Structure
     load : ndarray, shape (n,)
     tolerance : float
-        Largest scaled residual of a certified answer: a residual of that size is none.
+        Largest scaled residual of a certified answer: a residual of that size counts as zero.
     """
     from scipy.optimize import nnls
 
@@ -39,7 +39,7 @@ def is_unbalanced(structure: Structure, load: Array, tolerance: float = CERTIFY.
         forces, _ = nnls(np.vstack([held, -held, pushing]).T, load / size)
     except RuntimeError:
         return False
-    # What is left is known to the digits of the load; along what acts, to those of its own.
+    # The residual has the round-off of the load; its part along what acts should be zero, and goes.
     acting = np.vstack([held, pushing[forces[2 * len(held) :] > 0.0]])
     left = load / size - np.concatenate([held, -held, pushing]).T @ forces
     left -= np.linalg.lstsq(acting, acting @ left)[0]

@@ -1,4 +1,4 @@
-"""The further torque at which a load moves nothing without end."""
+"""The torque on a gear with which a load moves nothing without end."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from loadshare.scene.scene import Scene
 
 
 def balancing(scene: Scene, moves: Mapping[str, float], gear: str) -> float | None:
-    """Return the torque [N·m] on a gear that turns at which nothing moves any more.
+    """Return the torque [N·m] on a turning gear with which nothing moves without end any more.
 
-    None if there is none, as where several things move by themselves.
+    None if there is none, for instance where several things move independently.
     """
     index = {c: k for k, c in enumerate(scene.coordinates)}
     work = math.fsum(float(scene.load[index[c]]) * d for c, d in moves.items())

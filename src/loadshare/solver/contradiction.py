@@ -1,4 +1,4 @@
-"""Which rigid limits of a scene cannot hold together, if any."""
+"""Rigid limits of a scene that contradict one another."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def contradiction(scene: Scene, overlap: float = PLACES.overlap) -> tuple[str, .
 
 
 def _straight(scene: Scene, rounds: Rounds) -> Iterator[Row]:
-    """Rigid contacts, and rigid arcs as faces set back as far as the floats may bend them."""
+    """Yield rigid contacts, and rigid arcs as faces set back by the arc's rise over the floats."""
     rest = np.zeros(scene.size)
     yield from (r for r in scene.rows if is_rigid(r))
     for arc in scene.arcs:

@@ -1,4 +1,4 @@
-"""One position solved: plans from lean to full, each verified before it is believed."""
+"""Solution of one position: plans from lean to full, each verified at its answer."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from loadshare.train.memory import SlipFriction
 
 @dataclass(slots=True)
 class Known:
-    """What plans of a scene came to with a back-end, and what work is left for others.
+    """Results of plans of a scene with a back-end, and the work that is left for further plans.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ def solve_scene(
     scene : Scene
     options : Options
     known : Known, optional
-        What plans of this scene came to with this back-end, renewed: none is settled twice.
+        Results of plans of this scene with this back-end, to be added to: none is settled twice.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def solve_scene(
 def _settle(
     scene: Scene, plan: Plan, solver: Backend, options: Options, known: Known
 ) -> tuple[Settled, str]:
-    """Run the outer loop, with the other form if the chosen one does not settle."""
+    """Run the outer loop, with the other method if the chosen one does not settle."""
     other = {"newton": "picard", "picard": "newton"}.get(options.method)
     try:
         return _once(scene, plan, solver, options, options.method, known), options.method
@@ -148,7 +148,7 @@ def _wider(scene: Scene, plan: Plan) -> Plan | None:
 
 
 def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool, str]]:
-    """For everything left out: whether leaving it out was right, and the figure that says so."""
+    """Return, for everything left out, whether that was right, and the figure that shows it."""
     largest = max((abs(f) for f in settled.forces.values()), default=0.0)
     force = PLACES.verified * scene.force_unit() + CONTACT.sign_of_size * largest
     furthest = float(np.abs(settled.x).max(initial=0.0))
@@ -175,7 +175,7 @@ def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool
 
 
 def equilibrium_of(scene: Scene, settled: Settled) -> Equilibrium:
-    """Turn an answer into physical terms, least-norm where it leaves displacements undetermined."""
+    """Return an answer in physical terms, of least norm where displacements are undetermined."""
     train = scene.train
     settled = _without_noise(scene, settled)
     pulls = settled.pulls(scene)
@@ -192,12 +192,12 @@ def equilibrium_of(scene: Scene, settled: Settled) -> Equilibrium:
         radial_reaction=reactions,
         undetermined=found.ranges,
     )
-    # With memory the forces of slips are not told from those of their stops yet.
+    # With memory, the forces of slips are not separated from those of their stops yet.
     return placed if train.slip is not None else with_ranges(placed, scene)
 
 
 def coordinates_of(scene: Scene, found: Equilibrium) -> Array:
-    """Coordinates (n,) [m] of an equilibrium."""
+    """Return the coordinates (n,) [m] of an equilibrium."""
     x = np.zeros(scene.size)
     for name, r in scene.rotation.items():
         if r.index is not None:
@@ -214,7 +214,7 @@ def coordinates_of(scene: Scene, found: Equilibrium) -> Array:
 
 
 def _without_noise(scene: Scene, settled: Settled) -> Settled:
-    """Without a load, take forces for none that round-off of the gaps explains.
+    """Set all forces to zero if there is no load and round-off of the gaps explains them.
 
     They would be the largest of the case otherwise, and everything would be measured by them.
     """
@@ -236,7 +236,7 @@ def _without_noise(scene: Scene, settled: Settled) -> Settled:
 
 
 def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
-    """Return the same equilibrium at its place of least norm, with the ranges of what is open.
+    """Return the same equilibrium at its place of least norm, with ranges of what is undetermined.
 
     Torques and forces stay as they are.
     """
@@ -253,15 +253,15 @@ def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
 
 
 def with_ranges(found: Equilibrium, scene: Scene) -> Equilibrium:
-    """Return an equilibrium that says how far what its forces leave open may move.
+    """Return an equilibrium with the ranges of the coordinates that its forces leave open.
 
-    As a result that is read is checked: by its own place, whichever led there.
+    They follow from its own place, however that was found, as in the check of a loaded result.
     """
     return replace(found, undetermined=Later(lambda: ranges_of(found, scene)))
 
 
 def ranges_of(found: Equilibrium, scene: Scene) -> Mapping[str, Range]:
-    """Return the least and the largest value of what the forces of an equilibrium leave open."""
+    """Return least and largest values of what the forces of an equilibrium leave undetermined."""
     return _places_of(scene, found, coordinates_of(scene, found)).ranges
 
 

@@ -1,4 +1,4 @@
-"""From the state of a batch to answers in physical terms."""
+"""Answers in physical terms, from the iterate of a batch."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def equilibria(
 ) -> Equilibria:
     """Return displacements and forces of all samples in SI units.
 
-    With `compiled`, for many samples, products pass over zeros: the same except for round-off.
+    With `compiled`, for many samples, products skip zeros; the result is the same up to round-off.
     """
     names = Names(structure.train)
     to: _Map = structure.kept(("map",), partial(_map, structure, names))
@@ -54,9 +54,9 @@ def equilibria(
 
 
 def pin(structure: Structure, loading: Loading, iterate: Iterate, states: States) -> None:
-    """Put gears that are pinned to where their pins are, to the last digit.
+    """Move gears that are pinned exactly to their pins, to the last digit.
 
-    A friction bound may be so far above the load that a slip by round-off is work that counts.
+    A friction bound may be so far above the load that a slip by round-off does work that counts.
     """
     for j in range(states.shape[1] - structure.rows):
         rows = np.flatnonzero(states[:, structure.rows + j] == PINNED)
@@ -68,11 +68,11 @@ def pin(structure: Structure, loading: Loading, iterate: Iterate, states: States
 
 
 def without_noise(structure: Structure, iterate: Iterate, rows: Flags, searched: Flags) -> bool:
-    """Let radial elements of some samples drop what is round-off; return whether any do.
+    """Set radial forces of some samples that are round-off to zero; return whether there are any.
 
-    What holds a gear that no load reaches pulls by what the sums of its contacts leave. Contacts
-    drop it at last, where a search came to no other answer: without a torque, what round-off
-    presses flanks with would be the largest torque of the case.
+    An element that holds a gear which no load reaches carries the round-off of the gear's contact
+    forces. Contact forces are set to zero only in samples that were searched: without a torque, the
+    round-off that presses flanks together would be the largest torque of the case.
     """
     contacts, first = structure.columns.contacts, structure.columns.radials.start
     force = iterate.force[rows]
@@ -86,7 +86,7 @@ def without_noise(structure: Structure, iterate: Iterate, rows: Flags, searched:
 
 
 def _pushes(force: Array, first: int, last: int, unit: float) -> Array:
-    """Forces of contacts [N]; rounding may let one pull."""
+    """Return forces of contacts [N]; one that pulls, by rounding, is set to zero."""
     found = np.maximum(force[:, first:last], 0.0)
     found *= unit
     return found
@@ -94,7 +94,7 @@ def _pushes(force: Array, first: int, last: int, unit: float) -> Array:
 
 @dataclass(frozen=True)
 class _Map:
-    """From coordinates (n) and forces (m) to physical quantities in SI units.
+    """Matrices from coordinates (n) and forces (m) to physical quantities in SI units.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class _Map:
 
     @cached_property
     def rows(self) -> list[Rows]:
-        """The matrices transposed: a coordinate belongs to one gear or two, a force to one."""
+        """Sparse rows of the transposed matrices, whose products skip zeros."""
         from loadshare.solver.hot.products import rows_of
 
         return [rows_of(matrix.T) for matrix in self.matrices]

@@ -1,10 +1,10 @@
 """Samples of a set side by side, compiled with Numba (`kernel`).
 
-What is out of the ordinary (a singular matrix, forces without bound, a law without meaning, passes
-that do not settle) is left to `vectorised`.
+Samples that are out of the ordinary (a singular matrix, forces without bound, a law without
+meaning, passes that do not settle) are left to `vectorised`.
 
 The compiled code is kept on disk, so that only the first use of a new version waits for it. It
-holds no lock of the interpreter: threads share the samples.
+does not hold the lock of the interpreter, so that threads can share the samples.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ def settle(
     iterate: Iterate,
     one_only: Flags,
 ) -> tuple[States, States]:
-    """Solve samples, each on its set, and say what has the wrong sign.
+    """Solve samples, each on its set, and propose another set where signs are wrong.
 
     Parameters and return values are those of :func:`loadshare.solver.hot.vectorised.settle`, which
-    solves what is left undecided here. A proposal is written where the verdict asks for one.
+    solves what is left undecided here. A proposal is only written where the verdict asks for one.
     """
     rows = np.concatenate(parts)
     ends = np.cumsum([len(part) for part in parts])
@@ -83,7 +83,7 @@ def _settle_all(floats, numbers, begins, sets, samples, given, ends, widest):  #
 
 @bare
 def _settle_set(s, work, given, waiting, widest):  # type: ignore[no-untyped-def]
-    """Settle samples of one set; those that take long wait, and begin again side by side."""
+    """Settle samples of one set; slow ones are put off, and start again side by side."""
     set_apart()
     total = waiting.shape[0]
     for number in range(ABREAST.rounds):

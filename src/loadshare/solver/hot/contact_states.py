@@ -1,11 +1,11 @@
-"""Contact states: which rows are closed, on which piece of its graph each radial element is.
+"""Contact states: whether a row is closed, and on which piece of its graph a radial element is.
 
 An active set is one such number for every row and every radial element.
 
 A radial law is a chain of at most three pieces (:mod:`loadshare.contact.radial`), given by five
 numbers: it rises with `first` up to `stick`, jumps to `bound`, stays level up to `reach`, and rises
 with `last` beyond. A round ring has first = stick = bound = 0; a rigid one has an infinite `last`.
-A last piece that is a power is given by its tangent where the element is.
+A last piece that is a power law is replaced by its tangent at the element's radius.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ OPEN = 0
 CLOSED = 1
 """A row in contact."""
 STICK, CORNER, PINNED, SLIP, STOP, WALL = 1, 2, 3, 4, 5, 6
-"""Radial: on the first rise; on the jump at S1; on a jump at the centre; level; on the last rise;
-against a rigid stop."""
+"""States of a radial element: on the first rise; on the jump at S1; on a jump at the centre; level;
+on the last rise; against a rigid stop."""
 
 FREE, LEVEL, HELD = 0, 1, 2
-"""How the force of a radial element leaves it: anywhere; on a level piece, in one direction; at one
-radius, in one direction."""
+"""What the force of a radial element determines of its offset: nothing; the direction, on a level
+piece; radius and direction."""
 
 DONE, OTHER, FAILED = 0, 1, 2
 """Verdicts on a set: consistent; another set is proposed; no answer on this set."""
@@ -55,7 +55,7 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
     torque : ndarray, shape (S,)
         Torque over force unit [m] that the element transmits.
     radius : ndarray, shape (S,), or float
-        Where the element is, over the length unit.
+        Radius at which the element is, over the length unit.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
     stick = np.where(throughout, np.inf, stick)
     power = numbers[:, 6]
     if (power != 1.0).any():
-        # Of what is not curved, such as friction without an end, nothing is taken.
+        # The tangent is not used where the law is no power, such as friction without a stop.
         with np.errstate(invalid="ignore"):
             begin, slope = tangent_wall(
                 reach, last, power, radius + np.zeros_like(reach), LAWS.wall_start
@@ -89,7 +89,7 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
 
 
 def reached(numbers: Array, size: Array) -> Array:
-    """Radius at which the last pieces of radial laws carry forces of these sizes.
+    """Return the radii at which the last pieces of radial laws carry forces of given sizes.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""Whether the forces of a sample determine its place, for many samples, by sets that carry.
+"""Whether forces determine the displacements of samples, by their sets of carrying elements.
 
-The same question as `solver.undetermined` asks of one equilibrium: a contact that is closed without
-a force holds nothing, nor does a radial element on a level piece along it. What holds is put
-together as a set once, and serves all samples that have it. Source: formulation, section 4.
+`solver.undetermined` answers the same question for one equilibrium: a contact that is closed
+without a force holds nothing, nor does a radial element along its level piece. Each set of holding
+elements is evaluated once, for all samples that have it. Source: formulation, section 4.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def determined(
     held: Flags,
     compiled: bool = False,
 ) -> Flags:
-    """Whether each sample's forces determine all of its displacements, shape (S,).
+    """Return whether each sample's forces determine all of its displacements, shape (S,).
 
     Parameters
     ----------
@@ -41,11 +41,11 @@ def determined(
     loading : Loading
     iterate : Iterate
     states : ndarray of int8, shape (S, switches)
-        Elements that act.
+        Sets of acting elements.
     held : ndarray of bool, shape (S,)
         Whether these leave no coordinate loose.
     compiled : bool
-        With Numba: the same answer.
+        Whether to use Numba; the answer is the same.
     """
     least, batch = PLACES.carries * pushes(loading), _Batch(structure, loading, iterate)
     if compiled:
@@ -66,7 +66,7 @@ def determined(
 
 
 def _alike(sets: NDArray[Any]) -> Iterator[tuple[Numbers, NDArray[Any]]]:
-    """Yield samples that have one set, and it."""
+    """Yield the samples that share a set, and the set."""
     order = np.lexsort(sets.T) if sets.shape[1] else np.arange(len(sets))
     changes = np.flatnonzero((sets[order][1:] != sets[order][:-1]).any(axis=1)) + 1
     for part in np.split(order, changes):
@@ -74,51 +74,51 @@ def _alike(sets: NDArray[Any]) -> Iterator[tuple[Numbers, NDArray[Any]]]:
 
 
 class _Moves(NamedTuple):
-    """How what a set of carrying elements holds may still move, shape (n, d), and what it meets."""
+    """Moves (n, d) that a set of carrying elements leaves open, and the elements that they meet."""
 
     moves: Array
     level: tuple[int, ...]  # radial elements on a level piece
     flat: Numbers  # columns of flanks and stops that carry nothing
     arcs: tuple[int, ...]
     radials: tuple[int, ...]
-    # Whether level pieces, whatever their directions, leave some move.
+    # Whether level pieces leave some move open, whatever their directions.
     some_left: bool
-    # Whether all that is met may hold every move, whatever of it a sample touches.
+    # Whether all elements that are met could hold every move, if a sample touched all of them.
     may_be_held: bool
-    # What is met, if it may: numbers of flanks and stops, then arcs, radial elements; and up to how
-    # many of these that a sample touches hold none of its moves.
+    # Elements that are met, if they could: numbers of flanks and stops, then arcs, then radial
+    # elements; and the largest number of them with which a sample surely stays undetermined.
     met: tuple[int, ...]
     fewest: int
 
 
 class _Touched(NamedTuple):
-    """What carries nothing and must not close further, seen by the moves of k samples."""
+    """Elements that carry nothing and must not close further, in the moves of k samples."""
 
     flags: Flags  # (k, m): whether a sample touches it
     flat: Array  # (f, d): directions of flanks and stops
     others: list[Array]  # of (k, d): directions of the m − f others
 
     def directions(self, sample: int) -> Array:
-        """Directions of what a sample touches."""
+        """Return the directions of the elements that a sample touches."""
         every = np.vstack([self.flat, *(other[sample] for other in self.others)])
         return np.asarray(every[self.flags[sample]])
 
 
 class _Batch(NamedTuple):
-    """Samples where they stand."""
+    """Samples and their iterate."""
 
     structure: Structure
     loading: Loading
     iterate: Iterate
 
     def compiled(self, states: States, held: Flags, least: Array) -> Flags:
-        """The same with Numba; NumPy decides for samples that touch what may hold them."""
+        """Do the same with Numba; NumPy decides where touched elements might hold a sample."""
         from loadshare.solver.hot.touching import Touching
 
         touching = Touching(*self, states, held, least)
         number = touching.number
         left_by = [self.moves(some) for some in touching.sets]
-        # Of every set, and of none: whether no move is left, and how few limits hold none that is.
+        # Per set, and last for samples without one (−1): whether no move is left, and `fewest`.
         fixed = np.array([*(not of.moves.shape[1] for of in left_by), True])
         few = np.array([*(of.fewest for of in left_by), 0])
         found, rest = (
@@ -130,7 +130,7 @@ class _Batch(NamedTuple):
         return np.asarray(found)
 
     def kinds(self, carries: Array) -> States:
-        """How every radial element holds, shape (S, radials)."""
+        """Return how every radial element holds, shape (S, radials)."""
         structure, loading, iterate = self
         everyone = np.arange(loading.count)
         kinds = np.empty((loading.count, len(structure.radials)), dtype=np.int8)
@@ -143,7 +143,7 @@ class _Batch(NamedTuple):
         return kinds
 
     def moves(self, some: States) -> _Moves:
-        """What a set of carrying elements leaves; put together once."""
+        """Return the moves that a set of carrying elements leaves open; computed once per set."""
         key = "moves", some.tobytes()
         return cast(_Moves, self.structure.kept(key, partial(self._moves_of, some)))
 
@@ -187,7 +187,7 @@ class _Batch(NamedTuple):
         return _Moves(moves, level, idle, arcs, free, some_left, may_be_held, tuple(met), fewest)
 
     def fixed(self, some: States, rows: Numbers) -> Flags:
-        """Whether samples of one set of carrying elements are determined, shape (len(rows),)."""
+        """Return whether samples of one set of carrying elements are determined, (len(rows),)."""
         left_by = self.moves(some)
         moves, level = left_by.moves, left_by.level
         if not moves.shape[1]:
@@ -196,7 +196,7 @@ class _Batch(NamedTuple):
         if not left_by.may_be_held:
             return found
         touched = self.touched(some, left_by, rows)
-        # What no level piece could hold is pinched by contacts or moves.
+        # A move that no level piece could hold is stopped by touched contacts, or by nothing.
         some_touch = touched.flags.any(axis=1)
         these = np.flatnonzero(some_touch) if left_by.some_left else np.arange(len(rows))
         if not len(these):
@@ -213,7 +213,7 @@ class _Batch(NamedTuple):
         return found
 
     def touched(self, some: States, left_by: _Moves, rows: Numbers) -> _Touched:
-        """Find what samples touch where they are."""
+        """Find the elements that samples touch at their displacements."""
         structure, loading, iterate = self
         moves, flat, x = left_by.moves, left_by.flat, iterate.x[rows]
         room = pick(loading.gap, rows)[:, flat] - x @ structure.vectors[flat].T
@@ -243,7 +243,7 @@ class _Batch(NamedTuple):
         )
 
     def across(self, j: int, rows: Numbers) -> Array:
-        """Direction (k, n) across the force of a radial element."""
+        """Return the direction (k, n) across the force of a radial element."""
         structure, _, iterate = self
         column = structure.radial_column(j)
         pull = iterate.force[rows, column : column + 2]
@@ -253,7 +253,7 @@ class _Batch(NamedTuple):
 
 
 def _pinched(limits: Array) -> bool:
-    """Whether nothing but rest satisfies L u ≤ 0: the rows (k, d) of L span all, and positively."""
+    """Return whether L u ≤ 0 holds only for u = 0: the rows (k, d) of L positively span all."""
     from scipy.optimize import nnls
 
     if len(limits) <= limits.shape[1] or len(unresisted(limits).T):

@@ -1,4 +1,4 @@
-"""Elements at many samples: rows of what varies, pieces of tables, arcs."""
+"""Elements of many samples: rows of arrays that vary, pieces of tables, arcs."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from loadshare.scene.loading import Loading
 
 
 def pick(array: Array, rows: Numbers) -> Array:
-    """Return the rows of an array, or its only one."""
+    """Return some rows of an array, or its only row if all samples share one."""
     return array[rows] if len(array) > 1 else array
 
 
 def piece(axis: Array, values: Array, where: Array) -> tuple[Array, Array, Array]:
-    """Start on the axis, start value and slope of the pieces of tables that hold some places.
+    """Return start on the axis, start value and slope of the pieces of tables that hold `where`.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def piece(axis: Array, values: Array, where: Array) -> tuple[Array, Array, Array
 
 
 def arc_at(loading: Loading, a: int, rows: Numbers, x: Array) -> tuple[Array, Array]:
-    """Normal (k, 3) and margin (k,) of an arc at the coordinates x (k, n); see `Arc`."""
+    """Return normal (k, 3) and margin (k,) of an arc at coordinates x (k, n); see `Arc`."""
     nominal = loading.nominal[a]
     moved = pick(loading.shift, rows)[:, a] + x @ loading.relative[a].T
     d, here, margin = rolled(nominal, moved)

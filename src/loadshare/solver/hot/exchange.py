@@ -1,6 +1,6 @@
-"""From set to set until every sample is consistent.
+"""Exchange of elements, from set to set, until every sample is consistent.
 
-All samples take a turn together, those on the same set side by side.
+All samples take each turn together, those on the same set side by side.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _KEYS = np.random.default_rng(11).integers(1 << 62, size=1 << 12) | 1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
-    """What the hot path found.
+    """Result of the hot path.
 
     Attributes
     ----------
@@ -51,11 +51,11 @@ class Found:
     held: Flags
 
     def take(self, rows: Numbers) -> Found:
-        """Return what was found of some samples."""
+        """Return the result of some samples."""
         return Found(self.solved[rows], self.states[rows], self.turns[rows], self.held[rows])
 
     def put(self, rows: Numbers, other: Found) -> None:
-        """Let some samples be as those of another finding, in its order; turns add up."""
+        """Replace some samples by those of another result, in its order; turns are added up."""
         self.solved[rows] = other.solved
         self.states[rows] = other.states
         self.held[rows] = other.held
@@ -63,7 +63,7 @@ class Found:
 
 
 def first_sets(structure: Structure, loading: Loading) -> States:
-    """Drive flanks closed under load, other rows open, radial elements on their first piece."""
+    """Return sets with drive flanks closed under load, radial elements on their first piece."""
     count = loading.count
     if structure.radials and count > 1 and _begin_alike(loading):
         return np.repeat(first_sets(structure, loading.one(0)), count, axis=0)
@@ -88,16 +88,16 @@ def first_sets(structure: Structure, loading: Loading) -> States:
 
 
 def _begin_alike(loading: Loading) -> bool:
-    """Whether all samples begin with the same sets: what is zero, or infinite, is so in all."""
+    """Return whether all samples begin with the same set: signs, zeros and infinities agree."""
     numbers = loading.radial.reshape(len(loading.radial), -1), loading.push[:, None]
     tests = np.isnan, np.isinf, lambda n: n > 0.0, lambda n: n < 0.0
     return all(bool((found == found[:1]).all()) for n in numbers for found in (t(n) for t in tests))
 
 
 def _relieve(structure: Structure, loading: Loading, states: States) -> None:
-    """Let a rigid ring without play alone hold a gear that a spline would pin in the same place.
+    """Let only a rigid ring without play hold a gear that a spline would pin in the same place.
 
-    How the two share the force is open; a spline that carries nothing is one answer.
+    How the two share the force is undetermined; a spline that carries nothing is one answer.
     """
     radials = structure.radials
     for (i, spline), (j, ring) in permutations(enumerate(radials), 2):
@@ -118,14 +118,14 @@ def exchange(
     singly: bool = False,
     limit: int | None = None,
 ) -> Found:
-    """Lead every sample to a consistent set.
+    """Find a consistent set for every sample.
 
     Parameters
     ----------
     structure : Structure
     loading : Loading
     iterate : Iterate
-        At the start; renewed in place.
+        The start; updated in place.
     engine : Engine
         `vectorised.settle` or `compiled.settle`.
     states : ndarray of int8, shape (S, switches), optional
@@ -142,7 +142,7 @@ def exchange(
     """
     given = first_sets(structure, loading) if states is None else states
     count, switches = given.shape
-    # Rows of whole words, so that sets can be told apart word by word.
+    # Rows of whole words, so that sets can be compared word by word.
     states = np.zeros((count, -(-max(switches, 1) // WORD) * WORD), dtype=np.int8)
     states[:, :switches] = given
     solved = np.zeros(count, dtype=bool)
@@ -184,10 +184,10 @@ def exchange(
 
 
 def _alike(states: States) -> tuple[Numbers, list[int]]:
-    """Order in which equal sets, given in whole words, stand together, and where each begins.
+    """Return an order that groups equal sets, given in whole words, and where each group begins.
 
-    Should two sets have one key, a sample is solved on the other one: what it finds there is
-    judged there.
+    If two sets share a key, a sample is solved on the other set, and its result is judged on that
+    set.
     """
     keys = states.view(np.int64) @ _KEYS[: states.shape[1] // WORD]
     order = keys.argsort(kind="stable")
@@ -197,11 +197,11 @@ def _alike(states: States) -> tuple[Numbers, list[int]]:
 
 
 class _Rounds:
-    """Sets that single samples went through, so that they do not go around for long.
+    """Sets that each sample has visited, so that cycles are noticed early.
 
-    To and fro between two sets that differ in what carries nothing, a contact on the verge or a
-    gear that no load holds against its ring, is no question of forces: the larger set is taken, and
-    the certificate says whether it may.
+    If a sample alternates between two sets that differ only in elements that carry nothing (a
+    contact on the verge, a gear that no load holds against its ring), forces cannot decide: the
+    larger set is taken, and the certificate decides whether it is right.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -209,7 +209,7 @@ class _Rounds:
         self._visits: dict[int, list[bytes]] = {}
 
     def judged(self, row: int, here: States, proposal: States, force: Array) -> int:
-        """DONE, OTHER or FAILED for a sample that is to go from one set to another."""
+        """Return DONE, OTHER or FAILED for a sample that is to go from one set to another."""
         visits = self._visits.setdefault(row, [])
         visits.append(here.tobytes())
         if visits.count(visits[-1]) < EXCHANGE.returns:
@@ -222,7 +222,7 @@ class _Rounds:
         return at.DONE if self._is_idle(here, proposal, force) else at.FAILED
 
     def _is_idle(self, here: States, proposal: States, force: Array) -> bool:
-        """Whether all that differs acts here, not in the proposal, and carries nothing."""
+        """Return whether all elements that differ act here, not in the proposal, without force."""
         rows, columns = self.structure.rows, self.structure.columns
         differ = here != proposal
         if proposal[differ].any():
@@ -234,7 +234,7 @@ class _Rounds:
 
 
 def _without_wedges(structure: Structure, loading: Loading, here: States, proposal: States) -> None:
-    """Let only one of two opposed rigid arcs act, the one that is new, unless both act here."""
+    """Propose only one of two opposed rigid arcs, the new one, unless both act here."""
     if not structure.opposed:
         return
     pairs = np.array(structure.opposed)

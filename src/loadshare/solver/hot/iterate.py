@@ -23,13 +23,13 @@ class Iterate:
     force : ndarray, shape (S, m)
         Forces of all elements, 0 for those that do not act.
     root : ndarray, shape (S, m)
-        Cube root of the force at which a nonlinear law is replaced by its tangent next; 0 where
-        there is none.
+        Cube root of the force at which the next tangent of a nonlinear law is taken; 0 where there
+        is no such law.
     floor : ndarray, shape (S,)
-        Smallest root that a tangent is taken at.
+        Smallest root at which a tangent is taken.
     stays : ndarray of bool, shape (S,)
-        Whether coordinates that nothing holds may stay where they are, where those of least norm
-        would overlap.
+        Whether coordinates that nothing holds may stay where they are, if those of least norm would
+        overlap.
     """
 
     x: Array
@@ -43,7 +43,7 @@ class Iterate:
         return Iterate(*(getattr(self, field.name)[rows] for field in fields(self)))
 
     def put(self, rows: Numbers, other: Iterate) -> None:
-        """Let some samples be as those of another iterate are, in its order."""
+        """Replace some samples by those of another iterate, in its order."""
         for field in fields(self):
             getattr(self, field.name)[rows] = getattr(other, field.name)
 
@@ -54,13 +54,13 @@ class Iterate:
         loading: Loading,
         which: Numbers | None = None,
     ) -> None:
-        """Take the laws of some samples first at forces in shares of the load.
+        """Set the forces, in shares of the load, at which some samples first take their tangents.
 
         Parameters
         ----------
         samples : ndarray of int, or slice
         share : ndarray, shape (m,), (S, m) or (k, m)
-            For all of them, for each, or for each that `which` names.
+            For all samples, for each, or rows from which `which` selects one for each.
         loading : Loading
         which : ndarray of int, shape (S,), optional
         """
@@ -79,14 +79,14 @@ def at_rest(
     share: Array | None = None,
     which: Numbers | None = None,
 ) -> Iterate:
-    """Return the state before anything has moved.
+    """Return the iterate before anything has moved.
 
     Parameters
     ----------
     structure : Structure
     loading : Loading
     share, which : ndarray, optional
-        As in `Iterate.begin`; laws are first taken at half the load where nothing is given.
+        As in `Iterate.begin`; by default the first tangents are taken at half the load.
     """
     count, width = loading.count, len(structure.kinds)
     found = Iterate(
@@ -101,5 +101,5 @@ def at_rest(
 
 
 def pushes(loading: Loading) -> Array:
-    """Largest load of every sample, shape (S,); 1 where there is none."""
+    """Return the largest load of every sample, shape (S,); 1 where there is none."""
     return np.broadcast_to(np.where(loading.push > 0.0, loading.push, 1.0), (loading.count,))

@@ -1,4 +1,4 @@
-"""Samples of one set side by side: what Newton passes and checks of signs work on."""
+"""Samples on one set: the data on which Newton passes and checks of signs work."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from loadshare.solver.hot.radials import Block
 
 
 class OnSet:
-    """Some samples on one set: their numbers, and where they are.
+    """Some samples on one set, with their numbers and iterates.
 
     Attributes
     ----------
@@ -23,13 +23,13 @@ class OnSet:
         Whether the passes arrived; whether a law has no meaning or a number overflowed; whether
         rigid contacts contradict one another, so that their forces grow without bound.
     gross, gross_to : ndarray, shape (k, switches)
-        What was clearly wrong before the passes had settled, and the set that mends it.
+        Elements that were clearly wrong before the passes had settled, and the corrected set.
     loose : ndarray of int, shape (k, flanks with a power law)
         How many passes in a row a flank was not compressed.
     outside : ndarray of int, shape (k, radial elements)
         How many passes in a row an element was beyond its level piece, or held inward.
     patience : ndarray of int, shape (radial elements,)
-        How many of these show that it has left its place.
+        How many such passes show that an element has left its piece.
     fixed : dict of int to Graph
         Laws of radial elements that do not follow the torque.
     linear : dict of int to Block
@@ -88,9 +88,9 @@ class OnSet:
         self.linear: dict[int, Block] = {}
 
     def _shared(self) -> Array:
-        """Redundants (r, q), orthonormal, in which nothing but rigid elements push one another.
+        """Return redundants (r, q), orthonormal, in which only rigid elements take part.
 
-        Round-off would settle how much, and does not stop at what is left of zero.
+        Round-off would determine their size, and would not come to rest.
         """
         yields = np.asarray(((self.bending > 0.0) | (self.hertz > 0.0)).any(axis=0))
         yields[self.table] = True
@@ -101,7 +101,7 @@ class OnSet:
         return right[int((sizes > HOT.shared).sum()) :].T
 
     def at_arcs(self) -> tuple[Array, Array]:
-        """Loads and gaps with the arcs' faces turned to where they are now."""
+        """Return loads and gaps with the arcs' faces turned to the present coordinates."""
         if not len(self.arc):
             return self.load, self.gap
         load, gap = np.array(self.load), self.gap
@@ -113,7 +113,7 @@ class OnSet:
         return load, gap
 
     def room(self) -> Array:
-        """How far every contact may close from where the samples are, (k, rows)."""
+        """Return how far every contact may close from the present coordinates, (k, rows)."""
         structure, rows = self.structure, self.structure.columns.contacts
         room = pick(self.loading.gap, self.rows)[:, rows] - self.x @ structure.vectors[rows].T
         for a in range(len(structure.arcs)):
@@ -121,7 +121,7 @@ class OnSet:
         return np.asarray(room)
 
     def graph(self, j: int, offset: Array) -> at.Graph:
-        """Law of a radial element at an offset; found once where it is the same everywhere."""
+        """Return the law of a radial element at an offset; found once if it is always the same."""
         known = self.fixed.get(j)
         if known is not None:
             return known
@@ -134,13 +134,13 @@ class OnSet:
         return found
 
     def offset(self, j: int, x: Array | None = None) -> Array:
-        """Way of radial element `j` from its centre, (k, 2), where the samples are or at some x."""
+        """Return the offset (k, 2) of a radial element, at the samples' coordinates or at x."""
         column, matrix = self.structure.radial_column(j), self.structure.radials[j].matrix
         centre = pick(self.loading.gap, self.rows)[:, column : column + 2]
         return np.asarray((self.x if x is None else x) @ matrix.T - centre)
 
     def move(self, these: Flags, share: Array) -> None:
-        """Go along loose moves by shares (k, l), and roll along arcs in contact meanwhile."""
+        """Go along loose moves by shares (k, l), rolling along arcs in contact."""
         loose = self.basis.loose
         self.x = np.where(these[:, None], self.x + share @ loose.T, self.x)
         apart = self.x @ loose @ loose.T
@@ -149,7 +149,7 @@ class OnSet:
             self.x = np.where(these[:, None], held + apart, self.x)
 
     def store(self, iterate: Iterate) -> None:
-        """Write back where the samples are."""
+        """Write the samples back to the iterate."""
         columns = self.basis.columns
         iterate.x[self.rows] = self.x
         force = np.zeros((len(self.rows), len(self.structure.kinds)))

@@ -16,12 +16,12 @@ from loadshare.solver.hot.symmetric import solve
 
 
 def run(on: OnSet, patient: Flags) -> None:
-    """Pass until every sample is settled, refused, or asks for another set.
+    """Make passes until every sample is settled, refused, or needs another set.
 
     Parameters
     ----------
     patient : ndarray of bool, shape (k,)
-        Samples whose signs are looked at only when they are settled.
+        Samples whose signs are checked only when they are settled.
     """
     straight = (at.STICK, at.PINNED)
     bent = [status for _, status, _ in on.radial if status not in straight]
@@ -34,7 +34,7 @@ def run(on: OnSet, patient: Flags) -> None:
         laws = _renew_laws(on)
         on.lean = on.x, on.force
         if number % HOT.swing >= HOT.swing - HOT.damped:
-            # Newton's steps that swing to and fro around an answer settle between.
+            # Newton steps that swing to and fro around an answer settle at the mean.
             on.lean = 0.5 * (x + on.x), 0.5 * (force + on.force)
             on.root = 0.5 * (roots + on.root)
         if curved and number < 2:
@@ -58,15 +58,15 @@ def run(on: OnSet, patient: Flags) -> None:
         hopeless |= on.gross.any(axis=1)
         if (on.settled | on.refused | hopeless).all():
             break
-    # What creeps on without end is left to the certificate.
-    # Where the forces no longer change, what still moves is held by none.
+    # Samples that creep on without end are left to the certificate.
+    # Where the forces no longer change, no force holds the coordinates that still move.
     on.settled |= (previous <= HOT.creep) | balanced
     on.settled &= ~on.burst
     on.settled &= ~on.refused
 
 
 def _pass(on: OnSet, blocks: list[Block]) -> None:
-    """One Newton pass: redundants, forces, compressions, coordinates."""
+    """Make one Newton pass: redundants, forces, compressions, coordinates."""
     particular, n = on.basis.particular, on.basis.redundant
     tangent, shift = _tangents(on)
     load, gap = on.at_arcs()
@@ -101,7 +101,7 @@ def _pass(on: OnSet, blocks: list[Block]) -> None:
 
 
 def _set_apart(on: OnSet, matrix: Array, sides: Array, lengths: Array) -> None:
-    """Hold the shares of rigid elements, unless they contradict one another."""
+    """Fix the shares of rigid elements, unless they contradict one another."""
     q = on.shared
     size, largest = len(q), np.abs(matrix).max(axis=(1, 2))
     against = sides[:, :size] @ q
@@ -113,7 +113,7 @@ def _set_apart(on: OnSet, matrix: Array, sides: Array, lengths: Array) -> None:
 
 
 def _tangents(on: OnSet) -> tuple[Array, Array]:
-    """Tangent compliance of every scalar element, and what its tangent leaves at no force."""
+    """Return the tangent compliance of every scalar element, and its compression at no force."""
     tangent, shift = np.array(on.bending), np.zeros_like(on.gap)
     if len(on.power):
         root, c = on.root[:, on.power], on.hertz[:, on.power]
@@ -126,7 +126,7 @@ def _tangents(on: OnSet) -> tuple[Array, Array]:
 
 
 def _renew_laws(on: OnSet) -> Array:
-    """Take the next tangents at the compressions; return the laws' misfit, relative."""
+    """Take the next tangents at the compressions; return the laws' relative misfit."""
     misfit = np.zeros(len(on.rows))
     if len(on.power):
         b, c = on.bending[:, on.power], on.hertz[:, on.power]
@@ -136,7 +136,7 @@ def _renew_laws(on: OnSet) -> Array:
         on.loose = np.where(touching, 0, on.loose + 1)
         true = b * force + c * np.cbrt(np.maximum(force, 0.0)) ** 2
         off = np.where(touching, np.abs(true - compression), 0.0)
-        # At the floor a flank that carries nothing has arrived.
+        # A flank that carries nothing has settled once its root is at the floor.
         waiting = ~touching & (root > floor)
         largest = np.abs(on.compression[:, on.scalar]).max(axis=1)
         misfit = off.max(axis=1) / largest
@@ -153,7 +153,7 @@ def _renew_laws(on: OnSet) -> Array:
 
 
 def _blocks(on: OnSet) -> list[Block]:
-    """Tangents of the radial elements where they are now."""
+    """Return the tangents of the radial elements at their present offsets."""
     blocks = []
     for j, status, k in on.radial:
         if j in on.linear:
@@ -173,10 +173,10 @@ def _blocks(on: OnSet) -> list[Block]:
 
 
 def _slipped_out(on: OnSet) -> Flags:
-    """Samples with a radial element that has left its level piece or its rigid stop.
+    """Return which samples have a radial element that has left its level piece or rigid stop.
 
-    It stays far beyond the end of that piece, or friction that follows the torque is gone; a
-    stop goes on holding inward, this way and that.
+    It stays far beyond the end of that piece, or friction that follows the torque has vanished; or
+    a rigid stop goes on holding inward.
     """
     for j, status, k in on.radial:
         offset = on.offset(j)
@@ -206,6 +206,6 @@ def _give_up_gross(on: OnSet, these: Flags) -> None:
 
 
 def change(now: Array, before: Array) -> Array:
-    """Largest change of a row over its largest entry."""
+    """Return the largest change of each row over its largest entry."""
     size = np.abs(now).max(axis=1, initial=0.0)
     return np.asarray(np.abs(now - before).max(axis=1, initial=0.0) / np.maximum(size, 1e-300))

@@ -1,4 +1,4 @@
-"""Products of many samples with one matrix that is all but empty, compiled with Numba."""
+"""Products of many samples with one sparse matrix, compiled with Numba."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Rows(NamedTuple):
 
 def rows_of(matrix: Array) -> Rows:
     """Return the entries of a matrix that are not zero."""
-    # Of one kind, whatever NumPy makes of them: code is compiled for each kind separately.
+    # Always contiguous, whatever NumPy returns: code is compiled for each layout separately.
     rows, at = map(np.ascontiguousarray, np.nonzero(matrix))
     return Rows(np.searchsorted(rows, np.arange(len(matrix) + 1)), at, matrix[rows, at])
 

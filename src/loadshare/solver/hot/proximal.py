@@ -1,14 +1,14 @@
-r"""The proximal method of multipliers on the elements: for samples that exchange finds no set for.
+r"""The proximal method of multipliers on elements, for samples without a set from exchange.
 
-Every pass adds a small stiffness and a small compliance that pull towards the pass before,
+Every pass adds a small stiffness and a small compliance that pull towards the previous pass,
 
 .. math:: \tfrac{\varepsilon}{2}\lVert x - x_k\rVert^2, \qquad
           a_e\cdot x - \delta_e(F_e) - \varepsilon (F_e - F_{e,k}) \le g_e ,
 
-so that its energy is strictly convex and has a gradient everywhere, whatever opposes or repeats
-itself. Newton's method with a line search always arrives at its minimum, and the passes converge to
-an equilibrium if there is one. Arcs, as faces, and friction bounds are renewed between passes. What
-a pass ends at is a set, and a start for the exact solve on it.
+so that its energy is strictly convex and has a gradient everywhere, even if elements oppose or
+repeat one another. Newton's method with a line search always arrives at its minimum, and the passes
+converge to an equilibrium if there is one. Arcs, as faces, and friction bounds are renewed between
+passes. Each pass ends on a set, and gives a start for the exact solve on it.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ _HALVES = 0.5 ** np.arange(SEARCH.halvings, -1, -1)
 
 @dataclass(slots=True)
 class _Point:
-    """Coordinates of a pass and what follows from them.
+    """Coordinates of a pass, with the forces and the gradient there.
 
     Attributes
     ----------
     x : ndarray, shape (n,)
     pressed : ndarray, shape (m,)
-        How far every element is pressed, or pulled out.
+        Compression of every element, or its extension.
     force : ndarray, shape (m,)
     gradient : ndarray, shape (n,)
     """
@@ -60,7 +60,7 @@ class Proximal:
     ----------
     structure : Structure
     loading : Loading
-        Of the sample alone.
+        Loading of this sample alone.
     """
 
     def __init__(self, structure: Structure, loading: Loading) -> None:
@@ -76,14 +76,14 @@ class Proximal:
         self.laws = Laws(structure, loading, self.force, SEARCH.softer, self.pull)
 
     def passes(self) -> Iterator[States]:
-        """Make one pass after another; each gives the set (switches,) where it ends."""
+        """Make one pass after another; yield the set (switches,) on which each ends."""
         for self.pull in SEARCH.stiffer:
             extent = max(float(np.abs(v).max(initial=1.0)) for v in (self.gap, self.x))
             softer = max(SEARCH.softer, SEARCH.resolved * np.finfo(float).eps * extent)
             self._face_arcs()
-            # A radius that gives way as much as the rest is held: steeper, and a float that has far
-            # to roll would do so in tiny steps, each pressed out of the round and back again.
-            # Slip that is remembered may have less room than that would resolve.
+            # Radial elements yield as much as the rest is held: if they were stiffer, a float that
+            # has far to roll would do so in tiny steps, each out of the round wall and back again.
+            # A remembered slip may have less room than this compliance would resolve.
             yielding = 0.0 if self.structure.train.slip is not None else self.pull
             rounded = max(SEARCH.shared * softer, yielding)
             self.laws = Laws(self.structure, self.loading, self.force, softer, rounded)
@@ -97,12 +97,12 @@ class Proximal:
             yield states
 
     def store(self, iterate: Iterate) -> None:
-        """Write down where the passes are."""
+        """Store the coordinates and forces at which the passes are."""
         iterate.x[0], iterate.force[0], iterate.stays[0] = self.x, self.force, True
         iterate.root[0] = np.maximum(np.cbrt(np.maximum(self.force, 0.0)), iterate.floor[0])
 
     def without_idle(self, states: States) -> States:
-        """Open what carries all but nothing where the passes are."""
+        """Return a set in which elements are open that carry almost nothing in the last pass."""
         idle = np.abs(self.force) <= SEARCH.idle * np.abs(self.force).max(initial=0.0)
         apart = idle[self.scalar :].reshape(-1, 2).all(axis=1)
         law = self.laws.graph
@@ -119,7 +119,7 @@ class Proximal:
             self.gap[first + a] = margin[0] + self.vectors[first + a] @ self.x
 
     def _minimise(self) -> _Point:
-        """Newton's method on the energy of a pass."""
+        """Minimise the energy of a pass by Newton's method."""
         here = self._at(self.x)
         least, since = np.inf, 0
         for _ in range(SEARCH.newton):
@@ -139,7 +139,7 @@ class Proximal:
         return here
 
     def _at(self, x: Array) -> _Point:
-        """Forces and gradient at coordinates."""
+        """Return forces and gradient at coordinates."""
         self.looks += 1
         pressed = self.vectors @ x - self.gap + self.laws.lean
         force = self.laws.forces(pressed)
@@ -147,14 +147,15 @@ class Proximal:
         return _Point(x, pressed, force, gradient)
 
     def _step(self, here: _Point, led: Flags | None = None, ways: Array | None = None) -> Array:
-        """Newton step, of coordinates and the forces that act: regular, whatever acts.
+        """Return the Newton step of the coordinates, from a system that is always regular.
 
         Parameters
         ----------
         here : _Point
         led : ndarray of bool, shape (radials,), optional
-            Radial elements whose way is given; none by default.
+            Radial elements whose step is given; none by default.
         ways : ndarray, shape (radials, 2), optional
+            Their steps.
         """
         compliance, stiffness = self.laws.tangents(here.pressed, here.force)
         compliance = np.append(compliance, np.full(len(here.pressed) - self.scalar, np.inf))
@@ -179,11 +180,11 @@ class Proximal:
         return np.asarray(np.linalg.solve(matrix, right)[:size])
 
     def _rolled(self, here: _Point, step: Array) -> Array:
-        """Lead a step along the round walls on which floats roll, if the energy falls that way.
+        """Bend a step along the round walls on which floats roll, if the energy falls that way.
 
-        A straight step leaves a wall, which a line search hardly lets it: a float that has far to
-        roll would do so in tiny steps. It is led to where the step points, at the radius of its
-        tangent, and all else follows: a chord, along which no wall is pressed any further.
+        A straight step leads out of the wall, which the line search hardly allows: a float that has
+        far to roll would do so in tiny steps. It is taken in the direction of the step's end, to
+        the radius of the tangent, and all else follows: on this chord no wall is pressed deeper.
         """
         offset = here.pressed[self.scalar :].reshape(-1, 2)
         ends = offset + (self.vectors[self.scalar :] @ step).reshape(-1, 2)
@@ -199,10 +200,10 @@ class Proximal:
         return chord if here.gradient @ chord < 0.0 else step
 
     def _along(self, here: _Point, step: Array) -> _Point:
-        """Go along a step until the slope of the energy has all but gone.
+        """Go along a step until the slope of the energy has nearly vanished.
 
-        The slope rises, and between two kinks it does so smoothly: the kinks on the way are looked
-        at together, and the place is sought between two of them.
+        The slope rises along the step, smoothly between two kinks: all kinks on the way are
+        evaluated together, and the place is sought between two of them.
         """
         start = float(here.gradient @ step)
         enough = SEARCH.slope * abs(start)
@@ -237,7 +238,7 @@ class Proximal:
             share = low - at_low * (high - low) / (at_high - at_low)
             self.looks += 1
             slope = float(slopes(np.array([share]))[0])
-            # The end that stays counts for half, so that it moves as well the next time.
+            # The slope at the end that stays is halved, so that this end moves as well next time.
             if slope > 0.0:
                 high, at_high, at_low = share, slope, 0.5 * at_low
             else:
@@ -245,7 +246,7 @@ class Proximal:
         return self._at(here.x + share * step)
 
     def _code(self, found: _Point) -> States:
-        """The set on which a pass ended."""
+        """Return the set on which a pass ended."""
         structure, laws = self.structure, self.laws
         law = laws.graph
         states = np.zeros(structure.switches, dtype=np.int8)
@@ -265,7 +266,7 @@ class Proximal:
 
 
 def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
-    """Lead a single sample to a consistent set from where the proximal passes end.
+    """Find a consistent set for a single sample from the ends of the proximal passes.
 
     Parameters
     ----------
@@ -275,7 +276,7 @@ def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
 
     Returns
     -------
-    State, Found
+    Iterate, Found
         Not solved where the sample has no equilibrium, or the passes find none.
     """
     iterate, passes, before = at_rest(structure, loading), Proximal(structure, loading), b""
@@ -284,11 +285,11 @@ def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
     )
     tried: list[bytes] = []
     for states in passes.passes():
-        # A set that a pass confirms is worth an exact solve; near it, so are a few others.
+        # A set on which two passes in a row end is worth an exact solve, and a few sets near it.
         key = states.tobytes()
         if key == before and tried.count(key) < SEARCH.tries:
             tried.append(key)
-            # What carries nothing where a set fails may only be in the way.
+            # Where a set fails, elements that carry nothing may be the only reason.
             lean = passes.without_idle(states)
             for start in (states, lean) if (lean != states).any() else (states,):
                 passes.store(iterate)
@@ -311,9 +312,9 @@ def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
 def _with_idle_open(
     structure: Structure, loading: Loading, iterate: Iterate, found: Found
 ) -> tuple[Iterate, Found]:
-    """Open contacts that carry round-off, if the set holds without them where the gears are.
+    """Open contacts that carry round-off, if the set is consistent without them at the same place.
 
-    Of many no bound could show whether they act.
+    With many such contacts no bound could show which of them act.
     """
     pushes = np.abs(iterate.force[0])
     idle = pushes[structure.columns.contacts] <= HOT.sign * pushes.max(initial=0.0)

@@ -1,4 +1,4 @@
-"""Radial elements of many samples: tangents where they are, and whether they have left it."""
+"""Radial elements of many samples: tangents at their offsets, and the states they should have."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _BOTH = np.eye(2)
 class Block:
     """Tangent of a radial element of the set: compression = offset + compliance · force.
 
-    On the level piece the force along `along` is `bound` and the compression that way is free.
+    On the level piece the force along `along` is `bound`, and the compression along it is free.
     """
 
     columns: slice
@@ -28,7 +28,7 @@ class Block:
 
 
 def until(offset: Array, velocity: Array, reach: Array, slow: Array) -> Array:
-    """How far to go until |offset + t velocity| = reach, (k,); infinite for what does not move."""
+    """Return t (k,) at which |offset + t velocity| = reach; infinite for what does not move."""
     square = (velocity * velocity).sum(axis=1)
     along = (offset * velocity).sum(axis=1)
     inside = np.maximum(reach * reach - (offset * offset).sum(axis=1), 0.0)
@@ -37,13 +37,13 @@ def until(offset: Array, velocity: Array, reach: Array, slow: Array) -> Array:
 
 
 def beyond(law: at.Graph) -> States:
-    """Place of a radial element past its level piece."""
+    """Return the state of a radial element past its level piece."""
     rigid = np.where(law.reach > 0.0, at.WALL, at.PINNED)
     return np.where(np.isinf(law.last), rigid, at.STOP).astype(np.int8)
 
 
 def direction(first: Array, second: Array) -> Array:
-    """Unit vectors along `first`, or `second` where that is zero, or x."""
+    """Return unit vectors along `first`, along `second` where that is zero, or else along x."""
     vector = np.where((first != 0.0).any(axis=1)[:, None], first, second)
     size = np.sqrt((vector * vector).sum(axis=1))
     along = vector / np.where(size > 0.0, size, 1.0)[:, None]
@@ -54,13 +54,13 @@ def direction(first: Array, second: Array) -> Array:
 def block(
     columns: slice, status: int, law: at.Graph, offset: Array, force: Array, push: Array
 ) -> Block:
-    """Tangent of a radial element at its current offset and force."""
+    """Return the tangent of a radial element at its current offset and force."""
     count = len(offset)
     radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
     if status in (at.CORNER, at.WALL):
         along = direction(force, offset)
         limit = law.stick if status == at.CORNER else law.reach
-        # A wall that carries nothing yet holds its float along its direction alone.
+        # A wall that does not carry yet holds its float along its direction alone.
         unknown = HOT.softest if status == at.WALL else limit / push
         inner, outer = np.zeros(count), np.where(size > 0.0, limit / size, unknown)
         start = limit
@@ -76,7 +76,7 @@ def block(
             inner, start = np.zeros(count), np.zeros(count)
             outer = np.clip(radius, law.stick, law.reach) / np.maximum(law.bound, HOT.faint * push)
         else:
-            # Where a wall yields by less than the play before it, a turn of the offset looks like a
+            # If a wall yields by less than the play before it, a turn of the offset looks like a
             # large force.
             stiff = (law.first == 0.0) & (size > 0.0) & (size < law.last * law.reach)
             along = np.where(stiff[:, None], direction(force, offset), along)
@@ -85,8 +85,8 @@ def block(
             inner = 1.0 / law.last
             outer = np.where(pull > 0.0, reached / np.where(pull > 0.0, pull, 1.0), inner)
             start = law.reach - law.bound / law.last
-    # Across its offset a force vanishes in the end, whatever its compliance there: one that a small
-    # force makes immense would only drown all others.
+    # Across the offset the force vanishes in the end, whatever the compliance there: one made
+    # immense by a small force would only swamp all others.
     outer = np.minimum(outer, HOT.softest)
     dyad = along[:, :, None] * along[:, None, :]
     compliance = inner[:, None, None] * dyad + outer[:, None, None] * (_BOTH - dyad)
@@ -103,9 +103,9 @@ def misplaced(
     length_band: Array,
     faint: Array,
 ) -> tuple[Flags, States]:
-    """Whether a radial element has left its place, and where it should be instead.
+    """Return whether a radial element has left its piece, and the state it should have instead.
 
-    A friction bound up to `faint` is none.
+    A friction bound up to `faint` counts as none.
     """
     radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
     jump = law.bound > law.first * law.stick * (1.0 + HOT.rounded)
@@ -137,11 +137,11 @@ def misplaced(
         after, before = past, np.where(rubs, back, level)
     elif status == at.STOP:
         up, down = False, ((radius < law.reach - length_band) | inward) & (law.reach > 0.0)
-        # A stop that carries next to nothing sticks: it does not use up its friction.
+        # A stop that carries almost nothing sticks: it does not use up its friction.
         slips = (law.reach > law.stick) & (radius >= law.stick) & (size > HOT.gross * law.bound)
         after, before = stays, np.where(slips, level, back)
     else:
-        # A wall may hold a float by next to no force.
+        # A wall may hold a float with almost no force.
         up, down = False, inward | (size <= faint)
         after, before = stays, np.full(len(radius), at.OPEN)
     wrong = np.broadcast_to(up | down, radius.shape)

@@ -1,8 +1,8 @@
-"""Where what no force holds may rest.
+"""Places for bodies that no force holds.
 
-A set whose forces are right may leave bodies loose. At their displacement of least norm they may
-be in one another's way, though there is room for all: closing what is in the way carries nothing
-and opens again. So a place in the free room is sought instead. Source: formulation, section 4.
+A set whose forces are right may leave bodies loose. At the displacement of least norm they may
+overlap, although there is room for all: a contact closed for that reason carries nothing and opens
+again. So a place without overlap is sought instead. Source: formulation, section 4.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from loadshare.settings import EXCHANGE
 def rest(
     rows: Array, rooms: Array, discs: list[tuple[Array, Array, float]], size: float
 ) -> Array | None:
-    """Return the least shares of loose moves that fit, or None.
+    """Return the least shares of loose moves that leave no overlap, or None.
 
     Parameters
     ----------
@@ -25,14 +25,14 @@ def rest(
     rooms : ndarray, shape (k,)
         How far these may close; negative where they overlap.
     discs : list of (ndarray (2, l), ndarray (2,), float)
-        Offset of a radial element by the shares, where it is, and how far out it may be.
+        Of each radial element: offset per share, present offset, and largest radius.
     size : float
         Largest displacement, of which round-off is a part.
     """
     share = np.zeros(rows.shape[1])
     limits, bounds = rows, rooms
     for _ in range(EXCHANGE.renewals):
-        # Those of former passes stay: without, two discs may send the place to and fro.
+        # Faces of earlier passes stay: without them, two discs may send the place to and fro.
         faces = [(along @ m, reach - along @ q) for m, q, reach, along in _tangents(discs, share)]
         limits = np.vstack([limits, *(f[0] for f in faces)])
         bounds = np.append(bounds, [f[1] for f in faces])
@@ -50,7 +50,7 @@ def rest(
 def _tangents(
     discs: list[tuple[Array, Array, float]], share: Array
 ) -> list[tuple[Array, Array, float, Array]]:
-    """Every disc with its outward normal towards its element."""
+    """Return every disc with its outward normal in the direction of its element."""
     found = []
     for matrix, start, reach in discs:
         offset = start + matrix @ share
@@ -61,7 +61,7 @@ def _tangents(
 
 
 def _least(limits: Array, bounds: Array) -> Array | None:
-    """Least-norm u with `limits` u ≤ `bounds` by non-negative least squares (Lawson, Hanson)."""
+    """Return u of least norm with `limits` u ≤ `bounds`, by NNLS (Lawson, Hanson)."""
     scale = float(np.abs(bounds).max(initial=0.0)) or 1.0
     columns = np.vstack([-limits.T, -bounds[None, :] / scale])
     target = np.zeros(len(columns))

@@ -1,15 +1,15 @@
-"""A linear rule that names, from a sample's numbers, the set of elements that it will end on.
+"""A linear rule that predicts, from a sample's numbers, the set of elements on which it will end.
 
-It is learnt from samples that were solved, those of all positions together. Whether an element acts
-follows from the sign of a linear function of what varies, by least squares on ±1. Of the sets that
-were met the one is taken that fits these signs best, or the one to which numbers of such values
-most likely belong (Fisher's discriminant): whichever names more of the samples solved. A wrong name
-costs a visit or two, and never an answer.
+It is learnt from solved samples, those of all positions together. Whether an element acts is the
+sign of a linear function of the numbers that vary, fitted to ±1 by least squares. Of the sets that
+were met, the rule takes the one that fits these signs best, or the one to which such values most
+likely belong (Fisher's discriminant), whichever is right for more of the solved samples. A wrong
+prediction costs one or two more visits of sets, and never an answer.
 
-What has friction begins on the first piece of its graph all the same: a slip is found from stick
-more surely than from another sample's slip. A wall without friction is met again and again where a
-gear floats, one visit for every wall; so it is named like a contact, and the rule says where the
-float is and how hard it leans there, which is the direction of its line.
+Elements with friction begin on the first piece of their graph all the same: a slip is found from
+stick more surely than from another sample's slip. Where a gear floats, walls without friction would
+be met one after the other, one visit for every wall; so they are predicted like contacts, and the
+rule also predicts the place of the float and its force on the wall, whose direction that gives.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 
 
 class Part(NamedTuple):
-    """Weights of numbers that are one array of a loading.
+    """Weights of the numbers in one array of a loading.
 
     Attributes
     ----------
     name : str
-        Of the array.
+        Name of the array.
     used : ndarray of int or None
-        Columns with a weight; None for all, where it takes less time than to pick them.
+        Columns with a weight; None for all, where that takes less time than picking them.
     weights : ndarray, shape (columns, sets + values)
     """
 
@@ -47,19 +47,19 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rule:
-    """Sets that were met, what names one of them, and where it begins.
+    """Sets that were met, weights that predict one of them, and where samples begin on it.
 
     Attributes
     ----------
     switches : ndarray of int, or slice
-        Of the elements that are named: contacts, and walls without friction.
+        Switches of the predicted elements: contacts, and walls without friction.
     states : ndarray of int8, shape (sets, named)
     share : ndarray, shape (sets, m)
         Mean forces on each, in shares of the load.
     constant : ndarray, shape (sets,)
     place : ndarray, shape (sets, values)
         Constants of the coordinates, and of the forces of radial elements, in the units of the
-        force method; without values where no wall is named.
+        force method; without values where no wall is predicted.
     parts : sequence of Part
     """
 
@@ -71,7 +71,7 @@ class Rule:
     parts: Sequence[Part] = ()
 
     def start(self, structure: Structure, loading: Loading) -> tuple[States, Iterate]:
-        """Return the sets on which S samples begin, and where they stand."""
+        """Return the sets and the iterate with which S samples begin."""
         states, (named, place) = first_sets(structure, loading), self.named(loading)
         states[:, self.switches] = self.states[named]
         iterate = at_rest(structure, loading, self.share, named)
@@ -82,7 +82,7 @@ class Rule:
         return states, iterate
 
     def named(self, loading: Loading) -> tuple[Numbers, Array]:
-        """Return the number of the set, one of `states`, of each of S samples, and its place."""
+        """Return the number, in `states`, of the set predicted for each of S samples; its place."""
         sets = len(self.states)
         if not self.parts:
             none = np.zeros(loading.count, dtype=np.intp)
@@ -92,7 +92,7 @@ class Rule:
         for name, used, weights in self.parts:
             table = getattr(loading, name)
             table = table.reshape(len(table), -1)
-            # What is infinite without a weight spoils the start of its own sample only.
+            # An infinite number without a weight spoils only the start of its own sample.
             with np.errstate(invalid="ignore"):
                 fit += table @ weights if used is None else table[:, used] @ weights
         named = fit[:, :sets].argmax(axis=1)
@@ -100,9 +100,10 @@ class Rule:
 
 
 def samples_to_learn(count: int) -> Numbers:
-    """Return numbers of the samples, of so many, from which a rule is learnt; none of few.
+    """Return the numbers of those among `count` samples from which a rule is learnt; none of few.
 
-    Spread evenly over all of them, and over those of each position (multiples of the golden ratio).
+    They are spread evenly over all samples and over those of each position (multiples of the golden
+    ratio).
     """
     taught = min(RULE.taught, count // RULE.worth)
     ratio = 0.5 * (np.sqrt(5.0) - 1.0)
@@ -111,7 +112,7 @@ def samples_to_learn(count: int) -> Numbers:
 
 
 def rule_of(structure: Structure, loading: Loading, states: States, iterate: Iterate) -> Rule:
-    """Learn from samples that were solved where others begin.
+    """Learn from solved samples where others should begin.
 
     Parameters
     ----------
@@ -159,18 +160,18 @@ def rule_of(structure: Structure, loading: Loading, states: States, iterate: Ite
 
 
 def _walls(loading: Loading) -> Numbers:
-    """Radial elements without friction and without a first rise in all samples."""
+    """Return the radial elements without friction and without a first rise in all samples."""
     return np.flatnonzero((loading.radial[:, :, [0, 3]] == 0.0).all(axis=(0, 2)))
 
 
 def _means(values: Array, which: Numbers, sets: int) -> Array:
-    """Mean values (sets, V) of the samples on each set."""
+    """Return mean values (sets, V) of the samples on each set."""
     means: Array = np.array([values[which == k].mean(axis=0) for k in range(sets)])
     return means
 
 
 def _placed(numbers: Array, values: Array, which: Numbers, sets: int) -> tuple[Array, Array]:
-    """Weights of numbers (T, N), and constants of every set, that give values (T, V)."""
+    """Return weights of numbers (T, N), and constants of every set, that predict values (T, V)."""
     if not values.shape[1]:
         return np.zeros((numbers.shape[1], 0)), np.zeros((sets, 0))
     known = which >= 0
@@ -182,7 +183,7 @@ def _placed(numbers: Array, values: Array, which: Numbers, sets: int) -> tuple[A
 
 
 def _learnt(numbers: Array, states: States, met: States, which: Numbers) -> tuple[Array, Array]:
-    """Learn weights of numbers (T, N), and constants, that are largest for the set of a sample.
+    """Learn weights of numbers (T, N), and constants, whose sum is largest for a sample's set.
 
     Parameters
     ----------
@@ -208,7 +209,7 @@ def _learnt(numbers: Array, states: States, met: States, which: Numbers) -> tupl
 
 
 def _least_squares(numbers: Array, wanted: Array) -> tuple[Array, Array]:
-    """Weights of numbers (T, N), and constants, that give what is wanted (T, values).
+    """Return weights of numbers (T, N), and constants, that give wanted values (T, values).
 
     Numbers that follow from others have no weight.
     """
@@ -229,9 +230,9 @@ def _least_squares(numbers: Array, wanted: Array) -> tuple[Array, Array]:
 
 
 def _discriminant(values: Array, which: Numbers, sets: int) -> tuple[Array, Array]:
-    """Weights of values (T, V), and constants, that tell to which set these most likely belong.
+    """Return weights of values (T, V), and constants, whose sum is largest for the likeliest set.
 
-    The values of every set are taken as normal, all with one spread.
+    The values of every set are taken as normally distributed, all with the same covariance.
     """
     known = which >= 0
     times = np.bincount(which[known], minlength=sets)
@@ -245,13 +246,13 @@ def _discriminant(values: Array, which: Numbers, sets: int) -> tuple[Array, Arra
 
 
 def _varying(loading: Loading) -> dict[str, tuple[Array, Numbers]]:
-    """What varies among samples: arrays by name, as tables (T, numbers), and columns that do."""
+    """Return arrays that vary among samples, by name: tables (T, numbers), and which columns do."""
     found = {}
     for name in ("load", "gap", "bending", "hertz", "shift", "clearance", "radial"):
         table = getattr(loading, name)
         if len(table) > 1:
             table = table.reshape(len(table), -1)
-            # What is rigid is infinite in every sample.
+            # Rigid elements have infinite numbers.
             with np.errstate(invalid="ignore"):
                 varies = np.isfinite(table).all(axis=0) & (np.ptp(table, axis=0) > 0.0)
             if varies.any():

@@ -1,4 +1,4 @@
-"""What has the wrong sign where samples have arrived, or is in the way of those that drift."""
+"""Elements with the wrong sign in settled samples, and elements in the way of drifting ones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from loadshare.solver.hot.rest import rest
 
 
 def wrong_elements(on: OnSet, sign: float) -> tuple[Flags, States]:
-    """Which elements have the wrong sign, and where they should be instead."""
+    """Return which elements have the wrong sign, and the states that they should have."""
     structure = on.structure
     wrong = np.zeros((len(on.rows), structure.switches), dtype=bool)
     moved = np.repeat(on.states[None, :], len(on.rows), axis=0)
@@ -49,7 +49,7 @@ def wrong_elements(on: OnSet, sign: float) -> tuple[Flags, States]:
     wrong &= on.settled[:, None]
     wrong[:, structure.rows :] |= slipped
     wrong |= pulled
-    # What the passes could not settle may still say which flank is open.
+    # Passes that did not settle may still show which flank is open.
     power = on.basis.columns[on.power] - structure.springs
     opening = (on.loose >= HOT.patience) & ~on.settled[:, None]
     wrong[:, power] |= opening
@@ -59,7 +59,7 @@ def wrong_elements(on: OnSet, sign: float) -> tuple[Flags, States]:
 def left_in_place(
     on: OnSet, before: Array, these: Flags, wrong: Flags, moved: States
 ) -> tuple[Flags, States]:
-    """Leave what no acting element holds where it was before, if that rights all signs."""
+    """Put what no acting element holds back to where it was, if that corrects all signs."""
     least, loose = on.x, on.basis.loose
     on.move(these, (before - least) @ loose)
     other, states = wrong_elements(on, HOT.sign)
@@ -69,14 +69,14 @@ def left_in_place(
 
 
 def drift(on: OnSet) -> Array:
-    """Move (k, n) that no acting element resists and the load pushes along; zero without."""
+    """Return the move (k, n) that no acting element resists and the load drives; zero without."""
     along = on.load @ on.basis.loose
     drifting = np.abs(along).max(axis=1, initial=0.0) > HOT.drift * on.push
     return np.asarray(np.where(drifting[:, None], along @ on.basis.loose.T, 0.0))
 
 
 def stopped_by(on: OnSet, drift: Array) -> tuple[Flags, States]:
-    """Go along a drift (k, n) to what is first in the way, if anything: it, and its place."""
+    """Go along a drift (k, n) to the first element in the way; return it and its new state."""
     structure = on.structure
     stopping = np.zeros((len(on.rows), structure.switches), dtype=bool)
     rows = structure.columns.contacts
@@ -105,7 +105,7 @@ def stopped_by(on: OnSet, drift: Array) -> tuple[Flags, States]:
 
 
 def rests(on: OnSet, k: int, wrong: Flags) -> bool:
-    """Find sample `k` a place where nothing that is open overlaps, if only places are wrong."""
+    """Find a place for sample `k` without overlaps of open elements, if only these are wrong."""
     if (wrong & (on.states != at.OPEN)).any():
         return False
     before, this = on.x, np.arange(len(on.rows)) == k
@@ -116,14 +116,14 @@ def rests(on: OnSet, k: int, wrong: Flags) -> bool:
             on.x = before
             return False
         on.move(this, share[None, :])
-        # What rolls along an arc ends next to the place that was sought.
+        # A body that rolls along an arc ends only near the place that was sought.
         if not len(on.arc) or float(np.abs(share).max()) <= HOT.sign * size:
             break
     return True
 
 
 def _room(on: OnSet, k: int) -> tuple[Array, Array, list[tuple[Array, Array, float]]]:
-    """What is open around sample `k`, as `rest` takes it."""
+    """Return the open elements around sample `k`, as arguments of `rest`."""
     structure, rows, here = on.structure, on.structure.rows, on.rows[k : k + 1]
     opened = np.flatnonzero(on.states[:rows] == at.OPEN)
     x, loose = on.x[k : k + 1], on.basis.loose
@@ -139,9 +139,9 @@ def _room(on: OnSet, k: int) -> tuple[Array, Array, list[tuple[Array, Array, flo
     for j in np.flatnonzero(on.states[rows:] == at.OPEN).tolist():
         matrix = structure.radials[j].matrix @ loose
         offset = on.offset(j)
-        # A wall that is a power begins at the clearance, not where its tangent from here does.
+        # A wall with a power law begins at the clearance, not where its present tangent begins.
         reach = float(on.graph(j, np.zeros_like(offset)).reach[k])
-        # Without friction and without an end a spline is nowhere.
+        # A spline without friction and without a stop limits nothing.
         discs += [(matrix, offset[k], reach)] if np.isfinite(reach) else []
     closes = vectors @ loose
     finite = np.isfinite(room)

@@ -1,4 +1,4 @@
-"""The laws of one sample, each softened a little: single-valued, with a tangent at every place."""
+"""The laws of one sample, each softened a little: single-valued, with a tangent at every point."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from loadshare.solver.hot import contact_states as at
 
 
 class Laws:
-    """Forces of all elements by how far these are pressed.
+    """Forces of all elements as functions of their compressions.
 
     Parameters
     ----------
@@ -20,16 +20,17 @@ class Laws:
     loading : Loading
         Of one sample.
     force : ndarray, shape (m,)
-        Of the pass before: what softens pulls towards it, and friction follows its torques.
+        Of the previous pass: the added compliance pulls towards it, and friction follows its
+        torques.
     softer, pull : float
         Compliance that is added to every contact, and to every radial element.
 
     Attributes
     ----------
     lean : ndarray, shape (m,)
-        How far the forces of the pass before press what softens.
+        Compression of the added compliance under the forces of the previous pass.
     graph : Graph
-        Of the radial elements, not softened.
+        Laws of the radial elements, not softened.
     rise, jump, level : ndarray, shape (radials,)
         Radii at which the first rise, the jump and the level piece of the softened graphs end.
     """
@@ -60,7 +61,7 @@ class Laws:
         self.steep = 1.0 / pull
 
     def forces(self, pressed: Array) -> Array:
-        """Forces (…, m) where elements are pressed this far (…, m)."""
+        """Return forces (…, m) at compressions (…, m)."""
         force = np.empty_like(pressed)
         flat = pressed[..., : self.scalar]
         force[..., : self.scalar] = flat / self.compliance
@@ -79,7 +80,7 @@ class Laws:
         return force
 
     def tangents(self, pressed: Array, force: Array) -> tuple[Array, Array]:
-        """Compliances of scalar elements, infinite where nothing pushes, and radial stiffnesses.
+        """Return compliances of scalar elements, infinite without a push, and radial stiffnesses.
 
         Parameters
         ----------
@@ -92,7 +93,7 @@ class Laws:
         """
         compliance = np.array(self.compliance)
         if len(self.power):
-            # A force may be too small for a number where it pushes.
+            # The force of a contact that pushes may be too small for a double.
             pushes = (pressed[self.power] > 0.0) & (force[self.power] > 0.0)
             root = np.cbrt(np.where(pushes, force[self.power], 1.0))
             compliance[self.power] += 2.0 / 3.0 * self.hertz / root
@@ -112,7 +113,7 @@ class Laws:
         )
 
     def kinks(self, pressed: Array, speed: Array) -> Array:
-        """Shares of a way, within (0, 1) and in order, at which some law has a kink."""
+        """Return the shares of a way, within (0, 1) and in order, at which some law has a kink."""
         contacts = slice(self.springs, self.scalar)
         with np.errstate(all="ignore"):
             found = [-pressed[contacts] / speed[contacts]]
@@ -131,12 +132,12 @@ class Laws:
         return np.unique(ways[(ways > 0.0) & (ways < 1.0)])
 
     def radii(self, pressed: Array) -> Array:
-        """Radius (…, radials) of every radial element."""
+        """Return the radius (…, radials) of every radial element."""
         square = pressed[..., self.scalar :] ** 2
         return np.asarray(np.sqrt(square[..., ::2] + square[..., 1::2]))
 
     def _sizes(self, radius: Array) -> Array:
-        """Sizes of radial forces."""
+        """Return the sizes of radial forces."""
         law = self.graph
         with np.errstate(invalid="ignore"):
             jumping = (radius - law.stick) * self.steep
@@ -144,13 +145,13 @@ class Laws:
             return self._chosen(radius, (self.first * radius, jumping, law.bound, beyond))
 
     def _chosen(self, radius: Array, values: tuple[Array | float, ...]) -> Array:
-        """What belongs to the piece on which each radial element is."""
+        """Return the value of the piece on which each radial element is."""
         rising, jumping, level, beyond = values
         found = np.where(radius <= self.level, level, beyond)
         found = np.where(radius <= self.jump, jumping, found)
         return np.where(radius <= self.rise, rising, found)
 
     def _pieces(self, flat: Array) -> np.ndarray:
-        """Piece (…, tables) of every tabulated law."""
+        """Return the piece (…, tables) of every tabulated law."""
         passed = (self.ends <= flat[..., self.table, None]).sum(axis=-1)
         return np.asarray(np.clip(passed - 1, 0, self.last_piece))

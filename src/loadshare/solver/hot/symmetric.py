@@ -13,7 +13,7 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
     """Solve (k, n, n) symmetric systems; singular ones through a proximal term.
 
     Rigid contacts that push along one line leave their shares open: the matrix is singular, and any
-    solution is one. The refined proximal solution tends to the one of least norm; shares that
+    solution will do. The refined proximal solution tends to the one of least norm; shares that
     contradict one another grow without bound and are recognised by their signs.
 
     Parameters
@@ -21,7 +21,7 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
     matrix : ndarray, shape (k, n, n)
     sides : ndarray, shape (k, n)
     size : int
-        Numbers of the positive semidefinite part; the rest are constraints.
+        Size of the positive semidefinite part; the rest are constraints.
     """
     if not matrix.shape[1]:
         return sides

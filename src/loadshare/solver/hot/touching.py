@@ -1,4 +1,4 @@
-"""What carries in many samples, and what they touch, compiled with Numba; see `determined`."""
+"""Elements that carry in many samples, and those they touch, with Numba; see `determined`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ inlined = compilation.within(forceinline=True, **_how)
 
 
 class Figures(NamedTuple):
-    """What varies, as in `Loading`; further x (S, n), force (S, m), and the least load (S,)."""
+    """Arrays that vary, as in `Loading`, with x (S, n), force (S, m) and the least force (S,)."""
 
     x: Array
     force: Array
@@ -35,7 +35,7 @@ class Figures(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """What all samples share: A, the lines between centres of arcs, levers of splines."""
+    """Arrays that all samples share: A, the lines between centres of arcs, levers of splines."""
 
     vectors: Rows
     relative: Rows  # three rows an arc
@@ -47,20 +47,20 @@ class Layout(NamedTuple):
 
 
 class Touching:
-    """What carries in S samples, and what they touch.
+    """Elements that carry in S samples, and elements that the samples touch.
 
     Parameters
     ----------
     structure, loading, iterate, states, held
         As for `determined`.
     least : ndarray, shape (S,)
-        What carries is more than this force, and than a share of the largest.
+        An element carries if its force is above this one, and above a share of the largest.
 
     Attributes
     ----------
     number : ndarray of int, shape (S,)
-        Of the set that carries; −1 where all that acts carries, and no radial element is on a level
-        piece.
+        Of the set that carries; −1 where no coordinate is loose, all acting elements carry, and no
+        radial element is on a level piece.
     sets : ndarray of int8, shape (sets, rows + radials)
         Which contacts carry, and how radial elements hold.
     """
@@ -100,7 +100,7 @@ class Touching:
         self.sets = self._carries[first[:sets]]
 
     def met(self, sets: Sequence[Sequence[int]]) -> Numbers:
-        """How many elements every sample touches, (S,), of those wanted of its set.
+        """Return how many of the elements listed for its set every sample touches, (S,).
 
         Elements are flanks and stops, then arcs, then radial elements.
         """
@@ -113,7 +113,7 @@ class Touching:
 
 @compiled
 def _number_all(of, here, states, held, number, carries, first, key):  # type: ignore[no-untyped-def]
-    """Find and number what carries; returns how many sets there are."""
+    """Find and number the sets that carry; return how many there are."""
     count, contacts, last = 0, carries.shape[1] - here.radial.shape[1], 0
     for s in range(len(states)):
         least, certain = here.least[s], held[s]
@@ -143,13 +143,13 @@ def _touch_all(of, here, number, carries, start, structure, found):  # type: ign
 
 @inlined
 def _row(array, s):  # type: ignore[no-untyped-def]
-    """Row of a sample, or the only one."""
+    """Return the row of a sample, or the only one."""
     return s if len(array) > 1 else 0
 
 
 @inlined
 def _graph(of, here, s, j):  # type: ignore[no-untyped-def]
-    """S1, level and S2 of a radial element (see `contact_states.graph`)."""
+    """Return S1, level and S2 of a radial element (see `contact_states.graph`)."""
     law = here.radial[_row(here.radial, s), j]
     stiffness, given, reach, level = law[0], law[1], law[2], law[3]
     if np.isnan(level):
@@ -165,7 +165,7 @@ def _graph(of, here, s, j):  # type: ignore[no-untyped-def]
 
 @inlined
 def _holds(of, here, s, j, least):  # type: ignore[no-untyped-def]
-    """How a radial element holds."""
+    """Return how a radial element holds."""
     stick, level, reach = _graph(of, here, s, j)
     x, y = here.force[s, of.radials + 2 * j], here.force[s, of.radials + 2 * j + 1]
     size = np.hypot(x, y)
@@ -176,7 +176,7 @@ def _holds(of, here, s, j, least):  # type: ignore[no-untyped-def]
 
 @inlined
 def _along(rows, k, here, s):  # type: ignore[no-untyped-def]
-    """Row k of a matrix times the coordinates."""
+    """Return row k of a matrix times the coordinates."""
     total = 0.0
     for i in range(rows.start[k], rows.start[k + 1]):
         total += rows.value[i] * here.x[s, rows.at[i]]
@@ -185,7 +185,7 @@ def _along(rows, k, here, s):  # type: ignore[no-untyped-def]
 
 @inlined
 def _touches(of, here, s, element, carries):  # type: ignore[no-untyped-def]
-    """Whether a sample touches a flank or stop, an arc, a radial element."""
+    """Return whether a sample touches a flank or stop, an arc, a radial element."""
     flat, arcs, r = of.flat, len(of.nominal), _row(here.gap, s)
     if element < flat:
         c = of.springs + element
@@ -205,7 +205,7 @@ def _touches(of, here, s, element, carries):  # type: ignore[no-untyped-def]
 
 @inlined
 def _margin(of, here, s, a):  # type: ignore[no-untyped-def]
-    """Margin of an arc (see `elements.arc_at`)."""
+    """Return the margin of an arc (see `elements.arc_at`)."""
     r, along, square, nominal = _row(here.shift, s), 0.0, 0.0, 0.0
     for i in range(3):
         moved = here.shift[r, a, i] + _along(of.relative, 3 * a + i, here, s)

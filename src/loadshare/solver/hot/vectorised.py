@@ -24,7 +24,7 @@ def settle(
     iterate: Iterate,
     one_only: Flags,
 ) -> tuple[States, States]:
-    """Solve samples, each on its set, and say what has the wrong sign.
+    """Solve samples, each on its set, and propose another set where signs are wrong.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def settle(
     parts : sequence of ndarray of int
         Samples to solve on each of them, k in all.
     iterate : Iterate
-        Where each sample is; renewed in place.
+        Coordinates and forces of each sample; updated in place.
     one_only : ndarray of bool, shape (S,)
         Exchange only one element of these samples.
 
@@ -55,7 +55,7 @@ def settle(
 
 
 def _settle_set(on: OnSet, iterate: Iterate, single: Flags) -> tuple[States, States]:
-    """Solve samples on one set and say what has the wrong sign."""
+    """Solve samples on one set and propose another where signs are wrong."""
     rows, states = on.rows, on.states
     drift = signs.drift(on)
     drifting = (drift != 0.0).any(axis=1)
@@ -63,7 +63,7 @@ def _settle_set(on: OnSet, iterate: Iterate, single: Flags) -> tuple[States, Sta
     start = iterate.x[rows]
     far = iterate.stays[rows] & (size_of(on.x - start) > HOT.far * (1.0 + size_of(start)))
     if far.any():
-        # What all but nothing resists has run away from where it began.
+        # A move that almost nothing resists has run away from its start.
         drift[far], drifting = (on.x - start)[far], drifting | far
         on.x[far] = start[far]
     wrong, moved = signs.wrong_elements(on, HOT.sign)
@@ -74,7 +74,7 @@ def _settle_set(on: OnSet, iterate: Iterate, single: Flags) -> tuple[States, Sta
     wrong[gross] = on.gross[gross]
     moved[gross] = on.gross_to[gross]
     if drifting.any():
-        # Only what stops the drift is of interest.
+        # Only the element that stops the drift is of interest.
         stopping, other = signs.stopped_by(on, drift)
         wrong[drifting], moved[drifting] = stopping[drifting], other[drifting]
         on.settled &= ~drifting
@@ -93,5 +93,5 @@ def _settle_set(on: OnSet, iterate: Iterate, single: Flags) -> tuple[States, Sta
 
 
 def size_of(vectors: Array) -> Array:
-    """Largest entry of every row."""
+    """Return the size of the largest entry of every row."""
     return np.asarray(np.abs(vectors).max(axis=1, initial=0.0))

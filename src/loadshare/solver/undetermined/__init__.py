@@ -1,4 +1,4 @@
-"""What an equilibrium's forces leave undetermined: its least place, and how far it may move."""
+"""What the forces of an equilibrium leave undetermined: the place of least norm, and the ranges."""
 
 from loadshare.solver.undetermined.free_set import FreeSet, free_set
 from loadshare.solver.undetermined.places import Places, places

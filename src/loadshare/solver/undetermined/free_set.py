@@ -3,7 +3,7 @@
 Forces are unique. So a contact that carries one keeps its approach, one that carries none may open
 and must not close further, and a radial element stays where its graph admits its force: at one
 radius, on a level piece anywhere along it, or anywhere in the disc in which it carries nothing.
-That is a convex set; an arc that carries nothing makes it so only as its tangent face. Source:
+This set is convex if an arc that carries nothing is replaced by its tangent face. Source:
 formulation, section 4.
 """
 
@@ -25,7 +25,7 @@ from loadshare.solver.undetermined.norm import Norm, norm_of
 
 @dataclass(frozen=True, eq=False)
 class FreeSet:
-    """Displacements of one equilibrium, about one of them.
+    """Displacements of one equilibrium, relative to one of them.
 
     Attributes
     ----------
@@ -34,13 +34,13 @@ class FreeSet:
     x : ndarray, shape (n,)
         One of them [m].
     moves : ndarray, shape (n, d)
-        Lengths y along which they differ, orthonormal; without columns if x is the only one.
+        Directions in lengths y in which they differ, orthonormal; no columns if x is the only one.
     vectors : ndarray, shape (k, n)
-        What must not close further, in coordinates.
+        Directions in coordinates that must not close further.
     rooms : ndarray, shape (k,)
         How far these may close from x [m].
     arcs : tuple of ArcRow
-        That carry nothing.
+        Arcs that carry nothing.
     rounds : tuple of Round
     """
 
@@ -69,11 +69,11 @@ def free_set(
     x : ndarray, shape (n,)
         One of them [m].
     forces : mapping of row name to float
-        [N].
+        Contact forces [N].
     pulls : mapping of radial name to ndarray, shape (2,)
         Force along its offset [N].
     laws : mapping of radial name to RadialLaw
-        At the torques that are transmitted.
+        Laws at the transmitted torques.
     """
     held, norm = held_by(scene, x, forces, pulls, laws), norm_of(scene)
     ties = [*scene.springs, *of_unit_norm(scene.stiffness), *held.ties]

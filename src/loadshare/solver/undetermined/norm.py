@@ -32,7 +32,7 @@ class Norm(NamedTuple):
     origin: Array
 
     def lengths(self, x: Array) -> Array:
-        """Lengths y (n,) [m] with the plain Euclidean norm, from coordinates."""
+        """Return lengths y (n,) [m], whose norm is the plain Euclidean one, from coordinates."""
         return self.root * (x - self.origin)
 
 

@@ -1,9 +1,9 @@
-"""The least place of an equilibrium, and how far each of its undetermined coordinates may move.
+"""The place of least norm of an equilibrium, and the ranges of its undetermined coordinates.
 
-Coordinates that move independently of one another are treated apart: each part is a convex region
-of one or a few unknowns. A part's least and largest values are exact, also in round regions and on
-level pieces. The outside of an open arc is not convex: there they are those of a region with a face
-for each arc behind which all of the float lies, and may be too far by about the sagitta.
+Coordinates that move independently of one another are treated separately: each part is a convex
+region of one or a few unknowns. A part's least and largest values are exact, also in round regions
+and on level pieces. The outside of an open arc is not convex: there each arc is replaced by a face
+behind which all of the float lies, and the values may be too far out by about the sagitta.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from loadshare.train.equilibrium import Range
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Places:
-    """What the forces of an equilibrium say of its place.
+    """The place of least norm that the forces of an equilibrium allow, and the ranges.
 
     Attributes
     ----------
     x : ndarray, shape (n,)
-        The place of least norm [m]; the one that was known, if it is that.
+        The place of least norm [m]; the known one itself, if it is that.
     ranges : mapping of name to (float, float)
         Least and largest value of what the forces leave undetermined: [rad] of a gear's rotation,
         [m] of a displacement or slip; infinite where nothing limits it.
@@ -43,7 +43,7 @@ class Places:
 
 
 def places(free: FreeSet) -> Places:
-    """Return the least place of an equilibrium, and what is undetermined.
+    """Return the place of least norm of an equilibrium, and what is undetermined.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def places(free: FreeSet) -> Places:
 
 
 def _ranges(free: FreeSet, parts: Sequence[_Part], x: Array) -> dict[str, Range]:
-    """Least and largest values of what is reported of the coordinates, about the least place x."""
+    """Return least and largest values of all reported quantities, around the least place x."""
     scene = free.scene
     least_play = PLACES.play * scene.length_unit() + PLACES.inside * float(
         np.abs(x).max(initial=0.0)
@@ -82,7 +82,7 @@ def _ranges(free: FreeSet, parts: Sequence[_Part], x: Array) -> dict[str, Range]
 
 
 def _reported(scene: Scene) -> Iterator[tuple[list[tuple[str, float, float]], list[int], Array]]:
-    """Yield what is reported: names with constant and rate, and coordinates that add up to it."""
+    """Yield the reported quantities: names with constant and rate; coordinates; their weights."""
     one = np.ones(1)
     turned = {
         gear: moved
@@ -105,7 +105,7 @@ def _reported(scene: Scene) -> Iterator[tuple[list[tuple[str, float, float]], li
 
 
 class _Part:
-    """Moves that have nothing to do with the others.
+    """Moves that are independent of all others.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class _Part:
     unit : float
         Length [m] in which their shares u are counted.
     start, least : ndarray, shape (d,)
-        u of the place that is known, and of the least one.
+        u of the known place, and of the one of least norm.
     """
 
     def __init__(self, free: FreeSet, moves: Array) -> None:
@@ -140,15 +140,15 @@ class _Part:
 
     @property
     def moves_to_least(self) -> bool:
-        """Whether the least place is another than the one that is known."""
+        """Whether the least place differs from the known one."""
         return float(np.abs(self.least - self.start).max()) > PLACES.inside
 
     def reach(self, direction: Array) -> float:
-        """How far along a direction (d,) the part may move from its least place [m]."""
+        """Return how far along a direction (d,) the part may move from its least place [m]."""
         end = self._around.furthest(direction)
         if end is None:
             return np.inf
-        # What is pinched up to round-off stays where it is.
+        # A part that is pinched up to round-off stays where it is.
         pinched = self._around.beyond(end) > PLACES.almost
         return 0.0 if pinched else float(direction @ (end - self.least)) * self.unit
 
@@ -158,10 +158,11 @@ class _Part:
         return Disc(matrix, matrix @ self.start - offset, held.radius / self.unit)
 
     def _least(self) -> Array:
-        """Point of least norm.
+        """Return the point of least norm.
 
-        Faces of arcs are renewed from the least place behind wide ones on, as opposite arcs that
-        all but touch let nothing pass that keeps behind their faces; or else from the known place.
+        Faces of arcs are renewed starting from the least place behind wide faces, because the
+        tangent faces of opposite arcs that nearly touch would let nothing pass; failing that, from
+        the known place.
         """
         if self.arcs:
             u, arrived = self._renewed(self._wide(self.start).least(), inside=False)
@@ -170,7 +171,7 @@ class _Part:
         return self._renewed(self.start, inside=True)[0]
 
     def _renewed(self, u: Array, *, inside: bool) -> tuple[Array, bool]:
-        """Renew faces of arcs until the least point does not move: it, and whether it came to that.
+        """Renew faces of arcs until the least point stays; return it, and whether it came to that.
 
         With `inside`, faces are moved so that the point at which they are renewed is behind them.
         """
@@ -178,7 +179,7 @@ class _Part:
             region = self._region(self._faces(u), u if inside else None)
             found = region.least()
             if region.beyond(found) > PLACES.almost:
-                # What is pinched up to round-off stays where it is.
+                # A part that is pinched up to round-off stays where it is.
                 break
             arrived = not self.arcs or float(np.abs(found - u).max()) <= PLACES.inside
             u = found
@@ -196,17 +197,17 @@ class _Part:
         return self._region([arc.row(rest, wide=True) for arc in self.arcs], inside)
 
     def _faces(self, u: Array) -> list[Row]:
-        """Tangent faces of arcs at a point u."""
+        """Return the tangent faces of arcs at a point u."""
         x = self._place(u)
         return [arc.row(x) for arc in self.arcs]
 
     def _place(self, u: Array) -> Array:
-        """Coordinates x (n,) [m] of a point u."""
+        """Return the coordinates x (n,) [m] of a point u."""
         moved: Array = self.across @ (u - self.start) * self.unit
         return self.free.x + moved
 
     def _region(self, faces: Sequence[Row], inside: Array | None = None) -> Region:
-        """The region, with faces of its arcs; moved, if need be, so that a point lies inside."""
+        """Return the region with faces of its arcs, moved if need be to have a point inside."""
         limits, bounds = [self.limits], [self.bounds]
         at = self.start if inside is None else inside
         x = self._place(at)
@@ -222,7 +223,7 @@ class _Part:
 
 
 def _independent(free: FreeSet) -> Iterator[Array]:
-    """Yield moves (n, d) that nothing ties to the others."""
+    """Yield groups of moves (n, d) that nothing couples to the others."""
     projector = free.moves @ free.moves.T
     together = np.abs(projector) > PLACES.loose
     limits = [v[None] for v in free.vectors] + [a.relative for a in free.arcs]

@@ -2,8 +2,8 @@ r"""A convex region of few unknowns: half-planes and discs; its least point and 
 
 .. math:: \{u : L u \le b,\; \lVert M_j u - m_j \rVert \le R_j\}
 
-A second-order cone programme says which bounds are reached; with these the point is solved exactly,
-as an equilibrium is (formulation, section 4). One unknown needs no programme.
+A second-order cone programme finds which bounds are reached; on these the point is then solved
+exactly, as an equilibrium is (formulation, section 4). One unknown needs no programme.
 """
 
 from __future__ import annotations
@@ -37,15 +37,15 @@ class Disc:
     radius: float
 
     def beyond(self, u: Array) -> float:
-        """How far u lies outside."""
+        """Return how far u lies outside."""
         return float(np.linalg.norm(self.matrix @ u - self.centre)) - self.radius
 
     def face(self, u: Array) -> tuple[Array, Array]:
-        """Outward normal (d,) at u and its derivative (d, d)."""
+        """Return the outward normal (d,) at u and its derivative (d, d)."""
         offset = self.matrix @ u - self.centre
         size = float(np.linalg.norm(offset))
         if size == 0.0:
-            # At the centre of a disc that is next to a point every direction is as good.
+            # At the centre of a disc that is almost a point, any direction will do.
             return self.matrix.T @ np.array([1.0, 0.0]), np.zeros((self.matrix.shape[1],) * 2)
         along = offset / size
         turning = (np.eye(2) - np.outer(along, along)) / size
@@ -76,7 +76,7 @@ class Region:
 
     @cached_property
     def cones(self) -> tuple[Any, Array, list[Any], Any]:
-        """Rows, bounds and cones of the region as Clarabel takes them, and how it is to go on."""
+        """Rows, bounds and cones of the region as Clarabel takes them, and its settings."""
         import clarabel
         from scipy.sparse import csc_matrix
 
@@ -90,12 +90,12 @@ class Region:
         return csc_matrix(np.vstack(rows)), np.concatenate(bounds), cones, settings
 
     def beyond(self, u: Array) -> float:
-        """How far u lies outside; not above zero inside."""
+        """Return how far u lies outside; zero inside."""
         outside = [float((self.limits @ u - self.bounds).max(initial=0.0))]
         return max(*outside, *(disc.beyond(u) for disc in self.discs), 0.0)
 
     def least(self) -> Array:
-        """Point of least norm, shape (d,); rest, outside, if round-off leaves none."""
+        """Return the point of least norm, shape (d,); zero, outside, if round-off leaves none."""
         rest = np.zeros(self.size)
         if self.beyond(rest) <= 0.0:
             return rest
@@ -106,7 +106,7 @@ class Region:
         return rest if found is None else found
 
     def furthest(self, direction: Array) -> Array | None:
-        """Point that lies furthest along a direction (d,), or None if nothing limits it."""
+        """Return the point furthest along a direction (d,), or None if nothing limits it."""
         if self.size == 1:
             low, high = self._interval()
             end = high if direction[0] > 0.0 else low
@@ -115,16 +115,16 @@ class Region:
         if _pushed(self.limits @ self._ways_out, along) > PLACES.balanced:
             return None
         found = self._optimum(0.0, -direction)
-        # Bounds that are all but opposite meet so far away that round-off decides where.
+        # Bounds that are nearly opposite meet so far away that round-off decides where.
         return None if found is None or float(direction @ found) > PLACES.far else found
 
     @cached_property
     def _ways_out(self) -> Array:
-        """Moves (d, m) that no disc ends; what half-planes leave of them goes on for ever."""
+        """Moves (d, m) that no disc limits; those that no half-plane limits either have no end."""
         return unresisted(stacked((row for disc in self.discs for row in disc.matrix), self.size))
 
     def _interval(self) -> tuple[float, float]:
-        """Ends of a region of one unknown."""
+        """Return the ends of a region of one unknown."""
         slope = self.limits[:, 0]
         ends = self.bounds[slope != 0.0] / slope[slope != 0.0]
         rising = slope[slope != 0.0] > 0.0
@@ -142,7 +142,7 @@ class Region:
         return (low, high) if low <= high else (0.5 * (low + high),) * 2
 
     def _optimum(self, curvature: float, slope: Array) -> Array | None:
-        """Least ½ curvature ‖u‖² + slope·u in the region; None if none is found."""
+        """Return the u of least ½ curvature ‖u‖² + slope·u in the region; None if none is found."""
         found = _proposed(self, curvature, slope)
         if found is None:
             return None
@@ -156,7 +156,7 @@ class Region:
     def _reached(
         self, u: Array, slope: Array, limits: Array, discs: Array
     ) -> Iterator[tuple[Numbers, Numbers]]:
-        """Yield which bounds an optimum near u may reach, by their pushes, rows and discs."""
+        """Yield guesses, rows and discs, of the bounds that an optimum near u reaches."""
         slack = self.bounds - self.limits @ u
         gap = np.array([-disc.beyond(u) for disc in self.discs])
         pushing = np.flatnonzero(limits > slack), np.flatnonzero(discs > gap)
@@ -167,7 +167,7 @@ class Region:
     def _holding(
         self, u: Array, pulled: Array, rows: Numbers, rounds: Numbers
     ) -> tuple[Numbers, Numbers]:
-        """Of some bounds, those that hold a pull (d,) at u, and no more than it takes."""
+        """Return those of some bounds that hold a pull (d,) at u, no more than it takes."""
         from scipy.optimize import nnls
 
         normals = [*self.limits[rows], *(self.discs[j].face(u)[0] for j in rounds.tolist())]
@@ -182,7 +182,7 @@ class Region:
         rows: Numbers,
         rounds: Numbers,
     ) -> Array | None:
-        """Newton's method on bounds that are reached; None if others are."""
+        """Return the optimum if it reaches these bounds, by Newton's method; None otherwise."""
         faces, discs = self.limits[rows], [self.discs[j] for j in rounds.tolist()]
         d, count = self.size, len(rows) + len(discs)
         pushes, reached = np.zeros(count), faces
@@ -213,7 +213,7 @@ class Region:
 
 
 def _pushed(reached: Array, pulled: Array) -> float:
-    """How far a pull (d,) is from what bounds with outward normals (k, d) can hold."""
+    """Return how far a pull (d,) is from what bounds with outward normals (k, d) can hold."""
     from scipy.optimize import nnls
 
     if not reached.size:
@@ -222,7 +222,7 @@ def _pushed(reached: Array, pulled: Array) -> float:
 
 
 def _proposed(region: Region, curvature: float, slope: Array) -> tuple[Array, Array, Array] | None:
-    """Answer of an interior-point method: point, pushes of half-planes, pushes of discs."""
+    """Return an interior-point answer: point, pushes of half-planes, pushes of discs."""
     import clarabel
 
     d, k = region.size, len(region.bounds)
@@ -244,5 +244,5 @@ def _bends(curvature: float, size: int) -> Any:
 
 
 def stacked(rows: Iterable[Array], size: int) -> Array:
-    """Stack rows (size,) to a matrix, also where there are none."""
+    """Stack rows (size,) into a matrix, also where there are none."""
     return np.array(list(rows)).reshape(-1, size)

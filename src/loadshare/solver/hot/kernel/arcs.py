@@ -1,4 +1,4 @@
-"""Arcs of drums: where they are, and what the turning of their faces does."""
+"""Arcs of drums: their margins and normals, and the effect of their turning faces."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from loadshare.solver.hot.kernel.work import TURN
 
 @bare
 def arc(s, samples, a, x, width, normal, margin, size):  # type: ignore[no-untyped-def]
-    """Margins (width,) of an arc at x, and its normals (3, width); see `train.ring.Arc`."""
+    """Write margins (width,) and normals (3, width) of an arc at x; see `contact.arc.Arc`."""
     varying = s.shift.shape[0] > 1
     varying_clearance = s.clearance.shape[0] > 1
     for c in range(3):
@@ -57,7 +57,7 @@ def arc(s, samples, a, x, width, normal, margin, size):  # type: ignore[no-untyp
 
 @bare
 def turn_arcs(s, work, width):  # type: ignore[no-untyped-def]
-    """Gaps of the arcs where the coordinates are, and the load of what their faces have turned."""
+    """Renew the arcs' gaps at the coordinates, and the load due to the turn of their faces."""
     load, x, gap, before, go = work.load, work.x, work.gap, work.before, work.go
     for t in range(s.turning.shape[0]):
         for m in range(width):
@@ -81,7 +81,7 @@ def turn_arcs(s, work, width):  # type: ignore[no-untyped-def]
 
 @bare
 def follow_arcs(s, work, distance, width):  # type: ignore[no-untyped-def]
-    """Move the coordinates that arcs know of; add what arcs still turn to the misfit."""
+    """Move the coordinates on which arcs depend; include the arcs' remaining turn in the misfit."""
     step, moved, shrinks = work.one, work.moved, s.turning_radials.shape[0] == 0
     for m in range(width):
         step[m] = 0.0
@@ -98,14 +98,14 @@ def follow_arcs(s, work, distance, width):  # type: ignore[no-untyped-def]
             step[m] = y if y > step[m] else step[m]
             work.x[d, m] = moved[t, m] if work.go[m] > 0.0 else work.x[d, m]
     for w in range(s.arcs.shape[0]):
-        # The push of the pass before was turned.
+        # The face was turned with the force of the previous pass.
         for m in range(width):
             f = abs(work.force[s.arc_contacts[w], m] - work.before[w, m])
             strongest = work.strongest[m] if work.strongest[m] > 0.0 else 1.0
             y = f / strongest * (ABREAST.steepest / ABREAST.turned * distance)
             step[m] = y if y > step[m] else step[m]
     for m in range(width):
-        # Every pass turns them by about the same share of what the pass before did. Splines feel
+        # Every pass turns arcs by about the same share of their previous turn. Splines respond to
         # each turn more than springs do.
         y = step[m] * (ABREAST.turned / distance)
         before = work.each[TURN, m]

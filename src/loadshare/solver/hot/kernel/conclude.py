@@ -1,4 +1,4 @@
-"""What becomes of samples whose passes have ended: signs, verdicts, and where they stand."""
+"""Samples whose passes have ended: their signs, verdicts and iterates."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from loadshare.solver.hot.kernel.sums import add_product, clear
 
 @bare
 def conclude(s, work, given, count, width):  # type: ignore[no-untyped-def]
-    """Judge the signs of samples that have settled, and store where every sample stands."""
+    """Judge the signs of samples that have settled, and store the iterate of every sample."""
     springs, force = s.springs.shape[0], work.force
     xs, forces, roots = given.xs, given.forces, given.roots
     verdict, proposal = given.verdict, given.proposal
@@ -46,19 +46,19 @@ def conclude(s, work, given, count, width):  # type: ignore[no-untyped-def]
             continue
         verdict[row] = OTHER
         if sign > HOT.sign and work.mistakes[m] == 0:
-            # What does not settle may still say which flank is open.
+            # Passes that do not settle may still show which flank is open.
             for p in range(s.powers):
                 if force[s.first_row + p, m] <= 0.0:
                     work.wrong[s.switches[p], m] = True
         propose(s.states, work.wrong, work.better, m, given.one_only[i], proposal[row])
         if work.each[at.DRIFTS, m] > 0.0:
-            # Only what stops the drift is of interest.
+            # Only the element that stops the drift is of interest.
             verdict[row] = stopped(s, work, m, width, proposal[row], xs[i])
 
 
 @bare
 def _refine(s, work, width):  # type: ignore[no-untyped-def]
-    """Forces of the springs and coordinates; sets that compatibility does not close are left."""
+    """Find spring forces and coordinates; leave samples undecided that are not compatible."""
     springs, total, moved = s.springs.shape[0], work.spring[at.TOTAL], work.spring[at.MOVED]
     r, yielded, misfit = s.redundant.shape[1], work.one, work.two
     for m in range(width):
@@ -87,7 +87,7 @@ def _refine(s, work, width):  # type: ignore[no-untyped-def]
     for m in range(width):
         closed = misfit[m] <= ABREAST.closed_by * yielded[m] or yielded[m] == 0.0
         if work.each[at.BAND, m] == HOT.sign and not closed:
-            # What the matrix of the redundants was too stiff or too flat for.
+            # The matrix of the redundants was too stiff or too flat for this sample.
             work.each[at.BAND, m] = 0.0
     clear(work.x, width)
     add_product(work.x, s.particular_springs, moved, width)

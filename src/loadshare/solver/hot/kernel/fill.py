@@ -1,4 +1,4 @@
-"""Samples are taken up: statics, and laws where the samples stand."""
+"""Loading of samples into the work arrays: statics, and laws at the samples' iterates."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from loadshare.solver.hot.kernel.sums import add_product, approach, clear
 
 @bare
 def fill(s, work, given, waiting, first, count, width):  # type: ignore[no-untyped-def]
-    """Take samples up, side by side; what is left of the width repeats the last of them."""
+    """Load samples side by side; the rest of the width repeats the last of them."""
     samples = work.samples
     for m in range(width):
         row = waiting[first + min(m, count - 1)]
@@ -40,7 +40,7 @@ def fill(s, work, given, waiting, first, count, width):  # type: ignore[no-untyp
 
 @bare
 def _load(s, work, width):  # type: ignore[no-untyped-def]
-    """Loads, the largest of them, and whether they push along what nothing resists."""
+    """Write the loads, the largest of them, and whether they drive an unresisted move."""
     samples, weight, push = work.samples, work.weight, work.push
     varying = s.load.shape[0] > 1
     for m in range(width):
@@ -62,7 +62,7 @@ def _load(s, work, width):  # type: ignore[no-untyped-def]
 
 @bare
 def _statics(s, work, width):  # type: ignore[no-untyped-def]
-    """Forces without redundants, gaps, and what is linear of the laws."""
+    """Write forces without redundants, gaps, and the linear part of the laws."""
     samples, weight, statics = work.samples, work.weight, work.spring[at.STATICS]
     one_gap, one_bending = s.gap.shape[0] == 1, s.bending.shape[0] == 1
     for e in range(s.springs.shape[0]):
@@ -95,7 +95,7 @@ def _statics(s, work, width):  # type: ignore[no-untyped-def]
 
 @bare
 def _laws(s, work, width, xs, forces, roots):  # type: ignore[no-untyped-def]
-    """Begin with the laws and the arcs where the samples stand."""
+    """Begin with the laws and the arcs at the samples' iterates."""
     samples, first_row = work.samples, s.first_row
     one_hertz = s.hertz.shape[0] == 1
     for p in range(s.powers):
@@ -128,7 +128,7 @@ def _laws(s, work, width, xs, forces, roots):  # type: ignore[no-untyped-def]
 
 @bare
 def _radials(s, work, width, xs, forces):  # type: ignore[no-untyped-def]
-    """Begin with the radial elements where the samples stand."""
+    """Begin with the radial elements at the samples' iterates."""
     samples = work.samples
     for j in range(s.radial_at.shape[0]):
         e = s.radial_at[j]
@@ -157,7 +157,7 @@ def _radials(s, work, width, xs, forces):  # type: ignore[no-untyped-def]
 
 @bare
 def _linear(s, work, width):  # type: ignore[no-untyped-def]
-    """Redundants of none, and what linear elements add to their matrix and to their gaps."""
+    """Set redundants to zero; write what linear elements add to their matrix and their gaps."""
     renewed = s.first_row + s.powers + s.tables_of.shape[0]
     clear(work.z, width)
     clear(work.base, width)

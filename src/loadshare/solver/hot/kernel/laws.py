@@ -1,4 +1,4 @@
-"""Power laws and tables: the next tangents, and what the last ones leave of the laws."""
+"""Power laws and tables: the next tangents, and the misfit of the last ones."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from loadshare.solver.hot.kernel.options import bare
 
 @bare
 def piece(axis, values, where):  # type: ignore[no-untyped-def]
-    """Start on the axis, start value and slope of the piece of a table that holds `where`."""
+    """Return start on the axis, start value and slope of the table piece that holds `where`."""
     k = 0
     while k + 2 < axis.shape[0] and axis[k + 1] <= where and not np.isnan(axis[k + 2]):
         k += 1
@@ -19,7 +19,7 @@ def piece(axis, values, where):  # type: ignore[no-untyped-def]
 
 @bare
 def renew_laws(s, work, misfit, width):  # type: ignore[no-untyped-def]
-    """Take the next tangents at the forces; write the laws' misfit, relative, (width,)."""
+    """Take the next tangents at the forces; write the laws' relative misfit (width,)."""
     for m in range(width):
         misfit[m] = 0.0
         work.waits[m] = 0.0
@@ -39,7 +39,7 @@ def renew_laws(s, work, misfit, width):  # type: ignore[no-untyped-def]
             more = y
             y *= (cube + 2.0 * target) / (2.0 * cube + target)
             more = abs(more - y)
-            # What the tangent leaves of the law.
+            # Misfit between the tangent and the law.
             gone = abs((b * y + c_hertz) * y * y - moved)
             gone += 0.0 if more <= ABREAST.close * y else 2.0 * c_hertz * y * more
             gone = gone if touching else 0.0
@@ -62,7 +62,7 @@ def renew_laws(s, work, misfit, width):  # type: ignore[no-untyped-def]
 
 @bare
 def renew_tables(s, work, misfit, width):  # type: ignore[no-untyped-def]
-    """Take the next pieces of tables at the compressions; add to the laws' misfit, relative."""
+    """Take the next pieces of tables at the compressions; include them in the relative misfit."""
     for p in range(s.tables_of.shape[0]):
         e = s.first_row + s.powers + p
         for m in range(width):

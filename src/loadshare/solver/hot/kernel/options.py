@@ -1,4 +1,4 @@
-"""How the functions of this room are compiled."""
+"""How the functions of this package are compiled."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ _how: dict[str, Any] = {
     "fastmath": {"reassoc", "contract", "nsz", "arcp"},
 }
 cached = jit(**_how)
-"""What is called from outside; its compiled code is kept on disk."""
+"""Decorator of functions called from outside; their compiled code is kept on disk."""
 allocating = within(**_how)
-# Without counted references, which would cost more than the sums: nothing is allocated in these.
+# Without reference counting, which would cost more than the sums: these allocate nothing.
 _uncounted: dict[str, Any] = {**_how, "_nrt": False}
 bare = within(**_uncounted)

@@ -1,4 +1,4 @@
-"""Newton passes of samples side by side until they have settled or ask for another set."""
+"""Newton passes of samples side by side until they have settled or need another set."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from loadshare.solver.hot.kernel.sums import add_product, solve
 
 @bare
 def _matrix(s, work, width):  # type: ignore[no-untyped-def]
-    """Lower triangle of the redundants' matrix where it or its factor is not zero, with borders.
+    """Write the lower triangle of the redundants' matrix where it or its factor is not zero.
 
-    A border for every slip.
+    Every slip adds a border.
     """
     r, matrix, tangent = s.redundant.shape[1], work.matrix, work.tangent
     entry = 0
@@ -61,7 +61,7 @@ def _matrix(s, work, width):  # type: ignore[no-untyped-def]
 
 @bare
 def _pass(s, work, width):  # type: ignore[no-untyped-def]
-    """One Newton pass: redundants from compatibility, then forces and compressions."""
+    """Make one Newton pass: redundants from compatibility, then forces and compressions."""
     r = s.redundant.shape[1]
     force, stretch, tangent, shift = work.force, work.stretch, work.tangent, work.shift
     z, right = work.z, work.right[:r]
@@ -114,7 +114,7 @@ def _pass(s, work, width):  # type: ignore[no-untyped-def]
             z[c, m] += right[c, m]
     add_product(force, s.redundant, right, width)
     for e in range(s.contacts.shape[0]):
-        # Of radial elements neither the signs nor the compressions are looked at here.
+        # Signs and compressions of radial elements are not looked at here.
         row = 1.0 if s.first_row <= e < s.end_row else 0.0
         for m in range(width):
             f = force[e, m]
@@ -131,7 +131,7 @@ def _pass(s, work, width):  # type: ignore[no-untyped-def]
 
 @bare
 def _judge(s, work, law_misfit, number, one_only, width):  # type: ignore[no-untyped-def]
-    """Judge samples that have settled or ask for another set; return how many."""
+    """Judge samples that have settled or need another set; return how many."""
     misfit, judged = work.misfit, 0
     for m in range(width):
         if work.live[m] == 0.0:
@@ -143,17 +143,17 @@ def _judge(s, work, law_misfit, number, one_only, width):  # type: ignore[no-unt
         # A set that is clearly wrong need not be settled.
         pulled = law_misfit[m] <= HOT.nearly and not one_only[work.samples[m]]
         if work.each[at.DRIFTS, m] > 0.0:
-            # What is first in the way of a drift depends on how deep walls are pressed in.
+            # Which element stops a drift first depends on how deep walls are pressed in.
             pulled = pulled and misfit[m] <= HOT.nearly * (HOT.settled / HOT.law)
         else:
             pulled = pulled and work.weakest[m] < -HOT.gross * work.strongest[m]
-        # Forces without bound and what is not a number are left undecided.
+        # Samples with forces without bound or NaN are left undecided.
         burst = not work.strongest[m] <= HOT.burst * (work.push[m] if work.push[m] > 0.0 else 1.0)
         outside = False
         for t in range(s.turning_radials.shape[0]):
             outside = outside or work.radial[t, at.BEYONDS, m] >= HOT.outside
         hopeless = outside or work.longest[m] >= work.each[at.PATIENT, m]
-        # Far outside of its level piece a slip may leave nothing that resists.
+        # Far outside its level piece a slipping element may leave a move that nothing resists.
         undecided = (work.singular[m] > 0.0 and not outside) or (burst and not settled)
         if settled or pulled or undecided or hopeless:
             sign = HOT.sign if settled else (HOT.gross if pulled else np.inf)
@@ -165,7 +165,7 @@ def _judge(s, work, law_misfit, number, one_only, width):  # type: ignore[no-unt
 
 @bare
 def run(s, work, one_only, enough, width):  # type: ignore[no-untyped-def]
-    """Pass until no more than `enough` samples are live."""
+    """Make passes until no more than `enough` samples are live."""
     distance = np.inf
     for w in range(s.arcs.shape[0]):
         square = 0.0
@@ -183,7 +183,7 @@ def run(s, work, one_only, enough, width):  # type: ignore[no-untyped-def]
         renew_laws(s, work, misfit, width)
         renew_tables(s, work, misfit, width)
         for m in range(width):
-            # Where a flank waits for its law, no law fits.
+            # While a flank waits for its law, the laws of the sample count as unmet.
             law_misfit[m], waits = misfit[m], work.waits[m] > 0.0
             misfit[m] = 1.0 if waits else misfit[m] * (HOT.settled / HOT.law)
         follow_radials(s, work, misfit, width)
@@ -194,9 +194,9 @@ def run(s, work, one_only, enough, width):  # type: ignore[no-untyped-def]
 
 @bare
 def give_up(work, count):  # type: ignore[no-untyped-def]
-    """Let the passes of samples end that have not settled.
+    """End the passes of samples that have not settled.
 
-    Those whose laws are all but met may be told from the signs what is clearly wrong.
+    Those whose laws are nearly met are still judged by signs that are clearly wrong.
     """
     for m in range(count):
         if work.live[m] > 0.0:

@@ -1,4 +1,4 @@
-"""Splines and round rings whose direction turns: laws, tangents, and what these leave."""
+"""Splines and round rings whose direction turns: laws, tangents, and the tangents' misfit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from loadshare.solver.hot.kernel.options import bare
 
 @bare
 def graph(s, i, j, torque, radius):  # type: ignore[no-untyped-def]
-    """Five numbers of a radial law, and whether it has a meaning; see `contact_states.graph`."""
+    """Return five numbers of a radial law, and whether it is valid; see `contact_states.graph`."""
     here = i if s.radial.shape[0] > 1 else 0
     first, given, reach = s.radial[here, j, 0], s.radial[here, j, 1], s.radial[here, j, 2]
     bound = s.radial[here, j, 3]
@@ -35,7 +35,7 @@ def graph(s, i, j, torque, radius):  # type: ignore[no-untyped-def]
 
 @bare
 def torque_of(follows, carried, force, width, torque):  # type: ignore[no-untyped-def]
-    """Torque (width,) over force unit that a radial element carries, if its friction follows it."""
+    """Write the torque (width,) over force unit of a radial element, if friction follows it."""
     for m in range(width):
         torque[m] = 0.0
     if follows:
@@ -48,7 +48,7 @@ def torque_of(follows, carried, force, width, torque):  # type: ignore[no-untype
 
 @bare
 def renew_bound(s, work, t, width):  # type: ignore[no-untyped-def]
-    """Law of a radial element that turns, where it is, with the friction that forces allow."""
+    """Renew the law of a turning radial element at its radius, with the friction of the forces."""
     j = s.turning_radials[t]
     torque_of(s.follows[j], s.carried[j], work.force, width, work.one)
     for m in range(width):
@@ -61,14 +61,14 @@ def renew_bound(s, work, t, width):  # type: ignore[no-untyped-def]
 
 @bare
 def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
-    """Directions and tangents of the radial elements where they are; see `hot.radials.block`."""
+    """Renew directions and tangents of the radial elements; see `hot.radials.block`."""
     one, two = work.one, work.two
     for t in range(s.turning_radials.shape[0]):
         status = s.states[s.first_radial - s.first_column + s.turning_radials[t]]
         law = work.radial[t]
         p, q = work.force[2 * t], work.force[2 * t + 1]
         by_force = status in (CORNER, WALL)
-        # Where it yields by less than the play before it, a turn of the offset looks like a force.
+        # If it yields by less than the play before it, a turn of the offset looks like a force.
         wall = status == STOP and s.radial[0, s.turning_radials[t], 0] == 0.0
         for m in range(width):
             a, b = (p[m], q[m]) if by_force else (law[at.U, m], law[at.V, m])
@@ -79,7 +79,7 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
                 pull = np.sqrt(other_a * other_a + other_b * other_b)
                 if 0.0 < pull < law[at.LAST, m] * law[at.REACH, m]:
                     a, b, square = other_a, other_b, pull * pull
-                    # Its sign tells that this is a force.
+                    # The negative sign marks this as a force.
                     one[m] = -pull
             a, b = (a, b) if square > 0.0 else (other_a, other_b)
             square = a * a + b * b
@@ -92,7 +92,7 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
             size, push, reach, bound = one[m], two[m], law[at.REACH, m], law[at.BOUND, m]
             if by_force:
                 begin = law[at.FIRST_END, m] if status == CORNER else reach
-                # A wall that carries nothing yet holds its float along its direction alone.
+                # A wall that does not carry yet holds its float along its direction alone.
                 unknown = HOT.softest if status == WALL else begin / push
                 inner, outer = 0.0, begin / size if size > 0.0 else unknown
             elif status == SLIP:
@@ -122,7 +122,7 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
 
 @bare
 def lengthen(radial, force, stretch, width):  # type: ignore[no-untyped-def]
-    """Add to the stretch of turning radial elements what is not across their direction."""
+    """Add the part along their direction to the stretch of turning radial elements."""
     for t in range(radial.shape[0]):
         law = radial[t]
         p, q = force[2 * t], force[2 * t + 1]
@@ -136,9 +136,9 @@ def lengthen(radial, force, stretch, width):  # type: ignore[no-untyped-def]
 
 @bare
 def follow_radials(s, work, misfit, width):  # type: ignore[no-untyped-def]
-    """Offsets and friction that belong to the forces; add what the tangents leave to the misfit.
+    """Renew offsets and friction from the forces; include the tangents' misfit.
 
-    As with power laws, what a tangent leaves of the law is of second order.
+    As with power laws, the misfit of a tangent is of second order.
     """
     for t in range(s.turning_radials.shape[0]):
         j = s.turning_radials[t]

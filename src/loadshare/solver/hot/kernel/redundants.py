@@ -1,4 +1,4 @@
-"""Redundants of a set that act in few elements, and what of their matrix is not zero.
+"""Redundants of a set that act in few elements, and the entries of their matrix that are not zero.
 
 Both keep the work of a pass proportional to the number of branches.
 """
@@ -24,9 +24,9 @@ class Factor(NamedTuple):
     Attributes
     ----------
     starts : ndarray of int, shape (r + 1,)
-        Where the rows of each column begin.
+        Where each column begins in `below`.
     below : ndarray of int
-        Numbers below the diagonal, column by column.
+        Rows below the diagonal, column by column.
     rows, columns : ndarray of int
         All entries, each column from its diagonal on, without borders.
     """
@@ -38,12 +38,12 @@ class Factor(NamedTuple):
 
 
 def local(basis: Basis) -> tuple[Array, Array]:
-    """P and N of the same statics, each redundant the force of one element.
+    """Return P and N of the same statics, with each redundant the force of one element.
 
-    It acts in few others, so that most entries are zero, however many branches there are; elements
-    are chosen that leave the space as well conditioned as can be had so. Where nothing moves freely
-    the other elements carry the loads alone, few of them each; otherwise P stays the
-    pseudo-inverse, for the sake of coordinates of least norm.
+    Each acts in few others, so that most entries are zero, however many branches there are; the
+    elements are chosen so that N is as well conditioned as it can be in this form. Where nothing
+    moves freely, the other elements alone carry the loads, few elements for each load; otherwise P
+    stays the pseudo-inverse, so that coordinates are those of least norm.
     """
     from scipy.linalg import qr
 
@@ -60,15 +60,15 @@ def local(basis: Basis) -> tuple[Array, Array]:
 
 
 def _clean(matrix: NDArray[np.floating]) -> Array:
-    """The matrix without what is round-off beside its largest entry."""
+    """Return a matrix without entries that are round-off of its largest."""
     size = np.abs(matrix)
     return np.asarray(np.where(size < STATICS.nothing * size.max(), 0.0, matrix), dtype=np.float64)
 
 
 def _chained(redundant: Array) -> Array:
-    """Redundants that pass an element in which many act on to one another, one after the other.
+    """Replace many redundants that act in one element by differences of consecutive ones.
 
-    All would be coupled through it, the matrix full.
+    Otherwise all of them would be coupled through that element, and their matrix would be full.
     """
     acts = redundant != 0.0
     for row in range(len(redundant)):
@@ -86,23 +86,23 @@ def _chained(redundant: Array) -> Array:
 
 
 def _coupled(redundant: Array) -> Flags:
-    """Which redundants act in one element, (r, r)."""
+    """Return which pairs of redundants act in a common element, (r, r)."""
     acts = (redundant != 0.0).astype(float)
     return np.asarray(acts.T @ acts > 0.0)
 
 
 def eliminated(redundant: Array, turned: Array, borders: int) -> tuple[Array, Factor]:
-    """Redundants (k, r) in an order that leaves little fill, and the factor of their matrix then.
+    """Return redundants (k, r) in an order with little fill-in, and the factor of their matrix.
 
-    Of columns that are left, the one that acts on the fewest others goes first.
+    Of the columns that are left, the one coupled to the fewest others comes next.
 
     Parameters
     ----------
     redundant : ndarray, shape (k, r)
     turned : ndarray, shape (2 t, r)
-        Those of radial elements that turn, whose two columns act together.
+        Their rows in radial elements that turn, the two of an element acting together.
     borders : int
-        Numbers that are added below, full.
+        Full rows that are added below.
     """
     r = redundant.shape[1]
     coupled = _coupled(redundant) | _coupled(np.abs(turned[::2]) + np.abs(turned[1::2]))
@@ -124,7 +124,7 @@ def eliminated(redundant: Array, turned: Array, borders: int) -> tuple[Array, Fa
 
 
 def _factor(below: Sequence[Sequence[int]], borders: int) -> Factor:
-    """Factor with some rows below the diagonal of each column; borders are full."""
+    """Return the factor with given rows below the diagonal of each column; borders are full."""
     r = len(below)
     at = range(r, r + borders)
     all_below = [*([*rows, *at] for rows in below), *(at[k + 1 :] for k in range(borders))]
@@ -139,7 +139,7 @@ def _bits_of(flags: Flags) -> int:
 
 
 def _members(bits: int) -> Iterator[int]:
-    """Numbers of the bits that are set, from the lowest on."""
+    """Yield the numbers of the bits that are set, from the lowest on."""
     while bits:
         lowest = bits & -bits
         yield lowest.bit_length() - 1
@@ -148,5 +148,5 @@ def _members(bits: int) -> Iterator[int]:
 
 @lru_cache
 def full(r: int, borders: int) -> Factor:
-    """Return a factor of which nothing is zero."""
+    """Return a factor without zeros."""
     return _factor([range(c + 1, r) for c in range(r)], borders)

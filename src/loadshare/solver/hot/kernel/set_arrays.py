@@ -1,11 +1,11 @@
-"""What the compiled kernel reads of sets of acting elements and of the samples.
+"""Arrays of sets of acting elements and of samples, as the compiled kernel reads them.
 
-Every array that is handed over costs a tenth of a microsecond, so all sets of a call are in two.
+Passing an array costs a tenth of a microsecond, so all sets of a call are packed into two.
 
 Springs that are the same in all samples never change from pass to pass: what they add to the
-redundants' matrix is written down once. All other columns, `contacts` here, are in the order in
-which the passes treat them: the two columns of every radial element whose direction turns, flanks
-with a power law, with a table, linear rows, and at last what is linear and no row (springs that
+redundants' matrix is computed once. All other columns, `contacts` here, are in the order in which
+the passes treat them: the two columns of every radial element whose direction turns, flanks with a
+power law, with a table, linear rows, and last the linear columns that are not rows (springs that
 differ from sample to sample, radial elements on their first piece or pinned).
 """
 
@@ -27,7 +27,7 @@ from loadshare.solver.hot.products import Rows, rows_of
 
 
 class Samples(NamedTuple):
-    """What differs from sample to sample, as in `Loading`."""
+    """Arrays of the samples, as in `Loading`."""
 
     follows: Flags
     loaded: Numbers
@@ -44,7 +44,7 @@ class Samples(NamedTuple):
 
 
 class SetArrays(NamedTuple):
-    """Numbers of a set and of the samples.
+    """Arrays of a set and of the samples.
 
     The set has r redundants on n coordinates. s of its elements are springs that never change and c
     are contacts, the first q of which are renewed from pass to pass; j radial elements in all, t of
@@ -59,7 +59,7 @@ class SetArrays(NamedTuple):
     across_springs: Array  # (r, s)
     inverse: Array  # (r, r) of the redundants' matrix where it never changes, else (0, 0)
     springs_matrix: Array  # (r, r): what the springs add to the redundants' matrix
-    products: Array  # of two redundants at a contact that is renewed, where they are not zero
+    products: Array  # of two redundants at a contact that is renewed; only those that are not zero
     products_still: Array  # (matrix entries, c − q): at the others
     springs_entries: Array  # (matrix entries,): what the springs add to each
     turned: Array  # (c, u): forces per turned load
@@ -79,12 +79,12 @@ class SetArrays(NamedTuple):
     switches: Numbers  # (rows that act,): their numbers in the set
     arc_contacts: Numbers  # (acting arcs,)
     arcs: Numbers  # (acting arcs,): their numbers
-    turning: Numbers  # (u,): coordinates that acting arcs know of
+    turning: Numbers  # (u,): coordinates on which acting arcs depend
     open_arcs: Numbers  # numbers of the arcs that do not act
     open_rows: Numbers  # numbers of the other rows that do not act
     starts: Numbers  # CSR of A
     coordinates: Numbers
-    arc_starts: Numbers  # coordinates that an arc knows of
+    arc_starts: Numbers  # where the coordinates on which each arc depends begin
     arc_coordinates: Numbers
     radial_at: Numbers  # (j,): first contact of each radial element, −1 where it does not act
     turning_radials: Numbers  # (t,): numbers of the radial elements whose direction turns
@@ -96,7 +96,7 @@ class SetArrays(NamedTuple):
     product_contacts: Numbers  # the contact of each
     powers: int  # flanks with a power law
     first_row: int  # first contact that is a row, 2t
-    end_row: int  # first contact after them that is none
+    end_row: int  # first contact after the rows
     first_column: int  # column of the first row, whether it acts or not
     first_radial: int  # column of the first radial element
     flanks: int  # rows before the first arc
@@ -119,13 +119,13 @@ _TABLES = SetArrays._fields.index("springs")
 _LISTS = SetArrays._fields.index("powers") - _TABLES
 _NUMBERS = SetArrays._fields.index("states") - _TABLES - _LISTS
 _FRONT = 3 * (_TABLES + _LISTS)
-"""Where the numbers of a set are; before them three numbers of every table and list."""
+"""Where the numbers of a set begin; before them come three numbers for every table and list."""
 
 
 def packed_sets(
     structure: Structure, loading: Loading, sets: States
 ) -> tuple[Array, Numbers, Numbers]:
-    """Pack sets one after another; what is known of each is kept for next time.
+    """Pack sets one after another; each packed set is kept for the next time.
 
     Returns
     -------
@@ -150,7 +150,7 @@ def packed_sets(
 
 
 def _pack(structure: Structure, loading: Loading, states: States) -> tuple[Array, Numbers]:
-    """One array of all tables, one of all lists and numbers."""
+    """Return one array of all tables, and one of all lists and numbers."""
     tables, lists, numbers = _structure(structure, loading, structure.basis(states), states)
     front, start = [], 0
     for table in tables:
@@ -166,19 +166,19 @@ def _pack(structure: Structure, loading: Loading, states: States) -> tuple[Array
 
 @allocating
 def _table(floats, place):  # type: ignore[no-untyped-def]
-    """A table of a packed set: where it begins, its rows and its columns."""
+    """Return a table of a packed set; `place` is where it begins, its rows and its columns."""
     return floats[place[0] : place[0] + place[1] * place[2]].reshape((place[1], place[2]))
 
 
 @allocating
 def _list(rows, place):  # type: ignore[no-untyped-def]
-    """A list of a packed set: where it begins and how long it is."""
+    """Return a list of a packed set; `place` is where it begins and how long it is."""
     return rows[place[0] : place[0] + place[1]]
 
 
 @allocating
 def unpacked(floats, rows, states, samples):  # type: ignore[no-untyped-def]
-    """Arrays of a packed set and of samples, in the order of `SetArrays`."""
+    """Return the arrays of a packed set and of samples, in the order of `SetArrays`."""
     return SetArrays(
         _table(floats, rows[0:]),
         _table(floats, rows[3:]),
@@ -248,7 +248,7 @@ def unpacked(floats, rows, states, samples):  # type: ignore[no-untyped-def]
 def _structure(
     structure: Structure, loading: Loading, basis: Basis, states: States
 ) -> tuple[list[Array], list[Numbers], list[int]]:
-    """The fields of `SetArrays` that are the same for all samples: tables, lists, numbers."""
+    """Return the fields of `SetArrays` that all samples share: tables, lists, numbers."""
     first, flanks, first_radial = structure.springs, structure.flat, structure.radial_column(0)
     order, (springs, turned, powers, tables, rows) = _order(structure, loading, basis, states)
     columns, particular, n = basis.columns[order], basis.particular[order], basis.redundant[order]
@@ -328,12 +328,12 @@ def _structure(
 
 
 def _every_set(structure: Structure) -> tuple[Flags, Rows, Rows]:
-    """What is the same in every set.
+    """Return what is the same in every set.
 
     Returns
     -------
     known : ndarray of bool, shape (arcs, n)
-        Which coordinates the arcs know of.
+        Coordinates on which the arcs depend.
     of_arcs, by_rows : tuple of ndarray
         The same, and A, row by row.
     """
@@ -344,7 +344,7 @@ def _every_set(structure: Structure) -> tuple[Flags, Rows, Rows]:
 
 
 def _radial_at(structure: Structure, contacts: Numbers) -> Numbers:
-    """First contact of each radial element, −1 where it does not act."""
+    """Return the first contact of each radial element, −1 where it does not act."""
     at = {column: k for k, column in enumerate(contacts.tolist())}
     radials = range(structure.switches - structure.rows)
     return np.array([at.get(structure.radial_column(j), -1) for j in radials], dtype=np.intp)
@@ -353,14 +353,14 @@ def _radial_at(structure: Structure, contacts: Numbers) -> Numbers:
 def _order(
     structure: Structure, loading: Loading, basis: Basis, states: States
 ) -> tuple[Numbers, tuple[int, ...]]:
-    """Order of the acting columns, and how many there are of each sort but the last."""
+    """Return the order of the acting columns, and the number of each sort but the last."""
     columns = basis.columns
     is_spring = columns < structure.springs
     is_radial = columns >= structure.springs + structure.rows
     # Columns of radial elements come in pairs, all others before them one by one.
     number = np.where(is_radial, (columns - structure.springs + structure.rows) // 2, 0)
     place = np.where(is_radial, np.append(states, OPEN)[number], OPEN)
-    # What is said last counts.
+    # Later assignments override earlier ones.
     sort = np.where(loading.curved[columns], 2, 4)
     sort[loading.tabulated[columns] >= 0] = 3
     sort[is_radial | is_spring] = 5
@@ -373,7 +373,7 @@ def _order(
 def _inverse(
     structure: Structure, loading: Loading, columns: Numbers, n: Array, states: States
 ) -> Array:
-    """Inverse of the redundants' matrix of linear elements, if it is the same in all samples."""
+    """Return the inverse of the redundants' matrix of linear elements; empty if samples differ."""
     compliance, steady = np.array(loading.bending[0]), np.array(loading.steady)
     for j in np.flatnonzero(states[structure.rows :] == STICK).tolist():
         pair = slice(structure.radial_column(j), structure.radial_column(j) + 2)

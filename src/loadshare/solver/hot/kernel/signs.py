@@ -1,4 +1,4 @@
-"""What has the wrong sign, and the set that mends it."""
+"""Elements with the wrong sign, and the set that corrects them."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from loadshare.solver.hot.kernel.work import BAND, BEYONDS
 def look_at_rows(s, work, width):  # type: ignore[no-untyped-def]
     """Mark rows with the wrong sign, (rows, width), and count them.
 
-    `strongest` and `weakest` become the largest force and length of a sample, to which its signs
-    are compared.
+    `strongest` and `weakest` are set to the largest force and length of a sample, to which the
+    violations of signs are compared.
     """
     samples, x, force, wrong, count = work.samples, work.x, work.force, work.wrong, work.mistakes
     strongest, longest, nearer = work.strongest, work.weakest, work.waits
@@ -65,7 +65,7 @@ def look_at_rows(s, work, width):  # type: ignore[no-untyped-def]
 
 @bare
 def misplaced(status, law, u, v, p, q, force_band, length_band, faint):  # type: ignore[no-untyped-def]
-    """Where a radial element should stand; its own place if that is right. See `misplaced`."""
+    """Return the right state of a radial element, possibly its own; see `hot.radials.misplaced`."""
     first, stick, bound, reach, last, _ = law
     radius, size = np.sqrt(u * u + v * v), np.sqrt(p * p + q * q)
     jump = bound > first * stick * (1.0 + HOT.rounded)
@@ -106,19 +106,19 @@ def misplaced(status, law, u, v, p, q, force_band, length_band, faint):  # type:
         return beyond if radius > reach + length_band else at.SLIP
     if status == at.STOP:
         if (radius < reach - length_band or inward) and reach > 0.0:
-            # A stop that carries next to nothing sticks: it does not use up its friction.
+            # A stop that carries almost nothing sticks: it does not use up its friction.
             slips = reach > stick and radius >= stick and size > HOT.gross * bound
             return level if slips else back
         return at.STOP
-    # A wall may hold a float by next to no force.
+    # A wall may hold a float with almost no force.
     return at.OPEN if inward or size <= faint else at.WALL
 
 
 @bare
 def look_at_radials(s, work, width):  # type: ignore[no-untyped-def]
-    """Find out where radial elements should stand, and count those that stand elsewhere.
+    """Find the right states of radial elements, and count the elements with another state.
 
-    `strongest` and `weakest` hold the largest force and length, as `look_at_rows` leaves them.
+    `strongest` and `weakest` hold the largest force and length, as set by `look_at_rows`.
     """
     u, v, torque = work.two, work.three, work.one
     for j in range(s.radial_at.shape[0]):
@@ -138,7 +138,7 @@ def look_at_radials(s, work, width):  # type: ignore[no-untyped-def]
             if sign == 0.0:
                 continue
             if sign > 1.0:
-                # Not settled: only one that has left its level piece tells.
+                # Not settled: only an element that has left its level piece is judged.
                 if not turns or work.radial[e // 2, BEYONDS, m] < HOT.outside:
                     continue
                 sign = HOT.sign
@@ -153,7 +153,7 @@ def look_at_radials(s, work, width):  # type: ignore[no-untyped-def]
 
 @bare
 def propose(states, wrong, better, m, one_only, proposal):  # type: ignore[no-untyped-def]
-    """Write the set that mends what is wrong in a sample."""
+    """Write the set that corrects the wrong elements of a sample."""
     rows = wrong.shape[0]
     for row in range(states.shape[0]):
         proposal[row] = states[row]
@@ -172,9 +172,9 @@ def propose(states, wrong, better, m, one_only, proposal):  # type: ignore[no-un
 
 @bare
 def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-def]
-    """Propose what is first in the way of the drift of a sample, and go there.
+    """Propose the element that first stops the drift of a sample, and move the sample there.
 
-    From elsewhere the passes may end at the far side of a ring, held inward.
+    From another start the passes may end at the far side of a ring, held inward.
     """
     i, n, drift, x = work.samples[m], work.x.shape[0], work.drift, work.x
     load = s.load[i if s.load.shape[0] > 1 else 0]

@@ -1,4 +1,4 @@
-"""Sums over rows, and systems of equations, of samples side by side."""
+"""Sums over rows, and systems of equations, for samples side by side."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from loadshare.solver.hot.kernel.options import bare
 def add_product(total, weights, table, width):  # type: ignore[no-untyped-def]
     """Add weights (p, q) times the first q rows of a table, (·, width), to total (p, width).
 
-    Two rows and four terms at a time, so that a term is fetched once for two rows. Where all of
-    these weights are zero, nothing is added.
+    This takes two rows and four terms at a time, so that a term is fetched once for two rows, and
+    skips them where all of their weights are zero.
     """
     p, q = weights.shape
     rows, terms = p - p % 2, q - q % 4
@@ -58,7 +58,7 @@ def clear(table, width):  # type: ignore[no-untyped-def]
 
 @bare
 def approach(s, samples, column, x, width, total):  # type: ignore[no-untyped-def]
-    """Write A x − g (width,) of a column of a row or of a radial element."""
+    """Write A x − g (width,) for one column of a row or of a radial element."""
     varying = s.gap.shape[0] > 1
     for m in range(width):
         total[m] = -s.gap[samples[m] if varying else 0, column]
@@ -76,10 +76,10 @@ def approach(s, samples, column, x, width, total):  # type: ignore[no-untyped-de
 
 @bare
 def solve(matrix, right, factor, definite, width, singular, largest, pivot):  # type: ignore[no-untyped-def]
-    """Solve symmetric systems (size, size, width) in place, lower triangles given.
+    """Solve symmetric systems (size, size, width) in place, given their lower triangles.
 
-    The first `definite` rows are positive definite, the others borders. Of each column only those
-    rows below the diagonal are looked at in which the factor is not zero (starts, rows).
+    The first `definite` rows are positive definite, the others borders. Below the diagonal of each
+    column, only the rows in which the factor is not zero (starts, rows) are visited.
     """
     starts, below = factor
     size = right.shape[0]

@@ -1,4 +1,4 @@
-"""What the compiled kernel writes: samples side by side, along the last axis."""
+"""Arrays that the compiled kernel writes: samples side by side, along the last axis."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from loadshare.solver.hot.kernel.options import allocating
 
 
 class Given(NamedTuple):
-    """Samples to settle, where they stand, and what is found of them."""
+    """Samples to settle, their iterates and their results."""
 
     rows: Numbers  # (k,): their numbers
     xs: Array  # (S, n)
@@ -24,24 +24,24 @@ class Given(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Samples side by side."""
+    """Work arrays of samples side by side."""
 
     samples: Numbers
     at_row: Numbers
     each: Array  # (_EACH, width)
     live: Array  # 1 for a sample that is not judged yet
-    go: Array  # 0 for a sample that is given up and stands; what has settled is refined
+    go: Array  # 0 for a sample that is given up and no longer changes; settled ones are refined
     push: Array  # largest load
     floor: Array  # smallest root
     singular: Array  # 1 for a singular matrix
     mistakes: Array  # number of wrong signs
     misfit: Array
-    largest: Array  # compression
+    largest: Array  # largest compression
     strongest: Array
     weakest: Array
-    longest: Array  # passes in a row without contact, of all flanks
+    longest: Array  # most passes in a row without contact, over all flanks
     waits: Array  # 1 where a flank without contact is not at its smallest root
-    one: Array  # (width,) for passing use, as are the following
+    one: Array  # (width,) for temporary use, as are the following
     two: Array
     three: Array
     weight: Array  # (loads, width)
@@ -68,21 +68,21 @@ class Work(NamedTuple):
     z: Array  # (r, width)
     base: Array  # (r, width): what the springs open without redundants and turned loads
     right: Array  # (r and borders, width)
-    linear: Array  # (matrix entries, width): what is linear of the matrix
+    linear: Array  # (matrix entries, width): part of the matrix from linear elements
     matrix: Array  # (r and borders, r and borders, width)
     normal: Array  # (3, width)
     wrong: Flags  # (rows, width)
-    better: States  # (radials, width): where they should stand
+    better: States  # (radials, width): the states that they should have
 
 
 BAND, PATIENT, DRIFTS, PREVIOUS, TURN, GIVEN_UP = 0, 1, 2, 3, 4, 5
 """Of a sample: band by which its signs are judged, 0 if they are not; passes that a flank may be
-without contact; 1 for a drift; misfit of the pass before; what arcs still turn; 1 where the passes
-ended before it had settled."""
+without contact; 1 for a drift; misfit of the previous pass; turn of the arcs in the last pass; 1
+where the passes ended before it had settled."""
 _EACH = 6
 STATICS, STILL, MOVED, TOTAL = 0, 1, 2, 3
-"""Of a spring: force without redundants and turned loads, gap and compression without them, and
-with them; force of the redundants and turned loads."""
+"""Of a spring: force without redundants and turned loads; gap and compression together without
+them, and with them; force of the redundants and turned loads."""
 _SPRING = 4
 BOUND, FIRST_END, REACH, LAST = 0, 1, 2, 3
 """Of a turning radial element: friction bound, end of the first piece, S2, last stiffness."""
@@ -95,7 +95,7 @@ _RADIAL = 13
 
 @allocating
 def work_for(s, n, width):  # type: ignore[no-untyped-def]
-    """Allocate for so many samples of a set on n coordinates."""
+    """Allocate arrays for `width` samples of a set on n coordinates."""
     r, springs, contacts = s.redundant.shape[1], s.springs.shape[0], s.contacts.shape[0]
     turned, radials, turning = s.borders.shape[0], s.radial_at.shape[0], s.turning.shape[0]
     size = r
