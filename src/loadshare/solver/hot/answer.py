@@ -107,7 +107,7 @@ class _Map:
 
     @cached_property
     def rows(self) -> list[Rows]:
-        """Sparse rows of the transposed matrices, whose products skip zeros."""
+        """Sparse transposed matrices: a coordinate belongs to one or two gears, a force to one."""
         from loadshare.solver.hot.products import rows_of
 
         return [rows_of(matrix.T) for matrix in self.matrices]
