@@ -1,7 +1,7 @@
 """Situations and claims as compiled code reads them: tuples of arrays of one kind.
 
-There is one such tuple of each: Numba takes two that are alike for the same, and looks at all types
-again in every call that it took for the other.
+Each has one such type: Numba takes two types that are alike for the same one, and examines all
+types again in every call with the other.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.situations import VARYING, Situations
 
 Here = namedtuple("Here", VARYING)  # type: ignore[misc]
-"""What a position brings, one row or one per answer: the arrays of `Situations`."""
+"""The arrays of `Situations`, with one row or one per answer."""
 Claim = namedtuple("Claim", CLAIMED)  # type: ignore[misc]
-"""What is claimed: the arrays of `Equilibria`."""
+"""The arrays of `Equilibria`."""
 
 
 def arrays_of(situations: Situations, answers: Equilibria) -> tuple[Any, Any]:
-    """Return situations and claims as tuples, the vectors of gears one after another in rows."""
+    """Return situations and claims as tuples, with the vectors of all gears in one row."""
     here = Here(*(_array(name, getattr(situations, name)) for name in VARYING))
     return here, Claim(*(_array(name, getattr(answers, name)) for name in CLAIMED))
 
 
 def _array(name: str, array: Array) -> Array:
-    """Return an array of the one kind that code is compiled for."""
+    """Return an array of the kind for which code is compiled."""
     if not (array.flags.carray and array.dtype == np.float64):
         array = np.require(array, np.float64, ["C", "W"])
     return array.reshape(len(array), math.prod(array.shape[1:])) if name in _OF_GEARS else array

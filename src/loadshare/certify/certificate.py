@@ -1,7 +1,7 @@
 """The certificate of an equilibrium (formulation, section 8).
 
-It is recomputed from the train and the claimed displacements and forces alone. No solver's word, no
-programme and no row enters it: a slip in any of them shows here.
+It is recomputed from the train and the claimed displacements and forces alone. Nothing of a solver,
+of a programme or of its rows enters it, so that a mistake in any of them shows here.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ class Certificate:
     tolerance : float
         Largest scaled residual allowed.
     scales : mapping of str to float
-        Of the case: its load by "N", its deflection by "m", and their product by "J".
+        Of the case: its load under "N", its deflection under "m", and their product under "J".
     proved_together : float or None
-        What was `proved` of an answer that was judged with many others.
+        The value of `proved` for an answer that was judged together with many others.
     claims : Claims
-        Among which the answer is judged.
+        Claims among which the answer is judged.
     row : int
         Its number among them.
     """
@@ -49,7 +49,7 @@ class Certificate:
     floats: Mapping[str, FloatState]
     tolerance: float
     scales: Mapping[str, float]
-    # Many claims are bounded another way than one: both bounds hold, and results are the same.
+    # Many claims are bounded in another way than one: both bounds hold, so it is not compared.
     proved_together: float | None = field(compare=False)
     claims: Claims = field(compare=False, repr=False)
     row: int = field(compare=False, repr=False)
@@ -66,13 +66,13 @@ class Certificate:
 
     @cached_property
     def bound(self) -> Bound:
-        """How far every torque, force and displacement is from the exact equilibrium, at most."""
+        """Bounds on the distance of every torque, force and displacement from the exact ones."""
         found, other = self.claims.bounds[self.row], self.proved_together
         return found if other is None else replace(found, relative=min(found.relative, other))
 
     @property
     def proved(self) -> float:
-        """Largest distance of a torque from the exact one, over the largest torque, proved."""
+        """Proved bound on the error of every torque, over the largest torque."""
         other = self.proved_together
         return self.bound.relative if other is None else other
 
@@ -85,7 +85,7 @@ class Certificate:
     def passed(self) -> bool:
         """Whether every residual, and the error of every torque, is within the tolerance.
 
-        The error of a torque counts over the largest torque of the train.
+        The error of a torque is taken over the largest torque of the train.
         """
         return self.worst <= self.tolerance and self.proved <= self.tolerance
 
@@ -96,7 +96,7 @@ class Certificate:
 
     @property
     def shortfall(self) -> str:
-        """These in words."""
+        """The failing residuals in words."""
         return "; ".join(
             f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} ({r.scaled:.1e} of the "
             f"case, allowed {self.tolerance:.0e})"
@@ -107,7 +107,7 @@ class Certificate:
 def certified(
     claims: Claims, tolerance: float, proved: Sequence[float] | None = None
 ) -> list[Certificate]:
-    """Return the certificates of claims, whose figures are computed when they are asked for.
+    """Return the certificates of claims, whose figures are computed when they are first read.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def certified(
     tolerance : float
         As for `certify`.
     proved : sequence of float, optional
-        What was `proved` of each when it was judged with many others.
+        The value of `proved` for each, if it was judged together with many others.
     """
     return [
         Certificate(
@@ -151,8 +151,8 @@ def certify(
         Largest scaled residual, and largest error of a torque over the largest torque, of a
         certified answer.
     rigorous : bool
-        Find the residuals behind the bound in twice the working precision in any case, not only
-        where plain arithmetic does not suffice.
+        Always find the residuals behind the bound in twice the working precision, not only where
+        plain arithmetic does not suffice.
 
     Returns
     -------
@@ -162,11 +162,11 @@ def certify(
     Raises
     ------
     ValueError
-        If the tolerance is no tolerance.
+        If the tolerance is not one that can be certified by.
     """
     tolerance = checked_tolerance(tolerance)
     (certificate,) = certified(Claims.of(train, [answer], rigorous), tolerance)
-    # What is wrong anyway is bounded for those only who ask.
+    # The bound of an answer that fails anyway is computed only if it is read.
     if all(r.scaled <= tolerance for r in certificate.residuals.values()):
         _ = certificate.bound
     return certificate
@@ -175,12 +175,12 @@ def certify(
 def certify_all(
     trains: Sequence[Train], answers: Sequence[Equilibrium], tolerance: float
 ) -> list[Certificate]:
-    """Judge equilibria, those of one train that follow one another together.
+    """Judge equilibria; consecutive ones of one train are judged together.
 
     Parameters
     ----------
     trains : sequence of Train
-        Of each; the same object where they are of one train.
+        The train of each answer; the same object for answers of one train.
     answers : sequence of Equilibrium
     tolerance : float
         As for `certify`.
@@ -194,5 +194,5 @@ def certify_all(
 
 
 def in_groups(every: Sequence[int]) -> list[Sequence[int]]:
-    """Return numbers of answers in groups that are looked at together."""
+    """Return numbers of answers in groups that are judged together."""
     return [every[at : at + CERTIFY.abreast] for at in range(0, len(every), CERTIFY.abreast)]

@@ -1,8 +1,8 @@
-"""Claims of a train at some positions: the figures of each, found together.
+"""Claims of a train at some positions, and the figures of each, computed together.
 
-NumPy takes as long for one claim as for eight, so that positions of a result are looked at in
-groups. No figure of a certificate depends on the others of its group, to the last digit; bounds are
-those of a group, each of which holds.
+NumPy takes as long for one claim as for eight, so positions of a result are judged in groups. No
+digit of a figure of a certificate depends on the other claims of its group; bounds do depend on the
+group, but each of them holds.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ Derived = TypeVar("Derived")
 
 @dataclass(eq=False, repr=False)
 class Claims:
-    """Claims of one train, at a position each.
+    """Claims of one train, each at a position.
 
     Parameters
     ----------
     train : Train
     judge : Judge
-        Of a train of its shape.
+        The judge of a train of the same shape.
     positions : sequence of int
         1-based.
     answers : Equilibria
     undetermined : sequence of mapping of coordinate to (float, float)
-        What the forces of each leave open.
+        Coordinates that the forces of each leave undetermined, with their ranges.
     rigorous : bool
         As for `certify`.
     """
@@ -62,7 +62,7 @@ class Claims:
 
     @classmethod
     def of(cls, train: Train, answers: Sequence[Equilibrium], rigorous: bool = False) -> Claims:
-        """Return what some equilibria claim."""
+        """Return the claims of some equilibria."""
         claimed = Equilibria.empty(train, len(answers))
         with np.errstate(all="ignore"):
             for row, answer in enumerate(answers):
@@ -73,26 +73,26 @@ class Claims:
         )
 
     def derived(self, derive: Callable[[Claims], Derived]) -> Derived:
-        """Return what a later package works out from the claims, once."""
+        """Return what a later package derives from the claims; computed once."""
         if derive not in self._derived:
             self._derived[derive] = derive(self)
         return cast("Derived", self._derived[derive])
 
     @cached_property
     def situations(self) -> Situations:
-        """Of each claim."""
+        """The situation of each claim."""
         if len(self.positions) == 1:
             return situation_of(self.train, self.positions[0])
         return situations_of(self.train, self.positions)
 
     @cached_property
     def state(self) -> ClaimedState:
-        """The claims seen as mechanics."""
+        """The mechanical state that is claimed: approaches, forces and graphs."""
         return ClaimedState(self.judge.mechanics, self.situations, self.answers)
 
     @cached_property
     def faults(self) -> tuple[str, ...]:
-        """Why a claim cannot be judged; empty where it can."""
+        """Why each claim cannot be judged; empty where it can."""
         with np.errstate(all="ignore"):
             return tuple(
                 fault_of(self.train, self.state, row) for row in range(len(self.positions))
@@ -130,7 +130,7 @@ class Claims:
     @cached_property
     def floats(self) -> list[Mapping[str, FloatState]]:
         """Where every float rests, claim by claim."""
-        # What is claimed may be of any size.
+        # Claimed numbers may be of any size.
         with np.errstate(all="ignore"):
             gears = self.train.floating if not all(self.faults) else ()
             every = {gear: self.rests.each(gear) for gear in gears}
@@ -141,7 +141,7 @@ class Claims:
 
     @cached_property
     def bounds(self) -> list[Bound]:
-        """How far each claim is from the exact equilibrium, at most."""
+        """Bounds on the distance of each claim from the exact equilibrium."""
         found = [Bound.none(self.train) for _ in self.positions]
         every = range(len(found))
         sound = [

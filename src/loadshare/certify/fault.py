@@ -10,10 +10,10 @@ from loadshare.train.train import Train
 
 
 def fault_of(train: Train, state: ClaimedState, row: int) -> str:
-    """Why a claim cannot be judged, else empty.
+    """Return why a claim cannot be judged; empty if it can.
 
-    A figure is not a number, a spline has no law, or a gear is beyond the neighbour on whose
-    ring its own rolls: there the arc's inequality holds, and no gear can be.
+    Either a figure is not a number or too large, or a spline has no law, or a gear is beyond the
+    neighbour on whose ring its own rolls: there the arc's inequality holds, but no gear can be.
     """
     if not state.faulty[row]:
         return ""

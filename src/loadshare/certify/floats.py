@@ -14,7 +14,7 @@ from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.state import ClaimedState, size
 
 STAGES = ("stick", "slip", "stop")
-"""Of a spline, in the order of the pieces of its graph."""
+"""Stages of a spline, in the order of the pieces of its graph."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class FloatState:
     gear : str
     state : str
         "inside", "on boundary", or "undetermined" where forces leave the place open and no boundary
-        pushes; what it then says of margins holds for the place of least norm.
+        pushes; margins are then those of the place of least norm.
     boundary : str or None
         The boundaries it touches, the hardest pressed first.
     margin : float or None
@@ -93,7 +93,7 @@ class Boundaries(NamedTuple):
         Outward, in the gear's transverse frame.
     touching : ndarray of bool, shape (boundaries, S)
     reaction : ndarray, shape (2, S)
-        Of all of them [N].
+        Force of all of them together [N].
     """
 
     names: tuple[str, ...]
@@ -117,8 +117,8 @@ class Rests:
     undetermined : sequence of collection of str
         Coordinates that the forces of each claim do not determine.
     band : float
-        Relative band: a margin within band × deflection, or a reaction above band × load with no
-        margin left, is contact.
+        Relative band: a margin within band × deflection at a place that is determined, or a
+        reaction above band × load, is contact.
     """
 
     def __init__(
@@ -132,7 +132,7 @@ class Rests:
         self._boundaries: dict[str, Boundaries] = {}
 
     def settled(self, gear: str) -> Flags:
-        """Whether the forces determine the place of a float, (S,)."""
+        """Return whether the forces determine the place of a float, (S,)."""
         return np.asarray(self._settled[self.gears.index(gear)])
 
     def boundaries(self, gear: str) -> Boundaries:
@@ -151,7 +151,7 @@ class Rests:
         return self._boundaries[gear]
 
     def _of_drums(self, gear: str) -> Iterable[Some]:
-        """Boundaries of its drums."""
+        """Yield the boundaries of a float's drums."""
         state, of = self.state, self.state.of
         plane = of.train.gears[gear].plane
         for d, ring in enumerate(of.train.drums):
@@ -166,7 +166,7 @@ class Rests:
             yield of.contacts[own], -state.approach[own], force, normal, pushed
 
     def _of_rings(self, gear: str) -> Iterable[Some]:
-        """Boundaries of its round rings."""
+        """Yield the boundaries of a float's round rings."""
         state, of = self.state, self.state.of
         plane = of.train.gears[gear].plane
         for q, ring in enumerate(of.train.rounds):
@@ -185,7 +185,7 @@ class Rests:
 
     @cached_property
     def margin(self) -> Array:
-        """Smallest distance to a boundary [m], (floats, S); not a number without one."""
+        """Smallest distance to a boundary [m], (floats, S); NaN without one."""
         every = [self.boundaries(gear).margin for gear in self.gears]
         least = [m.min(axis=0) if len(m) else np.full(self.state.count, np.nan) for m in every]
         return self._over_floats(least)
@@ -205,7 +205,7 @@ class Rests:
         return np.array(values).reshape(len(self.gears), *inner, self.state.count)
 
     def rest(self, gear: str) -> NDArray[np.str_]:
-        """Words for where a float rests, (S,): the boundaries it touches, or its state."""
+        """Return in words where a float rests, (S,): the boundaries it touches, or its state."""
         found = self.boundaries(gear)
         order = np.argsort(-found.force, axis=0, kind="stable")
         touched = np.where(np.take_along_axis(found.touching, order, axis=0), order, -1)
@@ -219,11 +219,11 @@ class Rests:
         return np.array(words, dtype=str)[which.reshape(-1)]
 
     def stage(self, gear: str) -> Numbers:
-        """Stage of its spline, (S,), as a number of `STAGES`; −1 of a gear without one.
+        """Return the stage of its spline, (S,), as an index of `STAGES`; −1 without a spline.
 
-        The last piece of its graph that its radius has entered and its force has reached. With
-        memory its parts are friction and clearance. Where both hold the slip, how they share the
-        force is open; it sticks if friction could do it alone.
+        This is the last piece of the graph that the radius has entered and the force has reached.
+        With memory, the parts are friction and clearance. Where both hold the slip, how they share
+        the force is undetermined; the spline counts as sticking if friction alone could hold it.
         """
         state, own, pressed = self.state, self._on_spline(gear), self._pressed
         if not own:
@@ -249,20 +249,20 @@ class Rests:
         return found
 
     def stage_name(self, gear: str) -> NDArray[np.str_]:
-        """Stage of its spline in words, (S,); empty of a gear without one."""
+        """Return the stage of its spline in words, (S,); empty without a spline."""
         return np.array([*STAGES, ""])[self.stage(gear)]
 
     def _on_spline(self, gear: str) -> list[int]:
-        """Numbers of the radial elements of a gear's spline."""
+        """Return the numbers of the radial elements of a gear's spline."""
         of = self.state.of
         splines = tuple(of.train.splines)
         return [q for q, k in of.claims.on_splines if splines[k] == gear]
 
     def each(self, gear: str) -> list[FloatState]:
-        """Return what there is to say of a float, claim by claim."""
+        """Return the state of a float, claim by claim."""
         found, state = self.boundaries(gear), self.state
         own = self._on_spline(gear)
-        # Claim by claim as plain numbers: single ones out of an array take ten times as long.
+        # As plain numbers, claim by claim: reading single entries of arrays takes ten times longer.
         of_boundaries = (found.margin, found.force, found.normal, found.touching)
         every = [np.moveaxis(figures, -1, 0).tolist() for figures in of_boundaries]
         reaction, settled = found.reaction.T.tolist(), self.settled(gear).tolist()

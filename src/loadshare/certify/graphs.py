@@ -1,7 +1,7 @@
 """Graphs of radial elements (formulation, section 5).
 
-Where `train.radial` has a chain of pieces, a graph has five figures here, so that all elements of
-all samples are judged by the same few lines.
+Where `contact.radial` has a chain of pieces, a graph here has five figures, so that the same few
+lines judge all elements of all samples.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class Graph(NamedTuple):
     first : ndarray, shape (Q, S)
         Slope of the first rise [N/m].
     stick : ndarray, shape (Q, S)
-        Radius where it ends [m]; infinite where it goes on for ever.
+        Radius where it ends [m]; infinite where it never ends.
     bound : ndarray, shape (Q, S)
         Force of the level [N].
     reach : ndarray, shape (Q, S)
@@ -39,9 +39,9 @@ class Graph(NamedTuple):
 
 
 def wall(reach: Array, stiffness: Array, power: Array, radius: Array) -> tuple[Array, Array]:
-    """Where the tangent of a wall F = K (R − reach)^power begins [m], and its slope [N/m].
+    """Return where the tangent of a wall F = K (R − reach)^power begins [m], and its slope [N/m].
 
-    Inside the reach it begins there, and rises as a wall that is pressed by next to nothing.
+    Inside the reach, it is the tangent of a wall that is barely pressed.
 
     Parameters
     ----------
@@ -58,10 +58,10 @@ def wall(reach: Array, stiffness: Array, power: Array, radius: Array) -> tuple[A
 
 
 def spline_graphs(numbers: Array, torque: Array, *, memory: bool) -> tuple[list[Graph], Flags]:
-    """Graphs of splines that transmit torques [N·m], and whether one has none.
+    """Return the graphs of splines that transmit torques [N·m], and which splines have none.
 
-    With memory those of friction and of the stop at the end of the slip; there is then no step
-    where a spline starts to slip.
+    With memory they are those of friction and of the stop at the end of the slip; then no step is
+    allowed where a spline starts to slip.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def spline_graphs(numbers: Array, torque: Array, *, memory: bool) -> tuple[list[
 
 
 def interval(graph: Graph, radius: Array, band: Array) -> tuple[Array, Array]:
-    """Forces [N] that graphs admit within the band [m] about radii [m]."""
+    """Return the least and largest forces [N] that graphs admit within a band [m] of radii [m]."""
     first, stick, bound, reach, last = graph
     throughout = np.isinf(stick)
     low, high = np.full(radius.shape, np.inf), np.zeros(radius.shape)
@@ -112,12 +112,12 @@ def interval(graph: Graph, radius: Array, band: Array) -> tuple[Array, Array]:
 
 
 def strength(graph: Graph) -> Array:
-    """Largest force [N] that graphs admit: finite only where they end in a level."""
+    """Return the largest force [N] that graphs admit: finite only where they end in a level."""
     return np.where(np.isinf(graph.reach) & np.isinf(graph.last), graph.bound, np.inf)
 
 
 def energy(graph: Graph, radius: Array) -> Array:
-    """Strain energy [J] of graphs at radii [m]."""
+    """Return the strain energy [J] of graphs at radii [m]."""
     first, stick, bound, reach, last = graph
     rise = np.minimum(radius, stick)
     throughout = np.isinf(stick)
@@ -129,7 +129,7 @@ def energy(graph: Graph, radius: Array) -> Array:
 
 
 def complementary(graph: Graph, force: Array) -> Array:
-    """Conjugate energy [J] of graphs at forces [N]."""
+    """Return the conjugate energy [J] of graphs at forces [N]."""
     first, stick, bound, reach, last = graph
     throughout = np.isinf(stick)
     has_rise = first > 0.0

@@ -44,7 +44,7 @@ class Judge:
 
     @cached_property
     def measuring(self) -> Measuring:
-        """What is measured on displacements."""
+        """The measures of displacements."""
         return measuring(self.train)
 
     def judge(
@@ -64,42 +64,42 @@ class Judge:
         tolerance : float
             Largest scaled residual of a certified answer.
         compiled : bool
-            With Numba, one answer after another, instead of NumPy: the same verdicts, several
-            times as fast once it is compiled. The residuals are then those behind the bound, and
-            the energy gap, which follows from them, is left to single answers. Splines with memory
-            and what is too soft for that are judged with NumPy all the same.
+            Use Numba, one answer after another, instead of NumPy: the same verdicts, several times
+            as fast once it is compiled. The residuals are then those behind the bound, and the
+            energy gap, which follows from them, is left to single answers. Splines with memory
+            and answers too soft for this are judged with NumPy all the same.
         bounded : bool
-            Whether errors are bounded with every effort; without a bound nothing passes, and with
-            Numba nothing but what is bounded at once.
+            Whether to try every method to bound errors. Otherwise nothing passes with NumPy, and
+            with Numba only answers whose first bound is good enough.
         """
         if compiled and self.compiles:
             return self._compiled(situations, answers, tolerance, bounded)
         limits = None
         if bounded:
-            # What is certified is close enough, as in `completed`.
+            # A bound within the tolerance is close enough, as in `completed`.
             limits = bounds(self.columns, situations, answers, enough=tolerance)
         return self._by_numpy(situations, answers, tolerance, limits)
 
     @property
     def compiles(self) -> bool:
-        """Whether answers are judged with Numba where that is wanted."""
+        """Whether answers can be judged with Numba."""
         return is_covered(self.columns)
 
     def _compiled(
         self, situations: Situations, answers: Equilibria, tolerance: float, bounded: bool
     ) -> Verdicts:
         found = judged(self.columns, situations, answers)
-        # Of what is next to nothing the energy gap does not follow from forces that are in balance.
+        # In very soft springs the energy gap does not follow from forces that are in balance.
         found.worst[_is_soft(situations, found.load, found.deflection, tolerance)] = np.nan
         if self.measuring.unsure:
-            # Compiled code does not measure how far these are open.
+            # Compiled code does not measure how far these meshes are open.
             found.displaced[:] = np.nan
         for figure, name in ((found.worst, "worst"), (found.displaced, "displaced")):
             left = np.flatnonzero(np.isnan(figure))
             if len(left):
                 some = situations.take(left), answers.take(left)
                 figure[left] = getattr(self._by_numpy(*some, tolerance), name)
-        # What is out of balance is refused in any case.
+        # Answers that are out of balance are refused in any case.
         wanted, relative = bounded & (found.worst <= tolerance), found.relative
         limits = completed(self.columns, situations, answers, relative, tolerance, wanted)
         load, deflection = found.load, found.deflection
@@ -125,7 +125,7 @@ class Judge:
         return Verdicts(worst, tolerance, load, deflection, displaced, limits)
 
     def _together(self, situations: Situations, answers: Equilibria) -> tuple[Array, Array, Array]:
-        """Largest scaled residuals and both scales."""
+        """Return the largest scaled residuals and both scales."""
         with np.errstate(all="ignore"):
             state = ClaimedState(self.mechanics, situations, answers)
             # Column by column: rows are too short to be worth a loop each.
@@ -134,10 +134,10 @@ class Judge:
 
 
 def _is_soft(situations: Situations, load: Array, deflection: Array, tolerance: float) -> Flags:
-    """Whether a force [N] within the tolerance is more energy in a spring than the tolerance is.
+    """Return whether a force error within the tolerance may exceed it as energy in some spring.
 
-    The gap that an error f of a spring's force leaves is f²/2K, the scale of energies that of loads
-    times deflections.
+    An error f of a spring's force leaves an energy gap of f²/2K; energies are scaled by load times
+    deflection.
     """
     springs = (situations.spline[..., 0], situations.support.reshape(len(situations.support), -1))
     soft = np.zeros(len(load), dtype=bool)

@@ -1,7 +1,7 @@
 """Deformation laws of flanks (formulation, section 3), for many samples.
 
 A certificate shares no code with a solver: the roots and tables here are not those of the hot path,
-so that a slip in one of them shows in the other.
+so that a mistake in one of them shows in the other.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ from loadshare.settings import CERTIFY
 
 
 def strain_energy(b: Array, c: Array, approach: Array, root: Array) -> Array:
-    """Strain energy [J] of power laws at an approach, from the cube roots of the claimed forces.
+    """Return the strain energy [J] of power laws at an approach, from roots of claimed forces.
 
     The energy is ∫F dδ at the claimed approach, so the force there has to be found. Where the
     deformation law holds, one step of Newton's method from the claimed force arrives at it;
-    elsewhere it is found from above.
+    elsewhere Newton's method starts from above.
 
     Parameters
     ----------
     b, c : ndarray, shape (flanks, S or 1)
         [m/N], [m/N^(2/3)].
     approach, root : ndarray, shape (flanks, S)
-        [m], [N^(1/3)].
+        [m], cube roots of the claimed forces [N^(1/3)].
     """
     pressed = np.maximum(approach, 0.0)
     linear = np.where(b > 0.0, pressed / np.where(b > 0.0, b, 1.0), 0.0)
@@ -45,13 +45,13 @@ def strain_energy(b: Array, c: Array, approach: Array, root: Array) -> Array:
 
 
 def _root(b: Array, c: Array, compression: Array) -> Array:
-    """F^(1/3) of the law b F + c F^(2/3), c > 0, by Newton's method from above."""
+    """Return F^(1/3) of the law b F + c F^(2/3), c > 0, by Newton's method from above."""
     y = np.sqrt(compression / c)
     y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
     left = np.ones(y.shape, dtype=bool)
     for _ in range(CERTIFY.roots):
         step = ((b * y + c) * y * y - compression) / ((3.0 * b * y + 2.0 * c) * y)
-        # One that has arrived stays, so that no digit depends on how far the others have to go.
+        # A root that has converged stays, so that no digit depends on how long the others take.
         left &= ~(np.abs(step) <= CERTIFY.root * y)
         if not left.any():
             break
@@ -60,7 +60,7 @@ def _root(b: Array, c: Array, compression: Array) -> Array:
 
 
 def interpolated(axis: Array, values: Array, at: Array) -> Array:
-    """Values of k tables (k, points, S or 1) at `at` (k, S), straight beyond the last point."""
+    """Return values of k tables (k, points, S or 1) at `at` (k, S), linear beyond the ends."""
     last = (~np.isnan(axis)).sum(axis=1) - 2
     left = np.clip((axis <= at[:, None]).sum(axis=1) - 1, 0, last)
     table, sample = np.ogrid[: len(at), : axis.shape[2]]
@@ -69,7 +69,7 @@ def interpolated(axis: Array, values: Array, at: Array) -> Array:
 
 
 def area(forces: Array, compressions: Array, force: Array) -> Array:
-    """∫δ dF of k tables (k, points, S or 1) up to `force` (k, S)."""
+    """Return ∫δ dF of k tables (k, points, S or 1) up to `force` (k, S)."""
     total = np.zeros(force.shape)
     points = (~np.isnan(forces)).sum(axis=1)
     for at in range(forces.shape[1] - 1):

@@ -18,9 +18,9 @@ from loadshare.train.train import Train
 
 
 class Mechanics:
-    """Who touches whom in a train, and how.
+    """Which elements of a train act on which gears, and along which directions.
 
-    Contacts are all flanks, then of every drum its two arcs, its upper and its lower stop. Radial
+    Contacts are all flanks, then for every drum its two arcs, its upper and its lower stop. Radial
     elements are in the order of claims.
 
     Parameters
@@ -61,11 +61,11 @@ class Mechanics:
     neighbours : ndarray, shape (drums, 2)
     across : ndarray, shape (drums, 3)
     nominal : ndarray, shape (drums, 2, 3)
-        Way to the gear's nominal centre from each neighbour's, across the gear's axis [m].
+        Vector to the gear's nominal centre from each neighbour's, across the gear's axis [m].
     distance : ndarray, shape (drums, 2)
         Length of it [m].
     squeezed : ndarray of int
-        Drums between whose arcs nothing gives way.
+        Drums with rigid arcs on neighbours that cannot move.
     pulled : ndarray, shape (radials,)
         Gear of every radial element.
     pulls : tuple of str
@@ -73,8 +73,8 @@ class Mechanics:
     claims : Names
         Order of what is claimed.
     gears, gear_names, bearings, bearing_names, turning_gears, squeezed_names : tuple of str
-        Names of all gears, and as elements; of those that can be displaced, and of their bearings;
-        of the first gear of every group that turns; of both arcs of the drums under `squeezed`.
+        Names of all gears, plain and as elements; of those that can be displaced, and of their
+        bearings; of the first gear of every group that turns; of the arcs of drums in `squeezed`.
     """
 
     def __init__(self, train: Train) -> None:
@@ -168,9 +168,9 @@ class Mechanics:
         self.squeezed_names = tuple(f"ring {gear}: arcs" for gear in squeezed)
 
     def loaded(self, push: Array) -> tuple[Array, Array]:
-        """Moments [N·m] and forces [N] of forces from outside on gears, (gears, S), (gears, 3, S).
+        """Return moments [N·m] and forces [N] of external forces, (gears, S) and (gears, 3, S).
 
-        A pin passes what pushes its planet on to the carrier, with its arm about the axis.
+        A pin passes the force on its planet on to the carrier, with its arm about the axis.
         """
         moment, force = np.zeros((len(push), push.shape[2])), push.copy()
         for name, gear in self.train.gears.items():
@@ -219,14 +219,14 @@ class Mechanics:
 
     @cached_property
     def lift(self) -> Array:
-        """What its bearing forbids of a gear's displacement, shape (gears, 3, 3)."""
+        """Projectors on the displacements that bearings forbid, shape (gears, 3, 3)."""
         found = np.broadcast_to(np.eye(3), (len(self.order), 3, 3)).copy()
         found[self.moving] -= np.einsum("mak,mal->mkl", self.frames, self.frames)
         return found
 
     @cached_property
     def spline_moment(self) -> Array:
-        """Torque that each spline's gear takes over it per flank force [m], (splines, flanks)."""
+        """Torque that each spline transmits to its gear per flank force [m], (splines, flanks)."""
         return -self.moment[[self.order[g] for g in self.train.splines]]
 
     @cached_property
@@ -253,13 +253,13 @@ class Mechanics:
 
 @lru_cache(maxsize=CERTIFY.trains)
 def mechanics_of(train: Train) -> Mechanics:
-    """Return the mechanics of a train, written down once."""
+    """Return the mechanics of a train; built once."""
     return Mechanics(train)
 
 
 @lru_cache(maxsize=CERTIFY.trains)
 def arms_of_drums(train: Train) -> Array:
-    """Return the ways to drums from both neighbours, as `nominal` in `Mechanics`."""
+    """Return the vectors to drums from both neighbours, as `nominal` in `Mechanics`."""
     apart = [[_apart(train, r.gear, n) for n in r.neighbours] for r in train.drums]
     return np.array(apart).reshape(-1, 2, 3)
 
@@ -270,9 +270,10 @@ def pairs(values: Sequence[object]) -> Numbers:
 
 
 def _bending(train: Train, gear: str, way: Array, push: Array) -> Iterator[tuple[str, Array]]:
-    """Yield the harmonics of a gear's rim, and the part of a push on it that works on each.
+    """Yield the harmonics of a gear's rim, and the part of a push on it that does work on each.
 
-    The rim moves by cos nψ outwards and −(sin nψ)/n round, and a quarter of a wave further on.
+    The rim moves outwards by cos nψ and along the circumference by −(sin nψ)/n, and likewise a
+    quarter of a wave further on.
     """
     for name, rim in train.gears.items():
         if rim.rim_of != gear:
@@ -285,6 +286,6 @@ def _bending(train: Train, gear: str, way: Array, push: Array) -> Iterator[tuple
 
 
 def _apart(train: Train, gear: str, neighbour: str) -> Array:
-    """Way from a neighbour's nominal centre, across the gear's axis (3,) [m]."""
+    """Return the vector from a neighbour's nominal centre, across the gear's axis (3,) [m]."""
     here = train.gears[gear]
     return transverse(here.centre - train.gears[neighbour].centre, here.axis)

@@ -1,8 +1,8 @@
-"""What is not convex in many answers: the cheap part of `certify.uniqueness`.
+"""Elements that are not convex, in many answers: the cheap part of `certify.uniqueness`.
 
-Where nothing of it carries, an answer is the only one of least energy. Elsewhere F/a of the arcs is
-what they take from the stiffness across them; how large that is in parts of the stiffness is found
-for single answers.
+Where none of them carries, an answer is the only one of least energy. Elsewhere arcs take F/a from
+the stiffness across them; which share of the stiffness that is, is computed for single answers
+only.
 """
 
 from __future__ import annotations
@@ -18,27 +18,27 @@ from loadshare.train.train import Train
 
 
 def _arc_forces(train: Train, answers: Equilibria) -> Array:
-    """Forces of the arcs of every drum [N], shape (S, drums, 2)."""
+    """Return the forces of the arcs of every drum [N], shape (S, drums, 2)."""
     arcs = answers.ring_force[:, answers.names.arcs]
     return arcs.reshape(len(arcs), len(train.drums), 2)
 
 
 def _largest(numbers: Array) -> Array:
-    """Largest of the numbers of every answer, (S, k), and zero: (S,)."""
+    """Return the largest of the numbers (S, k) of every answer, at least zero, (S,)."""
     # Column by column: rows are too short to be worth a loop each.
     return np.asarray(np.maximum.reduce([np.zeros(len(numbers)), *numbers.T]))
 
 
 def arc_curvature(train: Train, answers: Equilibria) -> Array:
-    """Stiffness [N/m] that arcs take across them, Σ F/a of the drum where it is largest, (S,)."""
-    # All of the mechanics is more than this takes: most batches come with a train of their own.
+    """Return the stiffness [N/m] that arcs take across them, the largest Σ F/a of a drum, (S,)."""
+    # Not from `mechanics_of`, which would cost more: most batches come with a train of their own.
     distance = np.sqrt((arms_of_drums(train) ** 2).sum(axis=2))
     taken = np.maximum(_arc_forces(train, answers), 0.0) / distance
     return _largest(taken[:, :, 0] + taken[:, :, 1])
 
 
 def is_convex(train: Train, situations: Situations, answers: Equilibria, load: Array) -> Array:
-    """Whether nothing that is not convex carries, (S,) of bool.
+    """Return whether no element that is not convex carries, (S,) of bool.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def is_convex(train: Train, situations: Situations, answers: Equilibria, load: A
     answers : Equilibria
         S of them.
     load : ndarray, shape (S,)
-        Of each case [N].
+        Load of each case [N].
     """
     band = CERTIFY.carries * load
     forces = _arc_forces(train, answers)

@@ -1,7 +1,7 @@
 """The residuals of claimed equilibria (formulation, section 8), element by element.
 
-Each is a list of blocks: figures, one row an element and one column a claim, and the names of their
-elements. The worst of them counts; its element is looked up for single claims only.
+Each is a list of blocks: figures, one row per element and one column per claim, and the names of
+their elements. The worst of them counts; its element is looked up for single claims only.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Scalars = TypeVar("Scalars", float, Array)
 
 
 def force_balance(state: ClaimedState) -> Blocks:
-    """Unbalanced force [N] on gears that can be displaced."""
+    """Return the unbalanced force [N] on gears that can be displaced."""
     of = state.of
     if not len(of.moving):
         return []
@@ -60,7 +60,7 @@ def force_balance(state: ClaimedState) -> Blocks:
 
 
 def pushed_by_rings(state: ClaimedState) -> Array:
-    """Force [N] of rings, bearings with clearance and splines on every gear, (gears, 3, S)."""
+    """Return forces [N] of rings, bearings with clearance and splines on gears, (gears, 3, S)."""
     of = state.of
     pushed = np.zeros((len(of.order), 3, state.count))
     for gear, force in zip(of.pulled, state.reaction if of.pulls else (), strict=True):
@@ -74,13 +74,13 @@ def pushed_by_rings(state: ClaimedState) -> Array:
 
 
 def moment_balance(state: ClaimedState) -> Blocks:
-    """Unbalanced moment over the largest base radius [N] of gears that turn as one."""
+    """Return unbalanced moments, over the largest base radius [N], of gears that turn as one."""
     of = state.of
     return [(np.abs(times(of.group_moment, state.moment)), of.turning_gears)]
 
 
 def penetration(state: ClaimedState) -> Blocks:
-    """Overlap [m] that a force of the claimed size does not explain."""
+    """Return the overlap [m] that a force of the claimed size does not explain."""
     blocks = [(state.overlap, state.of.contacts)]
     if state.of.pulls:
         beyond = np.where(np.isinf(state.graph.last), state.radius - state.graph.reach, 0.0)
@@ -89,20 +89,20 @@ def penetration(state: ClaimedState) -> Blocks:
 
 
 def _less_rounding(state: ClaimedState, blocks: Blocks) -> Blocks:
-    """Lengths less their round-off."""
+    """Return lengths less their round-off."""
     return [(np.maximum(lengths - state.resolution, 0.0), names) for lengths, names in blocks]
 
 
 def complementarity(state: ClaimedState) -> Blocks:
-    """Work [J] of a force over an open gap."""
+    """Return the work [J] of a force over an open gap."""
     rounding = np.abs(state.force) * state.resolution
     return [(-state.force * state.overlap - rounding, state.of.contacts)]
 
 
 def deformation_law(state: ClaimedState) -> Blocks:
-    """Misfit [m] of a compressed contact, a shaft or a bearing with its law.
+    """Return the misfit [m] of a compressed contact, a shaft or a bearing with its law.
 
-    A contact with less force than the band counts as open; complementarity judges it then.
+    A contact with less force than the band counts as open and is judged by complementarity.
     """
     of = state.of
     misfit = np.where(state.force > CERTIFY.band * state.load, np.abs(state.overlap), 0.0)
@@ -122,9 +122,9 @@ def deformation_law(state: ClaimedState) -> Blocks:
 
 
 def cone_membership(state: ClaimedState) -> Blocks:
-    """Excess [N] of a force over what its contact or graph admits.
+    """Return the excess [N] of a force over what its contact or graph admits.
 
-    Within a band about its radius, a graph's corner admits its whole step.
+    Within a band about its radius, a corner of a graph admits the whole step of the force.
     """
     of, band = state.of, CERTIFY.band * state.deflection + state.resolution
     blocks = [(-state.force, of.contacts)]
@@ -139,9 +139,9 @@ def cone_membership(state: ClaimedState) -> Blocks:
 
 
 def _beside_graphs(state: ClaimedState, band: Array) -> Array:
-    """Excess [N] of the reactions of radial elements over what their graphs admit.
+    """Return the excess [N] of the reactions of radial elements over what their graphs admit.
 
-    About its centre, within the band, an element has no direction; along its axis it never pulls.
+    Within the band about its centre an element has no direction; along the axis it never pulls.
     """
     radius, reaction = state.radius, state.reaction
     force = size(reaction)
@@ -157,13 +157,13 @@ def _beside_graphs(state: ClaimedState, band: Array) -> Array:
 
 
 def _squeezes(state: ClaimedState, band: Array) -> Array:
-    """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
+    """Return the force [N] across the two rigid arcs of a ring that a squeeze leaves open.
 
-    A centre in touch with both, up to a length, lies anywhere within y across them, where
-    ε y + y²/2a is that length and ε the angle of the wedge; the directions of the two forces are
-    known no better than y/a. The length is what the two arcs overlap or are open; where the
+    A centre that touches both arcs, to within a length, may lie anywhere within y across them,
+    where ε y + y²/2a is that length and ε the angle of the wedge; the directions of the two forces
+    are known no better than y/a. The length is the overlap or opening of the two arcs; where the
     narrowest place of the wedge, ε²a/8 past its mouth, overlaps by less than the band [m], it is
-    the band: through there a float would roll away that a large squeeze seems to hold. Neighbours
+    the band: a float that a large squeeze seems to hold would roll away through there. Neighbours
     that give way follow the float instead.
     """
     of = state.of
@@ -179,7 +179,7 @@ def _squeezes(state: ClaimedState, band: Array) -> Array:
 
 
 def turned(wedge: Scalars, band: Scalars, distance: Scalars) -> Scalars:
-    """Angle [rad] within which a band [m] leaves the direction between two arcs (`_squeezes`).
+    """Return the angle [rad] to within which a band [m] fixes directions (see `_squeezes`).
 
     Parameters
     ----------
@@ -195,9 +195,9 @@ def turned(wedge: Scalars, band: Scalars, distance: Scalars) -> Scalars:
 
 
 def energy_gap(state: ClaimedState) -> Blocks:
-    """Potential and complementary energy less the work [J], beyond rounding: none at equilibrium.
+    """Return potential plus complementary energy less work [J], beyond rounding: 0 at equilibrium.
 
-    Bearings and rings may hold far more energy against one another than the load brings in.
+    Bearings and rings may store far more energy against one another than the load brings in.
     """
     of, here, claim = state.of, state.here, state.claim
     stored = [*state.energies]
@@ -216,7 +216,7 @@ def energy_gap(state: ClaimedState) -> Blocks:
         dual = np.where(held, force**2 / np.where(held, stiffness, 1.0), 0.0)
         stored.append(0.5 * (stiffness * state.moved**2 + dual).sum(axis=1))
     if of.pulls:
-        # What exceeds a graph's strength is for cone membership to judge.
+        # A force beyond the strength of its graph is judged by cone membership.
         force = np.minimum(size(state.reaction), strength(state.graph))
         stored.append(energy(state.graph, state.radius))
         stored.append(complementary(state.graph, force))
@@ -234,10 +234,10 @@ def energy_gap(state: ClaimedState) -> Blocks:
 
 
 def _unresolved(state: ClaimedState) -> Array:
-    """Energy [J] of what rounding leaves of lengths, shape (S,).
+    """Return the energy [J] in the rounding of lengths, shape (S,).
 
-    What is all but rigid holds as much as one likes in a length that is nothing: K s (|d| + s) with
-    the resolution s, and d by which a length is not that of its force.
+    A nearly rigid element stores any amount of energy in a negligible length: K s (|d| + s) with
+    the resolution s and the misfit d between a length and its force.
     """
     of, here, step = state.of, state.here, state.resolution
     near = state.approach > -step
@@ -269,18 +269,18 @@ FIGURES: dict[str, tuple[Callable[[ClaimedState], Blocks], str]] = {
     "cone_membership": (cone_membership, "N"),
     "energy_gap": (energy_gap, "J"),
 }
-"""How every residual is found, and its unit."""
+"""Function and unit of every residual."""
 RESIDUALS = tuple(FIGURES)
 """Names of the residuals, in order."""
 
 
 def scales(state: ClaimedState) -> dict[str, Array]:
-    """Scale of every unit, shape (S,)."""
+    """Return the scale of every unit, shape (S,)."""
     return {"N": state.load, "m": state.deflection, "J": state.load * state.deflection}
 
 
 def scaled_residuals(state: ClaimedState) -> Array:
-    """All residuals (S, 7), in the order of `RESIDUALS`; infinite where none can be judged."""
+    """Return all residuals (S, 7), in the order of `RESIDUALS`; infinite for faulty claims."""
     scale = scales(state)
     figures = np.stack([_worst(of(state)) / scale[unit] for of, unit in FIGURES.values()])
     bad = state.faulty | np.isnan(figures).any(axis=0)
@@ -288,7 +288,7 @@ def scaled_residuals(state: ClaimedState) -> Array:
 
 
 def _worst(blocks: Blocks) -> Array:
-    """Largest figure of every claim (S or 1,), not below zero; not-a-number is worst of all."""
+    """Return the largest figure of every claim (S or 1,), not below zero; NaN is worst of all."""
     largest = (figures.max(axis=0, initial=0.0) for figures, _ in blocks)
     return reduce(np.maximum, largest, np.zeros(1))
 
@@ -296,7 +296,7 @@ def _worst(blocks: Blocks) -> Array:
 def worst_of_each(blocks: Blocks, claims: int) -> list[tuple[float, str]]:
     """Return the largest figure of every claim, not below zero, and the element that shows it.
 
-    Not-a-number is the worst of all.
+    NaN is the worst of all.
     """
     worst = [(0.0, "")] * claims
     for figures, names in blocks:
@@ -311,5 +311,5 @@ def worst_of_each(blocks: Blocks, claims: int) -> list[tuple[float, str]]:
 
 
 def first_of_largest(figures: Array) -> int:
-    """Where the first of the largest figures is: those of alike elements differ by round-off."""
+    """Return the index of the first largest figure; like elements may differ by round-off."""
     return int(np.argmax(figures >= (1.0 - CERTIFY.alike) * figures.max()))

@@ -20,8 +20,8 @@ class RigidShafts:
     beyond : mapping of shaft to mapping of gear to float
         The gears beyond every rigid shaft, seen from a held gear (or any gear of a group
         without one). Their balance gives its torque from the first gear to the second, the sum of
-        their moments times these signs; clocking then works against it. A shaft that closes a loop
-        of rigid ones carries none of its own.
+        their moments times these signs; clocking does work against it. A shaft that closes a loop
+        of rigid ones carries no torque of its own.
     """
 
     paths: tuple[dict[str, dict[str, float]], ...]
@@ -29,7 +29,7 @@ class RigidShafts:
 
 
 def rigid_shafts(train: Train) -> RigidShafts:
-    """Walk along the rigid shafts of a train, from held gears and from every gear left."""
+    """Walk along the rigid shafts of a train, from held gears, then from every gear left."""
     rigid = [s for s in train.shafts.values() if math.isinf(s.stiffness)]
     groups: list[dict[str, dict[str, float]]] = []
     reached: set[str] = set()

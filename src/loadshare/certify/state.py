@@ -1,6 +1,6 @@
-"""Claims seen as mechanics: approaches, forces and graphs of every element, body by body.
+"""The mechanical state of claims: approaches, forces and graphs of every element, body by body.
 
-Nothing here knows of programmes or rows. Forces are vectors that act on centres, moments are force
+Nothing here uses programmes or rows. Forces are vectors that act on centres, moments are force
 times base radius, and each contact is judged at the displaced position.
 """
 
@@ -40,19 +40,19 @@ class ClaimedState:
     count : int
         S.
     force, approach, at_rest, compression : ndarray, shape (contacts, S)
-        Claimed force [N], approach, what remains of it when all coordinates of its tangent plane
-        are zero, compression at the claimed force [m].
+        Claimed force [N], approach, value of its tangent plane at zero coordinates, compression at
+        the claimed force [m].
     way : ndarray, shape (drums, 2, 3, S)
-        From each neighbour's centre to the limited gear's [m].
+        Vector from each neighbour's centre to the limited gear's [m].
     ring_force : ndarray, shape (drums, 4, S)
-        Of both arcs and both stops [N].
+        Forces of both arcs and both stops [N].
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].
     resolution : ndarray, shape (S,)
         Round-off of a length [m].
     beyond : ndarray of bool, shape (drums, 2, S)
         Whether a gear is beyond the neighbour on whose ring its own rolls: there the arc's
-        inequality holds, and no gear can be.
+        inequality holds, but no gear can be.
     """
 
     @np.errstate(all="ignore")
@@ -119,15 +119,16 @@ class ClaimedState:
         return np.concatenate([primal, pressed]), np.concatenate([dual, released])
 
     def _put_scales(self) -> None:
-        """Load: the largest flank force or external push; 1 N when nothing acts.
+        """Find load, deflection and resolution.
 
-        Deflection: the largest compression, gap taken up, or error; 1 µm when none. Reactions of
-        rigid limits and displacements do not count: any preload of two opposite stops would be in
-        balance and would hide what is not, and a free displacement could be claimed as large as one
-        likes. A contact with less force than the band counts as open.
+        Load: the largest flank force or external push; 1 N when nothing acts. Deflection: the
+        largest compression, gap taken up, or error; 1 µm when none. Reactions of rigid limits and
+        displacements do not count: any preload of two opposite stops would be in balance and would
+        hide what is not, and a free displacement could be claimed arbitrarily large. A contact with
+        less force than the band counts as open.
 
-        Resolution: what sums of displacements, errors and gaps leave of a length in double
-        precision. In a play of centimetres it is more than a billionth of a light load's
+        Resolution: the rounding of a length, as a sum of displacements, errors and gaps in double
+        precision. With a play of centimetres it is more than a billionth of a light load's
         deflection; bounds on forces hold all the same.
         """
         pushed = (np.abs(self.here.torque) / self.of.radius[:, None]).max(axis=0, initial=0.0)
@@ -149,7 +150,7 @@ class ClaimedState:
 
     @cached_property
     def pushed(self) -> tuple[Array, Array] | None:
-        """Moments [N·m] and forces [N] that forces from outside bring on gears, if there are."""
+        """Moments [N·m] and forces [N] of external forces on gears; None if there are none."""
         return self.of.loaded(self.here.push) if self.here.push.any() else None
 
     @cached_property
@@ -207,7 +208,7 @@ class ClaimedState:
     def bend(self) -> Array:
         """Bending p − s of the shafts of splines with memory [m], shape (splines, 3, S).
 
-        Their slip s is what it leaves of the displacement p.
+        Their slip s is the displacement p less this bending.
         """
         claims = self.of.claims
         pushed = self.reaction[claims.splines] + self.reaction[claims.spline_stops]
@@ -215,7 +216,7 @@ class ClaimedState:
 
     @cached_property
     def offset(self) -> Array:
-        """Way from the centre of every radial element [m], shape (radials, 3, S)."""
+        """Vector from the centre of every radial element [m], shape (radials, 3, S)."""
         place = self.claim.displacement[self.of.pulled]
         if self.of.train.slip is not None:
             for part in (self.of.claims.splines, self.of.claims.spline_stops):
@@ -254,14 +255,14 @@ class ClaimedState:
 
     @cached_property
     def transmitted(self) -> Array:
-        """Torque that each spline's gear takes over it [N·m], shape (splines, S)."""
+        """Torque that each spline transmits to its gear [N·m], shape (splines, S)."""
         return times(self.of.spline_moment, self.claim.flank_force)
 
     @cached_property
     def tangent(self) -> Array:
         """Compliance of every contact at its force [m/N], shape (contacts, S).
 
-        Infinite where a Hertz contact carries nothing; none, where it follows a table.
+        Infinite where a Hertz contact carries nothing; 0 where it follows a table.
         """
         of, here, root = self.of, self.here, self._root
         b, c = here.bending, here.hertz
@@ -303,7 +304,7 @@ class ClaimedState:
     def torque(self) -> Array:
         """Torque of every shaft [N·m], shape (shafts, S).
 
-        That of a rigid one is nobody's claim: it is what balances the gears beyond it.
+        That of a rigid shaft is not claimed: it is what balances the gears beyond the shaft.
         """
         found = times(self.of.beyond, self.moment)
         found[self.of.elastic] = self.claim.shaft_torque[self.of.elastic]
@@ -333,9 +334,9 @@ class ClaimedState:
 
 
 def times(matrix: Array, columns: Array) -> Array:
-    """Product of a matrix, or of many, with S columns.
+    """Return the product of a matrix, or of many, with S columns.
 
-    Of few each is found as if it were alone, so that no digit depends on which others there are.
+    Few columns are each multiplied as if alone, so that no digit depends on the others.
     """
     if not 1 < columns.shape[-1] <= CERTIFY.abreast:
         return np.asarray(matrix @ columns)
@@ -344,14 +345,14 @@ def times(matrix: Array, columns: Array) -> Array:
 
 
 def total(figures: Array) -> Array:
-    """Sum over the elements of S claims, (elements, S): one after another, of one claim as well."""
+    """Return sums over elements, (elements, S), added one by one even if there is one claim."""
     if figures.shape[1] == 1 and len(figures):
         return np.asarray(np.add.accumulate(figures)[-1])
     return np.asarray(figures.sum(axis=0))
 
 
 def size(vectors: Array, axis: int = 1) -> Array:
-    """Lengths of vectors along an axis."""
+    """Return the lengths of vectors along an axis."""
     return np.asarray(np.sqrt((vectors**2).sum(axis=axis)))
 
 

@@ -1,4 +1,4 @@
-"""The tolerance of a certificate: what may be asked for."""
+"""The tolerance of a certificate: which values are allowed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from loadshare.settings import CERTIFY
 
 
 def checked_tolerance(given: object) -> float:
-    """Return a tolerance that a certificate can be judged by.
+    """Return a tolerance by which a certificate can be judged.
 
     Parameters
     ----------
@@ -19,7 +19,7 @@ def checked_tolerance(given: object) -> float:
     Raises
     ------
     ValueError
-        If it is no number above 0 and up to `CERTIFY.largest`.
+        If it is not a number above 0 and up to `CERTIFY.largest`.
     """
     if isinstance(given, Real) and not isinstance(given, bool):
         with suppress(OverflowError):

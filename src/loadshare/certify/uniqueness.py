@@ -1,23 +1,24 @@
 r"""Whether an answer is the only one: arcs and friction that follows the torque against stiffness.
 
-All elements but two are convex: with these alone an equilibrium is a global minimum and its forces
-are unique. A drum's **arc** keeps centres apart, which is no convex set: a reaction F that rolls
-off sideways gains F Δ_t²/2|d|, a negative stiffness F/|d| across it. **Friction that follows the
-torque** feeds back from flanks to the spline. Where neither carries, the answer is the global
-minimum of the convex rest, which no other place can undercut.
+All elements but two are convex: with the convex ones alone, an equilibrium is a global minimum and
+its forces are unique. A drum's **arc** keeps centres apart, and the set outside it is not convex: a
+centre that rolls sideways under a reaction F lowers the energy by F Δ_t²/2|d|, a negative stiffness
+F/|d| across the arc. **Friction that follows the torque** feeds back from flanks to the spline.
+Where neither carries, the answer is the global minimum of the convex rest, and no other place has
+less energy.
 
-Elsewhere the second-order condition decides. Let K be the stiffness of what carries, projected on
-the moves that rigid contacts leave, and M what takes from it (F/|d| of every arc; of friction, the
-symmetric part with its sign changed). The largest κ of M z = κ K z is the *curvature*, in parts of
-the stiffness. For κ < 1 the answer is a strict minimum among its neighbours. More than that: flanks
-enter K by the least slope to any other compression, F/δ, so that for two equilibria in which the
-same contacts carry and splines are in the same stage, with arc forces F and F', convexity of what
-is left gives, to second order in their distance Δ,
+Elsewhere the second-order condition decides. Let K be the stiffness of the elements that carry,
+projected on the moves that rigid contacts leave, and M what reduces it (F/|d| of every arc; for
+friction, the symmetric part with its sign changed). The largest κ of M z = κ K z is the
+*curvature*, as a part of the stiffness. For κ < 1 the answer is a strict minimum among its
+neighbours. Moreover, flanks enter K by the least slope to any other compression, F/δ, so that for
+two equilibria in which the same contacts carry and splines are in the same stage, with arc forces F
+and F', convexity of the rest gives, to second order in their distance Δ,
 
 .. math:: \Delta^T K \Delta \le \sum \tfrac12 (F + F') \Delta_t^2 / |d| ,
 
-so F' must exceed F some (2/κ − 1) times: another answer of that kind would need reactions many
-times larger. Contacts that touch without force count as open, which is on the safe side.
+so F' must be some (2/κ − 1) times F: another answer of that kind would need reactions so many times
+as large. Contacts that touch without force count as open, which is on the safe side.
 """
 
 from __future__ import annotations
@@ -53,8 +54,8 @@ class Uniqueness:
     kind : str
         A key of `MEANINGS`.
     curvature : float or None
-        κ, what arcs and friction take from the stiffness, in parts of it; None where a move that
-        they drive is held by nothing.
+        κ, the part of the stiffness that arcs and friction take; None where nothing holds a move
+        that they drive.
     where : str
         Elements that are not convex and carry; empty if there are none.
     """
@@ -83,9 +84,9 @@ def uniqueness(train: Train, columns: Columns, state: ClaimedState, row: int) ->
     ----------
     train : Train
     columns : Columns
-        Of a train of its shape.
+        The columns of a train of the same shape.
     state : ClaimedState
-        Of certified ones.
+        State of certified claims.
     row : int
         Its number among them.
     """
@@ -102,12 +103,12 @@ def uniqueness(train: Train, columns: Columns, state: ClaimedState, row: int) ->
 
 
 def _follows(spline: Spline) -> bool:
-    """Whether a spline's friction bound follows the torque."""
+    """Return whether a spline's friction bound follows the torque."""
     return spline.friction_force is None and spline.friction_per_torque > 0.0
 
 
 class _System:
-    """Stiffness K, what takes from it M, and the rows of rigid contacts, at an answer.
+    """Stiffness K, its reduction M, and the rows of rigid contacts, at an answer.
 
     Coordinates and rows are those of the bound's `Columns`.
     """
@@ -134,7 +135,7 @@ class _System:
         return (*arcs, *(s.name for k, s in enumerate(self.splines) if self._follows(k)))
 
     def _assemble(self) -> None:
-        """Put K and M together, and the rows of what is rigid."""
+        """Assemble K and M, and the rows of rigid contacts."""
         self._flanks()
         self._drums()
         self._springs()
@@ -153,19 +154,19 @@ class _System:
         self.held.append((stiffness, row))
 
     def _own(self, figures: Array) -> Array:
-        """Figures (…, S or 1) of this answer."""
+        """Return the figures (…, S or 1) of this answer."""
         return np.asarray(figures[..., self.row % figures.shape[-1]])
 
     def _pulled(self, q: int) -> float:
-        """Size of the force of a radial element [N]."""
+        """Return the size of the force of a radial element [N]."""
         return float(size(self.state.reaction[q], axis=0)[self.row])
 
     def _pair(self, first: int) -> Array:
-        """Rows of both components of an element's vector."""
+        """Return the rows of both components of an element's vector."""
         return self.rows[first : first + 2]
 
     def _slope(self, contact: int) -> float:
-        """Least slope [N/m] to any other compression of a loaded contact; infinite if rigid."""
+        """Return the least slope [N/m] to any other compression; infinite for a rigid contact."""
         force, compression = (
             v[contact, self.row] for v in (self.state.force, self.state.compression)
         )
@@ -210,14 +211,14 @@ class _System:
             self.stiffness += rows.T @ (stiffness[:, None] * rows)
 
     def _follows(self, k: int) -> bool:
-        """Whether the force of a spline follows the torque where the spline is."""
+        """Return whether the force of a spline follows the torque at its present offset."""
         q = self.first_spline + k
         if not _follows(self.splines[k]) or self.radius[q] <= self.near:
             return False
         return self.train.slip is not None or self._piece(q)[0] != "stick"
 
     def _piece(self, q: int) -> tuple[str, float]:
-        """The piece of its graph on which a radial element is, and its slope [N/m]."""
+        """Return the piece of its graph on which a radial element is, and its slope [N/m]."""
         first, stick, bound, reach, last = (
             float(figure[q, self.row]) for figure in self.state.graph
         )
@@ -236,7 +237,7 @@ class _System:
         return name, slope
 
     def _pull(self, q: int) -> None:
-        """A radial element: the slope of its piece along, force over radius across."""
+        """Add a radial element: the slope of its piece along it, force over radius across it."""
         state = self.state
         pair, radius, held = self.rows[self.columns.both(q)], self.radius[q], self._piece(q)[1]
         if radius <= self.near:
@@ -257,7 +258,7 @@ class _System:
         self.taken -= 0.5 * (coupling + coupling.T)
 
     def _remembering(self, k: int, spline: Spline) -> None:
-        """A spline with memory: held by its shaft where the slip is, and by nothing elsewhere."""
+        """Add a spline with memory: its shaft holds it unless the slip has changed."""
         q = self.first_spline + k
         if self.radius[q] <= self.near:
             for row in self.rows[self.columns.both(q)]:
@@ -266,7 +267,7 @@ class _System:
                 self._hold(row, spline.bending_stiffness)
 
     def curvature(self) -> float:
-        """Largest κ of M z = κ K z on the moves that rigid contacts leave, at least 0."""
+        """Return the largest κ of M z = κ K z on moves that rigid contacts leave, at least 0."""
         if self.train.slip is not None and any(map(self._follows, range(len(self.splines)))):
             return math.inf
         self._assemble()
@@ -288,5 +289,5 @@ class _System:
 
 
 def _along_and_across(along: Array) -> tuple[Array, Array]:
-    """A unit vector of a plane, and the one across it."""
+    """Return a unit vector of a plane, and the one across it."""
     return along, np.array([-along[1], along[0]])

@@ -1,32 +1,33 @@
-"""How large displacements are for the geometry in which they were found.
+"""Whether displacements are small enough for the geometry in which they were found.
 
-Lines of action, stops and tooth flanks are taken where they stand before anything moves. What that
-neglects is estimated here from the answer alone, and so are the bounds:
+Lines of action, stops and tooth flanks are taken in their undisplaced position. What that neglects
+is estimated here from the answer alone, with bounds:
 
 - **Line of action.** For involutes the approach of two flanks is exactly linear in both rotations:
   a rotation winds the string of the base circle. A relative displacement Δ of the centres turns the
   line of action, a straight line of length L = (r_bi ± r_bj) tan α_t between the base circles, by
-  Δ⊥/L, where Δ⊥ is the part of Δ across it. Forces are off in direction by this angle, which is a
-  share of their size. The line vanishes where the base circles touch: it takes Δ = L tan(α_t/2) at
-  least. For a face gear the pinion's part, r_b tan α_t, stands for L, which is on the safe side.
-- **Approach.** The approach is then off by Δ⊥²/2L. What of it the gap of an open flank does not
-  take up counts by the deflection of the case; a gear that carries nothing may turn in its play.
+  Δ⊥/L, where Δ⊥ is the part of Δ across it. Forces are off in direction by this angle, and so by
+  this share of their size. The line vanishes where the base circles touch, which takes at least
+  Δ = L tan(α_t/2). For a face gear L is the pinion's part, r_b tan α_t, which is on the safe side.
+- **Approach.** The approach is then off by Δ⊥²/2L. The part of this that the gap of an open flank
+  does not take up is compared with the deflection of the case; a gear that carries nothing may turn
+  in its play.
 - **Compression.** A tooth bent by a part ε of its height is shorter by ε²; where the compression is
   all of the height, the flanks have passed through each other. The height is 2.25 modules where a
-  gear's teeth are given; a gear of 17, the fewest without undercut, stands for one without: teeth
-  may be lower than that, so the figure is then a lower bound.
-- **Neither flank.** A mesh of unknown backlash has the flank that the loads press. Where these may
-  press either one (`train.pressed`), and the mesh is open in the answer, the other flank would
-  carry with a play of less than the opening. There is no refusal: with more play the answer holds.
-  What a relief leaves between the other flanks is not counted, which is on the safe side.
-- **Apart.** Any other mesh of unknown backlash that is open by more than teeth usually have play,
-  by errors or by clockings that wind a loop up, would carry on its other flank too. This is told,
-  and bounds nothing.
+  gear's teeth are given; otherwise a gear with 17 teeth is taken, the fewest without undercut:
+  teeth may be lower than that, so the figure is then a lower bound.
+- **Neither flank.** A mesh of unknown backlash has only the flank that the loads press. Where these
+  may press either one (`train.pressed`), and the mesh is open in the answer, the other flank would
+  carry if the play were less than the opening. There is no refusal: with more play the answer
+  holds. The gap that a relief leaves at the other flank is not counted, which is on the safe side.
+- **Apart.** Any other mesh of unknown backlash that is open by more than the usual play of teeth,
+  because of errors or of clockings that wind up a loop, would carry on its other flank too. This is
+  reported, and there is no bound on it.
 - **Ring.** Arcs hold exactly at any displacement, but a drum's stops keep their direction: they are
   off by the angle by which the arm from the neighbour turns.
 
-Common shifts of gears, rotations and round rings neglect nothing; displacements over base radii,
-rotations, and shifts over backlashes are reported without a bound.
+Common shifts of gears, rotations and round rings cause no such error; displacements over base
+radii, rotations, and shifts over backlashes are reported without a bound.
 """
 
 from __future__ import annotations
@@ -132,7 +133,7 @@ def refusal_text(refused: Mapping[str, Measure]) -> str:
 
 
 class Measuring:
-    """What is measured on the answers of a train, many at once.
+    """Measures of the displacements of a train, in many answers at once.
 
     Parameters
     ----------
@@ -163,7 +164,7 @@ class Measuring:
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
-        """Warning and refusal of what has bounds; infinite where nothing is refused."""
+        """Warning and refusal levels of the figures that have bounds; infinite for no refusal."""
         bounds = {
             "compression": (CERTIFY.compressed, CERTIFY.meaningless),
             "line_of_action": (min(CERTIFY.turned, self.vanishing), self.vanishing),
@@ -178,7 +179,7 @@ class Measuring:
     def bounded(
         self, situations: Situations, answers: Equilibria, deflection: Array, apart: bool = False
     ) -> dict[str, Array]:
-        """Return what has bounds, element by element.
+        """Return the figures that have bounds, element by element.
 
         Parameters
         ----------
@@ -186,10 +187,10 @@ class Measuring:
         answers : Equilibria
             S of them.
         deflection : ndarray, shape (S,)
-            Of each case [m].
+            Deflection of each case [m].
         apart : bool
-            Whether meshes of unknown backlash that are open are among it, which compiled code
-            does not measure.
+            Whether to include meshes of unknown backlash that are open, which compiled code does
+            not measure.
 
         Returns
         -------
@@ -230,7 +231,7 @@ class Measuring:
     def _room_of_idle(
         self, situations: Situations, answers: Equilibria, room: Array, rows: Numbers
     ) -> Array:
-        """Room of the flanks of some answers [m], (flanks, rows), as gears without force turn."""
+        """Return the room of flanks [m], (flanks, rows), once gears without force have turned."""
         force = np.abs(answers.flank_force[rows].T)
         idle = force <= CERTIFY.noise * force.max(axis=0)
         torque = np.broadcast_to(situations.torque, answers.rotation.shape)[rows]
@@ -258,14 +259,14 @@ class Measuring:
         deflection: Array,
         refusal: bool = False,
     ) -> Array:
-        """Return how far S answers go to a warning, (S,): the largest figure over its bound.
+        """Return how close S answers come to a warning, (S,): the largest figure over its bound.
 
         Parameters
         ----------
         situations, answers, deflection
             As for `bounded`.
         refusal : bool
-            How far to a refusal instead.
+            Whether to take the bounds of refusals instead.
         """
         found, bounds = self.bounded(situations, answers, deflection), self.bounds
         shares = [v.max(axis=0, initial=0.0) / bounds[name][refusal] for name, v in found.items()]
@@ -298,9 +299,9 @@ class Measuring:
     def every(
         self, situations: Situations, answers: Equilibria, deflection: Array, apart: bool = False
     ) -> dict[str, Array]:
-        """Return all that is measured on S answers, element by element, each (elements, S).
+        """Return all measures of S answers, element by element, each (elements, S).
 
-        Parameters are those of `bounded`. Shifts over backlashes are negative where there is none.
+        Parameters are those of `bounded`. Shifts over backlashes are negative without a backlash.
         """
         of, shifts = self.of, answers.displacement + situations.offset
         shifts = shifts.reshape(len(answers.rotation), -1).T
@@ -323,7 +324,7 @@ class Measuring:
         found: list[dict[str, Measure]] = [{} for _ in answers.rotation]
         for name, values in self.every(situations, answers, deflection, apart=True).items():
             for row, figures in enumerate(values.T):
-                # That a mesh carries on one flank only is told where it matters.
+                # Openings of meshes that have one flank only are reported where they matter.
                 if name != APART or figures.max() > CERTIFY.apart:
                     found[row][name] = self._largest(name, figures)
         return found
@@ -337,7 +338,7 @@ def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
     train : Train
     answer : Equilibrium
     deflection : float
-        Of the case [m], as its certificate has it.
+        Deflection of the case [m], as in its certificate.
     """
     here, claimed = situation_of(train, answer.index), Equilibria.of(train, answer)
     return Validity(measuring(train).each(here, claimed, np.array([deflection]))[0])
@@ -345,18 +346,18 @@ def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
 
 @lru_cache(maxsize=16)
 def measuring(train: Train) -> Measuring:
-    """Return what is measured on a train, kept for its other positions."""
+    """Return the measures of a train, kept for its other positions."""
     return Measuring(train)
 
 
 def _axis(train: Train, mesh: Mesh) -> Array:
-    """Axis of the plane in which the line of action lies: the pinion's, for a face gear."""
+    """Return the axis normal to the plane of the line of action: the pinion's, for a face gear."""
     driver, driven = train.gears[mesh.driver], train.gears[mesh.driven]
     return (driven if driver.kind == "face" else driver).axis
 
 
 def _geometry(train: Train, mesh: Mesh) -> tuple[float, float, float]:
-    """Length of the line of action [m], pressure angle [rad], height of the teeth [m]."""
+    """Return length of the line of action [m], pressure angle [rad], height of the teeth [m]."""
     gears = train.gears[mesh.driver], train.gears[mesh.driven]
     kinds = [g.kind for g in gears]
     # n and n' lean against each other by twice the pressure angle towards the centres.

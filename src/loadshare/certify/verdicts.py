@@ -1,4 +1,4 @@
-"""What a judge says of many answers."""
+"""Verdicts of a judge on many answers."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Verdicts:
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].
     displaced : ndarray, shape (S,)
-        How far displacements go to a warning (see `Measuring.worst`).
+        How close displacements come to a warning (see `Measuring.worst`).
     bounds : Bounds
-        How far the answers are from the exact ones, at most.
+        Bounds on the distance of the answers from the exact equilibria.
     """
 
     worst: Array
@@ -52,7 +52,7 @@ class Verdicts:
 def _replaced(
     mine: object, others: object, samples: Numbers, names: tuple[str, ...]
 ) -> dict[str, Any]:
-    """Arrays with others in the places of some samples; None where either has none."""
+    """Return arrays with some samples replaced by others; None where either has none."""
     found: dict[str, Any] = dict.fromkeys(names)
     for name in names:
         here, there = getattr(mine, name), getattr(others, name)
