@@ -15,7 +15,7 @@ Acts = NDArray[np.int8]
 class Act:
     """How an element acts.
 
-    Plain numbers: arrays are compared with members of an enumeration in ten times the time.
+    Plain numbers: comparing arrays with members of an enumeration takes ten times as long.
     """
 
     OPEN = 0
@@ -31,25 +31,25 @@ class Act:
     STOP = 5
     """Along its line: a closed flank, stop or arc, a ring, a spline at its clearance."""
     WAYS = 6
-    """How many there are."""
+    """Number of ways to act."""
 
 
 OPEN, CLOSED, LIGHT, ENDLESS = range(4)
 """How an element acts in large batches.
 
-Not at all; by its law; by that of a light Hertz contact, which is soft; without force, where it
-yields without end, which a radial element with next to no force may do as well.
+Not at all; by its law; by the law of a light Hertz contact, which is soft; without force, where it
+yields without limit, as a radial element with almost no force may do as well.
 """
 
 
 def first_acts(claim: Claim, noise: float = BOUND.noise) -> Acts:
-    """How the elements act by the claim's own forces, shape (S, elements).
+    """Return how the elements act according to the claimed forces, shape (S, elements).
 
     Parameters
     ----------
     claim : Claim
     noise : float
-        Friction, over the largest force, that is put aside.
+        Largest friction, over the largest force, that is put aside.
     """
     columns = claim.columns
     pushes, flanks = claim.pushes, columns.flanks
@@ -65,7 +65,7 @@ def first_acts(claim: Claim, noise: float = BOUND.noise) -> Acts:
 
 
 def unmoved(claim: Claim, distance: Array) -> Flags:
-    """Splines with memory, among the radial elements, whose slip has changed by rounding only."""
+    """Return which radial elements are splines with memory whose slip changed by rounding only."""
     train, columns = claim.columns.train, claim.columns
     found = np.zeros(distance.shape, dtype=bool)
     for k, gear in enumerate(train.splines if train.slip is not None else ()):
@@ -77,7 +77,7 @@ def unmoved(claim: Claim, distance: Array) -> Flags:
 
 
 def alike(codes: Acts | Flags) -> list[Numbers]:
-    """Rows with the same codes."""
+    """Return the numbers of rows with the same codes, group by group."""
     if (codes == codes[:1]).all():
         return [np.arange(len(codes))]
     group = np.zeros(len(codes), dtype=np.int64)
@@ -115,7 +115,7 @@ def _radial_acts(claim: Claim, noise: Array) -> Acts:
         ((distance == 0.0) & (level > 0.0) & (stick == 0.0), Act.PINNED),
     )
     found = np.full(size.shape, Act.STOP)
-    # The first that holds counts.
+    # The first condition that holds counts.
     for there, way in reversed(ways):
         found = np.where(there, way, found)
     return found.astype(np.int8)

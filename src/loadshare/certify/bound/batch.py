@@ -1,7 +1,7 @@
-r"""The certificate of many claims: residuals, and one small matrix for all that act alike.
+r"""The certificate of many claims: residuals, and one small matrix for all claims that act alike.
 
-It is the bound of `quick` (see `groups`). Residuals are found by compiled code. Trains whose slip
-is remembered are not for it. Source: formulation, section 16.
+The bound is that of `quick` (see `groups`). Residuals are found by compiled code. Trains whose slip
+is remembered are not covered. Source: formulation, section 16.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from loadshare.train.situations import Situations
 
 
 def is_covered(columns: Columns) -> bool:
-    """Whether claims of a train are for this bound."""
+    """Return whether this bound covers claims of a train."""
     return columns.train.slip is None
 
 
 class Judged(NamedTuple):
-    """What is found of S claims; not a number where it is left to NumPy.
+    """Figures of S claims; NaN where they are left to NumPy.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Judged(NamedTuple):
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].
     displaced : ndarray, shape (S,)
-        How far displacements go to a warning (see `Measuring.worst`).
+        How close displacements come to a warning (see `Measuring.worst`).
     """
 
     relative: Array

@@ -1,8 +1,8 @@
 r"""A bound on the distance of a claimed equilibrium from the exact one.
 
-Residuals that are small in force and length do not bound torques where stiff parts share through
-soft ones. Here the error is bounded itself. With the residuals of a claim, in twice the working
-precision,
+Residuals that are small in force and length do not bound torques where stiff parts share a load
+through soft ones. Here the error itself is bounded. With the residuals of a claim, in twice the
+working precision,
 
 .. math:: r_f = f - A^T F, \qquad r_o = A X - g - \delta(F),
 
@@ -11,13 +11,13 @@ and
 
 .. math:: N^T D N\, z = N^T (r_o - D P r_f), \qquad \Delta X = P^T (D\,\Delta F - r_o),
 
-D the compliances of what acts. Common shifts drop out with :math:`N^T A = 0`, whatever the ratio
-of stiffnesses. What the linearisation leaves out (curvature of laws, turning directions, rounding
-of all that is computed here) is bounded over a box around the claim, and the box is accepted only
-if the exact error is thereby shown to lie in it (Krawczyk; Rump, Acta Numerica 19, 2010). Last,
-every force and gap that decides which elements act must keep its sign all over the box: then what
-acts was identified rightly, and the exact equilibrium of the case is the one in the box. Source:
-formulation, section 16.
+with D the compliances of the elements that act. Common shifts drop out because :math:`N^T A = 0`,
+whatever the ratio of stiffnesses. What the linearisation leaves out (curvature of laws, turning
+directions, rounding of all that is computed here) is bounded over a box around the claim, and the
+box is accepted only if this proves that the exact error lies in it (Krawczyk; Rump, Acta Numerica
+19, 2010). Finally, every force and gap that decides which elements act must keep its sign
+throughout the box: then the acting elements were identified correctly, and the exact equilibrium of
+the case is the one in the box. Source: formulation, section 16.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from loadshare.settings import BOUND
 
 @dataclass(frozen=True, eq=False)
 class Box:
-    """Where the exact equilibria of S claims lie; infinite where nothing was proved.
+    """Boxes in which the exact equilibria of S claims lie; infinite where nothing was proved.
 
     Attributes
     ----------
@@ -48,11 +48,11 @@ class Box:
     coordinate : ndarray, shape (S, n)
         Largest error of the coordinates [m]; infinite for those that nothing determines.
     doubtful : ndarray of bool, shape (S, elements)
-        Elements of which it is not proved how they act.
+        Elements for which it is not proved how they act.
     above : ndarray of bool, shape (S, elements)
-        Whether a doubtful radial element may act as further out or under more force.
+        Whether a doubtful radial element may act as it does further out or under more force.
     unbalanced : ndarray of bool, shape (S,)
-        Whether what acts cannot carry the load.
+        Whether the acting elements cannot carry the load.
     """
 
     force: Array
@@ -72,7 +72,7 @@ class Box:
 
     @classmethod
     def unproved(cls, claim: Claim, act: Acts) -> Box:
-        """Return boxes without end."""
+        """Return infinite boxes."""
         columns = claim.columns
         return cls(
             np.full((claim.count, len(columns.names)), np.inf),
@@ -84,7 +84,7 @@ class Box:
 
 
 def boxes(claim: Claim, act: Acts, scale: Array, verge: Flags | None = None) -> Box:
-    """Bound the errors of S claims, taking their elements to act as given.
+    """Bound the errors of S claims, assuming that their elements act as given.
 
     Parameters
     ----------
@@ -93,13 +93,13 @@ def boxes(claim: Claim, act: Acts, scale: Array, verge: Flags | None = None) -> 
     scale : ndarray, shape (S,)
         Load of the claims [N].
     verge : ndarray of bool, shape (S, elements), optional
-        Elements of which it is open on which side of their limit they are; none by default.
+        Elements that may be on either side of their limit; none by default.
     """
     verge = np.zeros(act.shape, dtype=bool) if verge is None else verge
     box = _boxes(claim, act, scale, verge, BOUND.soft)
     rows = np.flatnonzero(np.isinf(box.force).any(axis=1))
     if claim.columns.pairs and len(rows):
-        # What holds a coordinate may be no more than the turning of a light force.
+        # A coordinate may be held by nothing but the turning of a light force.
         other = _boxes(claim.take(rows), act[rows], scale[rows], verge[rows], BOUND.softest)
         unbounded = [np.isinf(b.force[:, claim.columns.flanks]).sum(axis=1) for b in (box, other)]
         better = np.flatnonzero(unbounded[1] <= unbounded[0][rows])
@@ -126,12 +126,12 @@ def _boxes(claim: Claim, act: Acts, scale: Array, verge: Flags, softest: float) 
 
 
 def rounding_of(force: Array, scale: Array) -> Array:
-    """Load along a move that nothing resists that counts as rounding, (S,) [N].
+    """Return the load along a move that nothing resists that counts as rounding, (S,) [N].
 
     Parameters
     ----------
     force : ndarray, shape (S, m)
-        Of the columns [N].
+        Forces of the columns [N].
     scale : ndarray, shape (S,)
         Load of the claims [N].
     """
@@ -140,7 +140,7 @@ def rounding_of(force: Array, scale: Array) -> Array:
 
 
 def aside(claim: Claim, found: Elements, rows: Numbers | slice) -> Array:
-    """What claimed forces are off by whatever acts: what it cannot carry, friction put aside.
+    """Return errors of claimed forces apart from the box: parts not carried, friction put aside.
 
     Shape (rows, m) [N].
     """
@@ -156,7 +156,7 @@ def aside(claim: Claim, found: Elements, rows: Numbers | slice) -> Array:
 
 
 def put_aside(columns: Columns, spare: Array, torques: Array) -> Array:
-    """Friction that is put aside, as it follows torques over the splines, (S, n) [N].
+    """Return the load by friction that is put aside, as it follows torque errors, (S, n) [N].
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def put_aside(columns: Columns, spare: Array, torques: Array) -> Array:
     spare : ndarray, shape (S, radials)
         As in `Elements`.
     torques : ndarray, shape (S, splines)
-        Sizes of their errors [N·m].
+        Sizes of the errors of torques over the splines [N·m].
     """
     radials = slice(columns.pairs - spare.shape[1], None)
     pushed = np.repeat(spare * (torques @ columns.splined[radials].T), 2, axis=1)
@@ -172,12 +172,12 @@ def put_aside(columns: Columns, spare: Array, torques: Array) -> Array:
 
 
 class _Enclosure(Part):
-    """Claims of which the same columns act, and the boxes that hold their errors."""
+    """Claims in which the same columns act, and the boxes that enclose their errors."""
 
     def solve(self, scale: Array) -> tuple[Array, Array]:
-        """Largest errors of the forces of these columns and of the coordinates.
+        """Bound the errors of the forces of these columns and of the coordinates.
 
-        Claims that yield alike share the linear operators of one of them; what they differ by is
+        Claims that yield alike share the linear operators of one of them; their differences are
         bounded with the rest.
         """
         force = np.full(self.soft.shape, np.inf)
@@ -188,7 +188,7 @@ class _Enclosure(Part):
             if not len(left):
                 break
             middle = left[len(left) // 2]
-            # Where the operators of one prove no other, the others are not much alike either.
+            # If the operators of one claim prove no other, claims are not alike: one at a time.
             rows = left if alike else np.array([middle])
             response = Response(self, int(middle))
             force[rows], coordinate[rows] = self._errors(response, rows)
@@ -198,11 +198,11 @@ class _Enclosure(Part):
         return force, coordinate
 
     def _errors(self, response: Response, rows: Numbers) -> tuple[Array, Array]:
-        """Errors of some claims; infinite where they are not proved."""
+        """Return the errors of some claims; infinite where they are not proved."""
         known, size = self.statics, len(self.columns)
         soft, skew, misfit = self.soft[rows], self.skew[rows], self.misfit[rows]
         force, moved = response.step(self.left[rows], misfit)
-        # What the step leaves of the linear equations, and the rounding of this very figure.
+        # Residual of the step in the linear equations, and the rounding of this residual itself.
         torque = force @ self.twist.T
         followed = self.per_torque(self.level[rows], torque)
         yielded = yielding(soft, skew, self.at, force - followed)
@@ -262,14 +262,14 @@ class _Enclosure(Part):
     def _left_out(
         self, rows: Numbers, reach: Array, ways: Array, torques: Array
     ) -> tuple[Array, Array]:
-        """What the linearisation leaves out of forces [N] and of lengths [m] in a box."""
+        """Return what the linearisation leaves out of forces [N] and lengths [m] in a box."""
         found, columns = self.found, self.columns
         lengths = ways @ np.abs(self.statics.directions).T
         gap = np.zeros_like(reach)
         pick = np.ix_(self.rows[rows], columns)
         curve, force = found.curve[pick], np.abs(found.force[pick])
         light = force <= 2.0 * reach
-        # Over half to twice the force the tangent of a Hertz contact changes by its curvature.
+        # From half to twice the force, the tangent of a Hertz contact changes by its curvature.
         gap += np.where(curve > 0.0, 0.5 * curve * reach**2, 0.0)
         gap += np.where(curve < 0.0, -curve * reach, 0.0)
         gap = np.where((curve > 0.0) & light | (reach > found.room[pick]), np.inf, gap)
@@ -291,11 +291,11 @@ class _Enclosure(Part):
                 + found.stiff_error[where] * moved,
                 0.0,
             )
-            # A slip that begins follows its friction, whose direction is known but for its error.
+            # A slip that begins follows its friction, whose direction is known up to its error.
             begun = np.where(2.0 * pushed < size, pushed / np.where(begins, size, 1.0), np.inf)
             bow = np.where(begins, 2.0 * begun * moved, bow)
             turn = np.where(begins, begun * pushed + found.stiff_error[where] * moved, turn)
-            # A torque that passes through zero turns what follows it around.
+            # A torque that passes through zero reverses what follows it.
             claimed = self.torque[rows]
             turned = np.where(claimed > 0.0, 2.0 * np.maximum(torques - claimed, 0.0), torques)
             turned, torques = turned @ self.splined.T, torques @ self.splined.T
@@ -310,7 +310,7 @@ class _Enclosure(Part):
         return extra, gap
 
     def doubts(self, found: Elements, force: Array, coordinate: Array) -> tuple[Flags, Flags]:
-        """Elements of which the errors do not show how they act."""
+        """Return the elements for which the errors do not show how they act."""
         columns = self.claim.columns
         errors = np.zeros((len(self.rows), len(columns.names)))
         errors[:, self.columns] = force

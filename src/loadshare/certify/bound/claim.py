@@ -27,9 +27,9 @@ class Claim:
     fine : bool
         Whether residuals are found in twice the working precision.
     slack : ndarray, shape (m,), or None
-        What is open of the lengths of the columns [m].
+        By how much the lengths of the columns are left open [m].
     limits : ndarray, shape (S, radials, 2), or None
-        Levels [N] and reaches [m] of the radial elements in place of those of their laws.
+        Levels [N] and reaches [m] of the radial elements that replace those of their laws.
     """
 
     columns: Columns
@@ -75,7 +75,7 @@ class Claim:
 
     @cached_property
     def forces(self) -> Array:
-        """F as claimed, shape (S, m) [N]; of arcs their size is in the first of two columns."""
+        """F as claimed, shape (S, m) [N]; for arcs, the size is in the first of two columns."""
         columns, train, answers = self.columns, self.columns.train, self.answers
         found = np.zeros((self.count, len(columns.names)))
         found[:, columns.flanks] = answers.flank_force
@@ -111,7 +111,7 @@ class Claim:
         return minus(total, exact(gaps)), sizes + np.abs(gaps)
 
     def _gaps(self) -> Array:
-        """Gaps, limits and centres, shape (S or 1, m) [m]."""
+        """Return gaps, limits and centres, shape (S or 1, m) [m]."""
         columns, train, here = self.columns, self.columns.train, self.situations
         rows = max(len(here.gap), len(here.stop), len(here.offset))
         gaps = np.zeros((rows, len(columns.names)))
@@ -128,7 +128,7 @@ class Claim:
     def lengths(self) -> tuple[Twofold, Array]:
         """A X − g in twice the precision, shape (S, m) [m], and the sum of the sizes of its terms.
 
-        Of arcs, the displacement from the place of their centres.
+        For arcs, the relative displacement of their centres.
         """
         matrix, x = self.columns.matrix, self.coordinates
         if not self.fine:
@@ -145,7 +145,7 @@ class Claim:
 
     @cached_property
     def arcs(self) -> tuple[Array, Array, Array]:
-        """Ways from the neighbours' centres, margins, and the sizes that margins are made of.
+        """Vectors from the neighbours' centres, margins, and the sizes of the margins' terms.
 
         Shapes (S, arcs, 2), (S, arcs), (S, arcs) [m]. The margin is that of the train's own arcs,
         free of cancellation.
@@ -180,7 +180,7 @@ class Claim:
 
     @cached_property
     def gaps(self) -> Array:
-        """By how much these are open, shape (S, contacts) [m]."""
+        """By how much these contacts are open, shape (S, contacts) [m]."""
         return np.concatenate([-self.lengths[0].value[:, self.columns.contacts], self.arcs[1]], 1)
 
     @cached_property
@@ -199,7 +199,7 @@ class Claim:
         if self.situations.push.any():
             push = self.situations.push.reshape(len(self.situations.push), -1)
             from_push, sizes = product(push, self.columns.pushed)
-            # Arms over radii are rounded, which sums in twice the precision do not see.
+            # Arms over radii are rounded, which sums in twice the precision do not account for.
             return plus(total, from_push), np.abs(total.high) + sizes * (EPS / TINY)
         return total, np.abs(total.high)
 
@@ -222,12 +222,12 @@ class Claim:
 
     @cached_property
     def torque_on_splines(self) -> Array:
-        """Torque that each spline's gear takes over it, shape (S, splines) [N·m]."""
+        """Torque that each spline transmits to its gear, shape (S, splines) [N·m]."""
         return np.asarray(self.answers.flank_force @ self.columns.moments.T)
 
     @cached_property
     def rolling(self) -> Flags:
-        """Arcs and radial elements that are bearings whose wall is a power, shape (pairs,)."""
+        """Which arcs and radial elements are bearings with a power law, shape (pairs,)."""
         columns = self.columns
         found = np.zeros(columns.pairs, dtype=bool)
         first = columns.pairs - len(columns.claims.radials)
@@ -237,7 +237,7 @@ class Claim:
 
     @cached_property
     def rolls(self) -> bool:
-        """Whether there is one."""
+        """Whether there is such a bearing."""
         return bool(self.rolling.any())
 
     @cached_property
@@ -245,8 +245,8 @@ class Claim:
         """Graphs of the radial elements, shape (S, radials, 5).
 
         First stiffness, stick radius S1 (infinite without slip), level F_m, reach S2, last
-        stiffness (infinite for a rigid stop); not a number where a law has no meaning. A wall that
-        is a power is given by its tangent at the claim.
+        stiffness (infinite for a rigid stop); NaN where a law has no meaning. A wall with a power
+        law is given by its tangent at the claim.
         """
         train, here, claims = self.columns.train, self.situations, self.columns.claims
         found = np.zeros((self.count, len(claims.radials), 5))

@@ -8,7 +8,7 @@ are
 .. math:: A^T F = f, \qquad A X - g = \delta(F),
 
 with A from the train's geometry alone. It is built here from the train's meshes, not from the
-programme that a solver sees, so that a slip of one shows in the other. Source: formulation,
+programme that a solver sees, so that a mistake in one shows in the other. Source: formulation,
 sections 2 and 16.
 """
 
@@ -56,7 +56,7 @@ class Turn:
 
 
 class _Row(NamedTuple):
-    """A column: what rotations times arms, displacements along ways, and coordinates add to it."""
+    """A column: arms of rotations, directions of displacements, and coordinates that add to it."""
 
     name: str
     turned: Iterable[tuple[str, float]] = ()
@@ -124,11 +124,11 @@ class Columns:
         self._statics: dict[bytes, Statics] = {}
 
     def both(self, radial: int) -> slice:
-        """Columns of a radial element, given its number in a claim."""
+        """Return the columns of a radial element, given its number in a claim."""
         return self.all_of(slice(radial, radial + 1))
 
     def all_of(self, radials: slice) -> slice:
-        """Columns of radial elements that follow one another in a claim."""
+        """Return the columns of radial elements that follow one another in a claim."""
         start = self.radials.start
         return slice(start + 2 * radials.start, start + 2 * radials.stop)
 
@@ -140,9 +140,9 @@ class Columns:
 
     @cached_property
     def pushed(self) -> Array:
-        """Part of every force from outside in f, shape (3 gears, n).
+        """Contribution of every external force to f, shape (3 gears, n).
 
-        A pin passes what pushes its planet on to the carrier.
+        A pin passes the force on its planet on to the carrier.
         """
         gears = self.train.gears
         part = np.zeros((len(self.order), 3, len(self.coordinates)))
@@ -158,7 +158,7 @@ class Columns:
 
     @cached_property
     def moments(self) -> Array:
-        """Torque that each spline's gear takes over it, per flank force, (splines, flanks) [m]."""
+        """Torque that each spline transmits to its gear per flank force, (splines, flanks) [m]."""
         found = np.zeros((len(self.train.splines), self.flanks.stop))
         for k, gear in enumerate(self.train.splines):
             for e, to in enumerate(self.train.approaches.values()):
@@ -167,7 +167,7 @@ class Columns:
 
     @cached_property
     def splined(self) -> Array:
-        """Which pairs of columns are a spline's, 1 or 0, shape (pairs, splines)."""
+        """Which pairs of columns belong to a spline, 1 or 0, shape (pairs, splines)."""
         found = np.zeros((self.pairs, len(self.train.splines)))
         first = (self.arcs.stop - self.arcs.start) // 2
         for q, k in self.claims.on_splines:
@@ -176,7 +176,7 @@ class Columns:
 
     @cached_property
     def constants(self) -> Array:
-        """What lengths take from clockings and centre offsets, shape (shafts + 3 gears, m)."""
+        """Contributions of clockings and centre offsets to lengths, shape (shafts + 3 gears, m)."""
         shafts = list(self.train.shafts.values())
         on = np.zeros((len(shafts) + 3 * len(self.order), len(self.names)))
         for e, to in enumerate(self.train.approaches.values()):
@@ -222,7 +222,7 @@ class Columns:
 
     @cached_property
     def is_contact(self) -> Flags:
-        """Which columns these are, shape (m,)."""
+        """Which columns are flanks or stops, shape (m,)."""
         found = np.zeros(len(self.names), dtype=bool)
         found[self.contacts] = True
         return found
@@ -233,14 +233,17 @@ class Columns:
         return np.array([m.first_radius for m, _ in self.all_flanks])
 
     def over_meshes(self, torques: Array) -> Array:
-        """Sums of what belongs to the flanks, (…, flanks), of both flanks of every mesh."""
+        """Return sums over both flanks of every mesh, from figures of the flanks, (…, flanks)."""
         if not len(self.meshes):
             return torques
         first = np.flatnonzero(np.diff(self.meshes, prepend=-1))
         return np.asarray(np.add.reduceat(torques, first, axis=-1))
 
     def force_at_end(self, moves: Array) -> float:
-        """Largest force of what may end one of some moves, per load along it; at least 1."""
+        """Return the largest force of an element that ends one of some moves, per load along it.
+
+        At least 1.
+        """
         high = self.matrix.high
         pairs = high[self.first_pair :].reshape(-1, 2, high.shape[1])
         return force_at_end(moves, high[self.contacts], pairs)
@@ -256,7 +259,7 @@ class Columns:
         return known
 
     def _matrix(self, rows: Sequence[_Row]) -> Twofold:
-        """A, shape (m, n)."""
+        """Return A, shape (m, n)."""
         found = Twofold(*np.zeros((2, len(rows), len(self.coordinates))))
         turned, moved = [], []
         for number, row in enumerate(rows):
@@ -326,7 +329,7 @@ class Columns:
 
 
 def _turns(train: Train) -> tuple[dict[str, Turn], list[str]]:
-    """How every gear turns, and the names of the rotations."""
+    """Return how every gear turns, and the names of the rotations."""
     order = {name: k for k, name in enumerate(train.shafts)}
     turns: dict[str, Turn] = {}
     names: list[str] = []

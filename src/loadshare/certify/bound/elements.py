@@ -1,4 +1,4 @@
-"""What is known of every element at a claim."""
+"""Figures of every element at a claim."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ class Elements:
     force : ndarray, shape (S, m)
         F of the columns [N]: what is claimed, along the line of the element where it has one.
     rounding : ndarray, shape (S, m)
-        Of that [N].
+        Rounding of this force [N].
     soft, skew : ndarray, shape (S, m) and (S, pairs)
-        Compliance: diagonal, and the one off it of elements with two columns [m/N].
+        Compliance: diagonal, and off the diagonal for elements with two columns [m/N].
     misfit, width : ndarray, shape (S, m)
         A X − g − δ(F) [m], and its rounding.
     curve : ndarray, shape (S, m)
         Curvature of the law, as the part of the compliance that goes with F^(−1/3), over F.
     room : ndarray, shape (S, m)
-        Error of the force [N] up to which the law is described: beyond, a light contact is stiffer,
-        and a table has another corner.
+        Error of the force [N] up to which these figures describe the law: beyond it, a light
+        contact is stiffer, and a table has another corner.
     line, distance, size : ndarray, shape (S, pairs, 2), (S, pairs), (S, pairs)
         u, |d| [m] and the force along it [N].
     along : ndarray, shape (S, pairs)
@@ -43,7 +43,7 @@ class Elements:
         Change of the level [1/m], and of the room up to a stop [1/N], per torque over the spline;
         0 where it does not enter.
     spare : ndarray, shape (S, radials)
-        Change with the torque of friction that is put aside [1/m].
+        Change of friction that is put aside, per torque [1/m].
     begins : ndarray of bool, shape (S, pairs)
         Slips that are zero so far: u is the direction of the friction.
     """

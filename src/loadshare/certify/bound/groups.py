@@ -1,13 +1,13 @@
-r"""What is the same for claims of which the same elements act, put into a few numbers.
+r"""The figures that claims share in which the same elements act.
 
 With r the largest residual of balance, q the norm of :math:`L^T \epsilon` and w the rounding of
 lengths, the bound of `quick` is
 
 .. math:: \lvert \Delta F_e \rvert \le \kappa_e\, r + \lVert L_e \rVert (q + \lambda\, r + \mu\, w).
 
-A radial element is two columns here, and as stiff each way as its graph is anywhere: laws are
-monotone, so that it need not be known on which piece the exact equilibrium has it. Source:
-formulation, section 16.
+A radial element is two columns here, each as stiff as its graph is anywhere: laws are monotone, so
+the piece on which it is in the exact equilibrium need not be known. Source: formulation, section
+16.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from loadshare.settings import BOUND
 
 
 class Groups(NamedTuple):
-    """What is the same for claims of which the same elements act; G sets of elements.
+    """Figures that claims share in which the same elements act, for G sets of elements.
 
-    Rows of L (rows): contacts, springs, both columns of every radial element; 0 of what is idle.
+    Rows of L (rows): contacts, springs, both columns of every radial element; 0 for idle elements.
     """
 
-    known: Flags  # (G,): whether rigid parts do not share by themselves
+    known: Flags  # (G,): whether the bound covers the set: no rigid parts share by themselves
     carries: Flags  # (G,): whether radial elements take part in carrying a load
     root: Array  # (G, …, rows): L, transposed
-    ended: Array  # (G,): force of what ends a move, per load; 0 where nothing moves freely
+    ended: Array  # (G,): force of an element that ends a move, per load; 0 without free moves
     moves: Array  # (G, …, n)
     held: Array  # (G, …, n): moves that only light contacts hold, per force of these
     spread: Array  # (G,): sum of the lengths of the rows of L
@@ -43,32 +43,32 @@ class Groups(NamedTuple):
     into: Array  # (G,): energy per load, and per push across the lines of arcs
     into_by_push: Array
     bows: Array  # (G,): one over the shortest distance of arcs that act [1/m]
-    widest: Array  # (G,): largest way per coordinate
-    by: Array  # (G, 6, 4): largest figures by load, push, energy and gap
-    pull_by: Array  # (G, q, 4): their forces by load, push and energy, and ways per length
+    widest: Array  # (G,): largest movement of an element per coordinate
+    by: Array  # (G, 6, 4): largest figures per load, push, energy and gap
+    pull_by: Array  # (G, q, 4): radial forces per load, push and energy; movements per length
     part: Array  # (G, q, 2, n): P of the radial elements
-    moment_by: Array  # (G, k, 3): torque over splines by load, push and energy
+    moment_by: Array  # (G, k, 3): torque over splines per load, push and energy
     gain: Array  # (G, k, k): of that torque per push along a spline's offset
     pushed: Array  # (G, q, k): force of a radial element per such push
     particular: Array  # (G, rows, n): P
-    passed: Array  # (G, rows): force of every row by load
+    passed: Array  # (G, rows): force of every row per load
     size: Array  # (G, rows): length of every row of L
     softest: Array  # (G, rows): compliance that no claim exceeds; 0 of radial elements [m/N]
 
 
 class Operators(NamedTuple):
-    """Statics of a set of elements, without rows of what is idle."""
+    """Statics of a set of elements, without rows of idle elements."""
 
     particular: Array  # P
     redundant: Array  # N
     moves: Array
-    ended: float  # force of what ends a move, per load; 0 where nothing moves freely
+    ended: float  # force of an element that ends a move, per load; 0 without free moves
     held: Array  # moves that only light contacts hold, per force of these
-    is_covered: bool  # whether balance tells these forces
+    is_covered: bool  # whether balance determines these forces
 
 
 class Plan:
-    """What all batches of a train share.
+    """The data that all batches of a train share.
 
     Parameters
     ----------
@@ -96,16 +96,16 @@ class Plan:
         self.springs = matrix[of.spring[:, 0]]
         self.pulls = matrix[columns.radials].reshape(-1, 2, width)
         self._statics: dict[bytes, Operators] = {}
-        # Of sets alone, as cases have them that differ in loads and errors only.
+        # For batches with one set, such as cases that differ in loads and errors only.
         self._single: dict[tuple[bytes, ...], Groups] = {}
 
     @property
     def _rows(self) -> int:
-        """Rows of L."""
+        """Number of rows of L."""
         return len(self.contacts) + len(self.springs) + 2 * len(self.pulls)
 
     def _force_at_end(self, moves: Array) -> float:
-        """Force of what may end one of some moves, per load along it; at least 1."""
+        """Return the force of an element that ends one of some moves, per load; at least 1."""
         return force_at_end(moves, self.contacts, self.pulls)
 
     def work(self) -> Workspace:
@@ -121,7 +121,7 @@ class Plan:
         return Workspace(*(np.zeros((*size, BOUND.abreast)) for size in sizes))
 
     def found(self, count: int) -> Found:
-        """Return room for the figures of so many claims."""
+        """Return space for the figures of `count` claims."""
         pulls, n = len(self.pulls), self.contacts.shape[1]
         rows, number = (self._rows, n, pulls, pulls), np.empty(count, dtype=np.intp)
         acts = np.empty((count, len(self.contacts) + pulls), dtype=np.int8)
@@ -134,17 +134,17 @@ class Plan:
         return Found._make([number, acts, *map(np.empty, sizes)])
 
     def sets(self, count: int) -> Sets:
-        """Return room for the sets of elements of so many claims."""
+        """Return space for the sets of elements of `count` claims."""
         most = min(count, BOUND.sets_distinguished)
         size = most, len(self.contacts) + len(self.springs) + len(self.pulls)
         first, key = np.empty(most, dtype=np.intp), np.empty(most, dtype=np.uint64)
         return Sets(first, key, np.full(size, np.inf), np.zeros(size))
 
     def _known(self, acts: Acts) -> Operators:
-        """Statics of what acts.
+        """Return the statics of the acting elements.
 
-        A load is carried by radial elements only where nothing else does, and by what yields
-        without end not at all.
+        Radial elements carry a load only where nothing else does; elements that yield without limit
+        carry none.
         """
         found = self._statics.get(acts.tobytes())
         if found is not None:
@@ -152,7 +152,7 @@ class Plan:
         contacts, radials = np.split(acts, [len(self.contacts)])
         found = self._operators(contacts, radials)
         if not found.is_covered:
-            # Radial elements that are light, but yield in proportion, may carry after all.
+            # Light radial elements that yield in proportion may carry after all.
             found = self._operators(contacts, np.minimum(radials, CLOSED))
         if len(self._statics) >= BOUND.sets:
             self._statics.clear()
@@ -160,7 +160,7 @@ class Plan:
         return found
 
     def _operators(self, contacts: Acts, radials: Acts) -> Operators:
-        """Statics of contacts and radial elements, not yet known."""
+        """Compute the statics of contacts and radial elements."""
         pulls = self.pulls[radials != OPEN].reshape(-1, self.springs.shape[1])
         closed = self.contacts[contacts != OPEN]
         whole = Statics.of(np.concatenate([closed, self.springs, pulls]))
@@ -170,8 +170,8 @@ class Plan:
         classes[first:] = np.repeat(radials[radials != OPEN], 2)
         lasting = classes == CLOSED
         carrying = whole if lasting.all() else Statics.of(whole.directions[lasting])
-        # What is light may open, and then move by any length: it carries no load, but may hold what
-        # nothing else does, where balance alone tells its force.
+        # A light element may open, and then move by any length: it carries no load, but may hold
+        # what nothing else holds, where balance alone determines its force.
         others = whole.directions[~lasting]
         borne, is_covered = held_moves(carrying.moves, others, self._force_at_end)
         particular = np.zeros(whole.particular.shape)
@@ -189,7 +189,7 @@ class Plan:
         return Operators(particular, whole.redundant, moves, ended, borne, is_covered)
 
     def groups(self, acts: Acts, least: Array, most: Array) -> Groups:
-        """Return what is the same for the claims of some sets.
+        """Return the figures that the claims of each of some sets share.
 
         Parameters
         ----------
@@ -198,7 +198,7 @@ class Plan:
             Smallest and largest compliance of contacts, springs and radial elements [m/N].
         """
         key = tuple(each.tobytes() for each in (acts, least, most)) if len(acts) == 1 else ()
-        # Other threads may be clearing.
+        # Another thread may be clearing the dictionary.
         if (known_one := self._single.get(key)) is not None:
             return known_one
         count, n, rows = len(acts), self.contacts.shape[1], self._rows
@@ -236,14 +236,14 @@ class Plan:
         return found
 
     def _both(self, figures: Array) -> Array:
-        """Figures of the elements, those of radial ones twice."""
+        """Return the figures of the elements, those of radial ones twice."""
         first = figures.shape[1] - len(self.pulls)
         return np.append(figures[:, :first], np.repeat(figures[:, first:], 2, axis=1), axis=1)
 
     def _put(
         self, found: Groups, acts: Acts, every: list[Operators], least: Array, most: Array
     ) -> None:
-        """Write what is known of some sets in its place."""
+        """Write the figures of some sets."""
         springs = np.ones((len(acts), len(self.springs)))
         contacts = acts[:, : len(self.contacts)]
         on = self._both(np.concatenate([contacts, springs, acts[:, contacts.shape[1] :]], axis=1))
@@ -262,10 +262,10 @@ class Plan:
         self._put_figures(found, acts, np.where(known, softest / BOUND.secant, 0.0))
 
     def _put_roots(self, found: Groups, redundant: Array, soft: Array) -> None:
-        """Write L, from the smallest compliances; rigid parts must not share by themselves."""
+        """Write L, from the smallest compliances; exclude sets whose rigid parts share alone."""
         soft = np.where(found.known[:, None], BOUND.secant * soft, 1.0)
         stiff = redundant.transpose(0, 2, 1) @ (soft[:, :, None] * redundant)
-        # Columns that fill up are as soft as any, so that they do not count among the stiffest.
+        # Columns that only pad are as soft as the softest, so as not to count among the stiffest.
         filling = np.abs(redundant).max(axis=1, initial=0.0) == 0.0
         diagonal = np.einsum("gii->gi", stiff)
         largest = diagonal.max(axis=1, initial=0.0)
@@ -279,11 +279,11 @@ class Plan:
         found.root[:] = root.transpose(0, 2, 1)
 
     def _put_figures(self, found: Groups, acts: Acts, soft: Array) -> None:
-        """Write sizes of forces and ways, from the largest compliances."""
+        """Write sizes of forces and movements, from the largest compliances."""
         of, contacts = self.layout, len(self.contacts)
         flanks, pulls, arcs = len(of.arm), self._rows - 2 * len(self.pulls), len(of.apart)
         passes, sizes = np.abs(found.particular), np.sqrt((found.root**2).sum(axis=1))
-        # What radial elements yield is given by every claim itself.
+        # The compliance of radial elements is given by every claim itself.
         soft[:, pulls:] = 0.0
         some = acts[:, contacts - arcs : contacts] != OPEN
         across = np.tensordot(some, self.across, 1)
@@ -324,7 +324,7 @@ class Plan:
     def _put_pulls(
         self, found: Groups, figures: Array, passes: Array, ways: Array, weights: Array
     ) -> None:
-        """Write what concerns radial elements, and torques over splines."""
+        """Write the figures of radial elements and of torques over splines."""
         of, first, count = self.layout, self._rows - 2 * len(self.pulls), len(figures)
         pairs = (count, len(self.pulls), 2)
         found.pull_by[:, :, :3] = (

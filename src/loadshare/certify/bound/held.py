@@ -1,11 +1,11 @@
 """Slips that friction and the end of the clearance hold at once.
 
-Where the slip of a spline with memory is at the end of its clearance and does not change, how
-friction and stop share its force is open. Together they hold it as friction alone would whose bound
-is larger: the force stays within both as long as it changes by less than friction has left beside
-the stop. Where friction follows a torque, the room does too: how far it may open is allowed for up
-to a small error of that torque, which the bound then has to prove. Source: formulation, sections 5
-and 16.
+Where the slip of a spline with memory is at the end of its clearance and does not change, it is
+open how friction and stop share its force. Together they hold it as friction with a larger bound
+would alone: the force stays within both as long as it changes by less than the friction that is
+left beside the stop. Where friction follows a torque, so does the room: its opening is allowed for
+up to a small error of that torque, which the bound then has to prove. Source: formulation, sections
+5 and 16.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Held:
     Attributes
     ----------
     claim : Claim
-        With the force of every such stop carried by its friction.
+        The claim, with the force of every such stop carried by its friction.
     shared : ndarray of int
         Columns of which only the sum is determined.
     turned : ndarray, shape (S, splines)
@@ -38,7 +38,7 @@ class Held:
     turned: Array
 
     def denied(self, force: Array) -> Flags:
-        """Whether torques may change more, (S,), by errors (S, m) of the forces."""
+        """Return whether errors (S, m) of the forces may change torques by more, (S,)."""
         columns = self.claim.columns
         turned = force[:, columns.flanks] @ np.abs(columns.moments).T
         return np.asarray((turned > self.turned).any(axis=1))
@@ -53,7 +53,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
     scale : ndarray, shape (S,)
         Load of the claims [N].
     still : (float, float)
-        One of `STILL`.
+        One of `BOUND.still`.
     """
     slight, unchanged = still
     train, columns = claim.columns.train, claim.columns
@@ -78,7 +78,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
         gives = arm * stiffness * (claim.graphs[:, stop, 3] + reach)
         room, torque = _widest(claim, k, rate, np.maximum(least, gives))
         if float((stiffness * (room + reach)).max()) <= slight * float(scale.min()):
-            # It does not move, up to what room it has.
+            # It does not move, except within the room that it has.
             limits[:, friction, 0], limits[:, stop, 1] = np.inf, np.inf
             slack[slips] = float(room.max()) + reach
             turned[:, k] = torque
@@ -100,7 +100,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
         reactions[held, friction], reactions[held, stop] = both[held], 0.0
         limits[held, friction, 0], limits[held, stop, 1] = size[held] + left[held], np.inf
         if held.any():
-            # As far as the end is from there, it may have slipped.
+            # It may have slipped as far as to the end of the clearance.
             room = room + rate * least / stiffness
             slack[slips] = max(float(room[held].max()), 0.0)
             turned[held & (rate > 0.0), k] = least[held & (rate > 0.0)]
@@ -112,13 +112,13 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
 
 
 def _rate(claim: Claim, spline: int) -> Array:
-    """Friction per torque of a spline [1/m], (S or 1,); 0 where it is fixed."""
+    """Return the friction per torque of a spline [1/m], (S or 1,); 0 where it is fixed."""
     fixed, rate = (claim.situations.spline[:, spline, j] for j in (3, 4))
     return np.where(np.isnan(fixed), np.abs(rate), 0.0)
 
 
 def _widest(claim: Claim, spline: int, rate: Array, least: Array) -> tuple[Array, Array]:
-    """Most room that friction leaves a spline, (S,) [m], up to some error of its torque [N·m].
+    """Return the most room that friction leaves a spline, (S,) [m], up to a torque error [N·m].
 
     Where friction follows the torque, less torque leaves more room.
     """
@@ -133,6 +133,6 @@ def _widest(claim: Claim, spline: int, rate: Array, least: Array) -> tuple[Array
 
 
 def _columns(claim: Claim, *radials: int) -> list[int]:
-    """Numbers of the columns of some radial elements."""
+    """Return the numbers of the columns of some radial elements."""
     each = map(claim.columns.both, radials)
     return [column for both in each for column in range(both.start, both.stop)]

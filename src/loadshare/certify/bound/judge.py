@@ -26,7 +26,7 @@ from loadshare.train.situations import Situations
 
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """How far S claims are from the exact equilibria of their cases, at most.
+    """Bounds on the distance of S claims from the exact equilibria of their cases.
 
     Infinite where nothing could be proved, and for what an equilibrium does not determine.
 
@@ -36,11 +36,11 @@ class Bounds:
     relative : ndarray, shape (S,)
         Largest error of a mesh's torque, drive less coast, over the largest torque of a flank.
     torque : ndarray, shape (S, flanks), or None
-        Of the torques of all flanks on their drivers [N·m]; None if Numba was enough.
+        Errors of the torques of all flanks on their drivers [N·m]; None if Numba was enough.
     force : ndarray, shape (S, m), or None
-        Of the forces of all columns [N]; likewise.
+        Errors of the forces of all columns [N]; likewise.
     coordinate : ndarray, shape (S, n), or None
-        Of the coordinates [m]; likewise.
+        Errors of the coordinates [m]; likewise.
     """
 
     columns: Columns
@@ -51,17 +51,17 @@ class Bounds:
 
 
 def _torques(columns: Columns, force: Array, claimed: Array) -> Array:
-    """Errors of the torques of all flanks, as they are reported, (…, flanks) [N·m].
+    """Return the errors of the torques of all flanks as reported, (…, flanks) [N·m].
 
-    From the errors of all columns' forces and the claimed forces of the flanks: a torque is itself
-    rounded.
+    They follow from the errors of all columns' forces, and from the claimed forces of the flanks
+    because a torque is itself rounded.
     """
     error = force[..., columns.flanks] * (1.0 + EPS) + EPS * np.abs(claimed)
     return np.asarray(error * columns.arms)
 
 
 def _largest(columns: Columns, force: Array, claimed: Array) -> Array:
-    """Largest error of a mesh's torque, drive less coast, (…) [N·m]; parameters of `_torques`."""
+    """Return the largest error of a mesh's torque, drive less coast, (…) [N·m]; see `_torques`."""
     found = columns.over_meshes(_torques(columns, force, claimed))
     return np.asarray(found.max(axis=-1, initial=0.0))
 
@@ -83,7 +83,7 @@ def bounds(
     rigorous : bool
         Find all residuals in twice the working precision; otherwise only where that is needed.
     enough : float
-        Error of a torque over the largest torque that is looked at no closer.
+        Error of a torque, over the largest torque, that is good enough.
     """
     if not len(answers.rotation):
         return Bounds(columns, np.zeros(0), None, None, None)
@@ -99,9 +99,9 @@ def completed(
     tolerance: float,
     wanted: Flags,
 ) -> Bounds:
-    """Bound with every effort what Numba has not bounded closely enough, of what is wanted.
+    """Bound by every method the wanted claims that Numba has not bounded closely enough.
 
-    What is certified is close enough: a closer look costs as much as a thousand answers.
+    A bound within the tolerance is close enough: a closer look costs as much as a thousand answers.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def completed(
     relative : ndarray, shape (S,)
         Largest error of a torque over the largest torque, as Numba has it; changed in place.
     tolerance : float
-        Its largest value that is certified.
+        Largest value of `relative` that is certified.
     wanted : ndarray of bool, shape (S,)
     """
     left = np.flatnonzero(~(relative <= tolerance) & wanted)
@@ -133,8 +133,8 @@ def torque_bounds(
     situations : Situations
     answers : Equilibria
     relative : ndarray, shape (S,)
-        Largest error of a mesh's torque over the largest torque: what each mesh has where a closer
-        look would take more than one glance.
+        Largest error of a mesh's torque over the largest torque; it bounds every mesh for which the
+        quick bound is no better.
     """
     with np.errstate(all="ignore"):
         claim = Claim(columns, situations, answers, fine=False)
@@ -145,7 +145,7 @@ def torque_bounds(
 
 
 def _scales(claim: Claim) -> tuple[Array, Array]:
-    """Load [N] and largest torque of a flank or from outside [N·m] of claims, (S,)."""
+    """Return load [N] and largest torque of a flank or from outside [N·m] of claims, (S,)."""
     columns, torque, answers = claim.columns, claim.situations.torque, claim.answers
     radius = np.array([g.base_radius for g in columns.train.gears.values()])
     flanks = np.abs(answers.flank_force)
@@ -176,7 +176,7 @@ def _boxes(claim: Claim, rigorous: bool, enough: float) -> Bounds:
 
 
 def _improve(box: Box, relative: Array, rows: Numbers, other: tuple[Array, Array, Array]) -> None:
-    """Take other errors of forces, coordinates and torques of some claims, where they are less."""
+    """Take other errors of forces, coordinates and torques where those of torques are less."""
     better = other[2] < relative[rows]
     for target, errors in zip((box.force, box.coordinate, relative), other, strict=True):
         target[rows[better]] = errors[better]
@@ -185,7 +185,7 @@ def _improve(box: Box, relative: Array, rows: Numbers, other: tuple[Array, Array
 def _proved(
     held: Held, scale: Array, largest: Array, rigorous: bool, enough: float
 ) -> tuple[Box, Array]:
-    """Errors of S claims, and the largest of a torque over the largest torque (S,) [N·m]."""
+    """Return the errors of S claims, and the largest of a torque over the largest torque, (S,)."""
     claim, columns, answers = held.claim, held.claim.columns, held.claim.answers
     flanks = np.abs(answers.flank_force)
     act = first_acts(claim)
@@ -213,8 +213,8 @@ def _proved(
             if not relative[row] <= CERTIFY.largest:
                 box.force[row], box.coordinate[row] = way(one, scale[row : row + 1])
                 relative[row] = _largest(columns, box.force[row], flanks[row]) / largest[row]
-    # Where torques are not bounded closely enough for any certificate, what seems to be bounded is
-    # so only if what acts was taken rightly, and secants leave tangents by more than was allowed.
+    # Where torques are not bounded closely enough for any certificate, other bounds hold only if
+    # the right elements act, and secants may differ from tangents by more than was allowed for.
     unproved = ~(relative <= CERTIFY.largest) | held.denied(box.force)
     box.force[unproved], box.coordinate[unproved], relative[unproved] = np.inf, np.inf, np.inf
     box.force[:, held.shared] = np.inf
@@ -222,13 +222,13 @@ def _proved(
 
 
 def _with_locked(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound what is left of a single claim when gears are held that cannot move."""
+    """Bound the rest of a single claim with gears held that cannot move."""
     found = _without(claim, locked(claim), scale)
     return found.force[0], found.coordinate[0]
 
 
 def _with_open_slips(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound a single claim with gears put where they are whose splines have used up friction."""
+    """Bound a single claim with gears held in place whose splines have used up their friction."""
     columns = claim.columns
     slips = open_slips(claim)
     found = _without(claim, {slip.gear: slip.play for slip in slips}, scale)
@@ -244,7 +244,7 @@ def _with_open_slips(claim: Claim, scale: Array) -> tuple[Array, Array]:
 
 
 def _without(claim: Claim, gears: Mapping[str, float | Array], scale: Array) -> Box:
-    """Bound what is left of a single claim when some gears stay in place, except for a play."""
+    """Bound the rest of a single claim with some gears held in place, except for a play."""
     whole = claim.columns
     found = Box.unproved(claim, first_acts(claim))
     if gears:
@@ -258,9 +258,9 @@ def _without(claim: Claim, gears: Mapping[str, float | Array], scale: Array) -> 
 
 
 def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound a single claim as if nothing were carried by what carries rounding.
+    """Bound a single claim as if elements that carry only rounding carried nothing.
 
-    What is left over along moves that only it holds is then nothing, to the last digit.
+    The load left over along moves that only they hold is then zero, to the last digit.
     """
     train, answers, least = claim.columns.train, claim.answers, BOUND.noise * scale[:, None]
     arms = [train.gears[shaft.first].base_radius for shaft in train.shafts.values()]
@@ -270,7 +270,7 @@ def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
         "shaft_torque": least * arms,
         "support_force": least[:, :, None],
     }
-    if train.slip is None:  # With memory, slips bend with what they carry.
+    if train.slip is None:  # With memory, slips depend on these forces.
         carried["radial_reaction"] = least[:, :, None]
     kept: dict[str, Any] = {}
     for name, rounding in carried.items():
@@ -284,8 +284,8 @@ def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
 def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
     """Bound a single claim with friction put aside that is light compared with what is certified.
 
-    With memory, so is the friction of splines that are pressed to the end of their clearance: there
-    a slip can only turn, which the stop hardly lets it.
+    With memory, the friction of splines pressed to the end of their clearance is put aside too:
+    there a slip can only turn, which the stop hardly allows.
     """
     act = first_acts(claim, BOUND.light_friction)
     if claim.columns.train.slip is not None:
@@ -297,7 +297,7 @@ def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
 
 
 def _fine(claim: Claim, act: Acts, scale: Array) -> tuple[Array, Array]:
-    """Errors from residuals in twice the precision."""
+    """Return errors from residuals in twice the precision."""
     box = boxes(claim, act, scale)
     force, coordinate = box.force.copy(), box.coordinate.copy()
 
@@ -308,7 +308,7 @@ def _fine(claim: Claim, act: Acts, scale: Array) -> tuple[Array, Array]:
             single = on_the_verge(claim.take(one), act[one], scale[one], part)
             force[row], coordinate[row] = single.force[0], single.coordinate[0]
 
-    # What carries rounding may as well be open, unless it holds a gear.
+    # An element that carries only rounding may as well be open, unless it holds a gear.
     light = _of_rounding(claim, scale) & (act != Act.OPEN)
     try_ways(np.ones(claim.count, dtype=bool), box.doubtful | light)
     again = ~_bounded(claim, force) & light.any(axis=1)
@@ -322,14 +322,14 @@ def _fine(claim: Claim, act: Acts, scale: Array) -> tuple[Array, Array]:
 
 
 def _bounded(claim: Claim, force: Array) -> Flags:
-    """Whether errors of all flanks' forces are known, (S,)."""
+    """Return whether the errors of all flanks' forces are bounded, (S,)."""
     return np.asarray(np.isfinite(force[:, claim.columns.flanks]).all(axis=1))
 
 
 def _of_rounding(claim: Claim, scale: Array) -> Flags:
-    """Elements with so little force that they may as well be open, shape (S, elements).
+    """Return elements with so little force that they may as well be open, shape (S, elements).
 
-    Of splines, their friction is then put aside.
+    For splines this means that their friction is put aside.
     """
     columns, noise = claim.columns, BOUND.noise * scale[:, None]
     found = np.zeros((claim.count, len(columns.contacts) + columns.pairs), dtype=bool)

@@ -1,4 +1,4 @@
-"""Every element at the claim: whether it acts, how it yields, and what its law leaves over.
+"""Every element at the claim: whether it acts, how it yields, and the misfit of its law.
 
 Scalar columns yield by a compliance; arcs and radial elements as in `pairs`. Source: formulation,
 sections 3, 5, 6 and 16.
@@ -30,11 +30,11 @@ def elements(
     scale : ndarray, shape (S,)
         Load of the claims [N].
     verge : ndarray of bool, shape (S, elements), or None
-        Elements of which it is open how they act: contacts among them carry next to nothing. None
+        Elements that may act in more than one way: contacts among them carry almost nothing. None
         where secants take the place of curvatures.
     softest : float
-        Largest compliance of a turn, in those of the claim; what a softer one has less in
-        stiffness goes to `stiff_error`.
+        Largest compliance of a turn, over the largest of the claim; the missing difference in
+        stiffness of a softer one goes to `stiff_error`.
     """
     columns, count, pairs = claim.columns, claim.count, claim.columns.pairs
     shape = count, len(columns.names)
@@ -74,7 +74,7 @@ def elements(
 
 
 def _flanks(claim: Claim, found: Elements, scale: Array, least: Array, verge: Flags | None) -> None:
-    """Compliance, curvature and misfit of flanks, in twice the precision."""
+    """Write compliance, curvature and misfit of flanks, in twice the precision if `claim.fine`."""
     columns, here = claim.columns, claim.situations
     b, c = here.bending, here.hertz
     part = slice(0, columns.flanks.stop)
@@ -118,9 +118,9 @@ def _flanks(claim: Claim, found: Elements, scale: Array, least: Array, verge: Fl
 def _tables(
     claim: Claim, flanks: Numbers, force: Array, scale: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Slopes and values of tabulated laws (S, k), curvatures that cover corners close by, and room.
+    """Return slopes and values of tabulated laws (S, k), curvatures for near corners, and room.
 
-    The last is the distance to the nearest corner that is not covered [N].
+    The curvatures cover corners close by; room is the distance to the next corner beyond [N].
     """
     table = np.broadcast_to(
         claim.situations.table[:, flanks], (*force.shape, *claim.situations.table.shape[2:])
@@ -145,13 +145,13 @@ def _tables(
         there = (j >= 0) & (j <= last) & (np.abs(force - corner) <= near)
         other = at(slopes, np.clip(j, 0, slopes.shape[2] - 1))
         with np.errstate(invalid="ignore"):
-            # A bend of the law within reach counts as if it were spread over the reach.
+            # A corner of the law within reach counts as if it were spread over the reach.
             jump = np.maximum(jump, np.where(there, 3.0 * np.abs(other - slope), 0.0))
     return slope, value, -jump, room
 
 
 def _springs(claim: Claim, found: Elements) -> None:
-    """Shafts, bearings, stops and the shafts of splines with memory: linear columns."""
+    """Write shafts, bearings, stops and the shafts of splines with memory: linear columns."""
     columns, here = claim.columns, claim.situations
     support = here.support[:, columns.moving].reshape(len(here.support), -1)
     held = support > 0.0

@@ -1,4 +1,4 @@
-"""A train as the compiled bound reads it: numbers of elements, their arms and ways."""
+"""A train as the compiled bound reads it: numbers of elements, their arms and directions."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Layout(NamedTuple):
     twin: Numbers  # (c,): opposed contact of the same ring, or −1
     drum: Numbers  # (c − e,): drum of a ring's contact
     drum_gear: Numbers  # (d,)
-    nominal: Array  # (2 d, 2): way from the neighbour
+    nominal: Array  # (2 d, 2): vector from the neighbour
     apart: Array  # (2 d,): length of it
     spring: Numbers  # (springs, 3): column, shaft or gear, axis (2 for a shaft)
     spring_arm: Array
@@ -54,34 +54,34 @@ class Layout(NamedTuple):
     start: Places  # (m + 1,): entries of A, row by row
     at: Places
     value: Array
-    rest_start: Places  # (m + 1,): what lengths take from clockings and offsets
+    rest_start: Places  # (m + 1,): entries of clockings and offsets in lengths, row by row
     rest_at: Places
     rest_value: Array
-    rest_shift: Places  # (e,): first that is no clocking
+    rest_shift: Places  # (e,): first entry that is not a clocking
     still: Numbers  # gears that cannot be displaced
     axis: Array  # (gears, 3)
     shaft: Numbers  # (shafts, 2): first and second gear
     rigid_shaft: Numbers
     held: Numbers  # gears that do not turn
     carrier: Numbers  # (gears,): carrier on which each rides; −1 without
-    squeezed: Numbers  # drums between whose arcs nothing gives way
+    squeezed: Numbers  # drums with rigid arcs on neighbours that cannot move
     neighbour: Numbers  # (2 d,)
     ends: Numbers  # (e, 2): driver and driven gear
     across: Array  # (e, 3): turn of the line of action per displacement of the driver [1/m]
     line: Array  # (e,): its length [m]
-    yields: Array  # (e,): one over the compression to warn of [1/m]
-    turnable: float  # turn to warn of
+    yields: Array  # (e,): one over the compression that gives a warning [1/m]
+    turnable: float  # turn of a line that gives a warning
 
 
 def _entries(matrix: Array) -> tuple[Places, Places, Array]:
-    """Entries of a matrix that are not zero, row by row."""
+    """Return the entries of a matrix that are not zero, row by row."""
     rows, at = np.nonzero(matrix)
     start = np.searchsorted(rows, np.arange(len(matrix) + 1))
     return start.astype(np.uintp), at.astype(np.uintp), matrix[rows, at]
 
 
 def _first_from(column: int, start: Places, at: Places) -> Places:
-    """First entry of every row from a column on."""
+    """Return the first entry of every row from a column on."""
     found = [np.searchsorted(at[a:b], column) + a for a, b in pairwise(start.tolist())]
     return np.array(found, dtype=np.uintp)
 
@@ -105,7 +105,7 @@ def springs_of(columns: Columns, situations: Situations) -> tuple[Numbers, Array
 
 
 def _twins(columns: Columns, nominal: Array, apart: Array) -> Numbers:
-    """Opposed contacts of rings."""
+    """Return the opposed contact of every contact of a ring; −1 where there is none."""
     flanks, contacts = columns.flanks.stop, len(columns.contacts)
     twin = np.full(contacts + len(apart), -1, dtype=np.intp)
     for start in range(flanks, len(twin), 2):
@@ -117,7 +117,7 @@ def _twins(columns: Columns, nominal: Array, apart: Array) -> Numbers:
 
 
 def layout_of(columns: Columns, spring: Numbers, spring_arm: Array, pushed: bool) -> Layout:
-    """Return a train for compiled code.
+    """Return the layout of a train.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""Gears that rigid limits leave no way to move: what their limits share does not matter.
+"""Gears that rigid limits keep from moving: how their limits share the force does not matter.
 
-A gear in a rigid ring without play stays where it is, whatever its stops, its spline and its
-ring share of the force on it. Its place, known to within what the limits leave, is put in as data
-and its limits are left out; what is then bounded is all the rest. Source: formulation, section 16.
+A gear in a rigid ring without play stays where it is, however its stops, its spline and its ring
+share the force on it. Its place, known to within the play of the limits, is taken as given and its
+limits are left out; the bound then covers all the rest. Source: formulation, section 16.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from loadshare.train.train import Train
 
 
 def locked(claim: Claim) -> dict[str, float]:
-    """Gears that cannot move, and how far each may be from where it is claimed [m].
+    """Return the gears that cannot move, and how far each may be from its claimed place [m].
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def locked(claim: Claim) -> dict[str, float]:
 
 
 def _round(claim: Claim, ring: RoundRing) -> float:
-    """How far a gear in a rigid round ring may be from its claimed place."""
+    """Return how far a gear in a rigid round ring may be from its claimed place."""
     columns = claim.columns
     q = columns.train.rounds.index(ring)
     radius = float(claim.graphs[0, q, 3])
@@ -59,7 +59,7 @@ def _round(claim: Claim, ring: RoundRing) -> float:
 
 
 def _drum(claim: Claim, ring: DrumRing) -> float:
-    """How far a gear in a rigid drum may be from its claimed place."""
+    """Return how far a gear in a rigid drum may be from its claimed place."""
     train, columns = claim.columns.train, claim.columns
     if any(train.gears[n].moves for n in ring.neighbours):
         return math.inf
@@ -81,7 +81,7 @@ def _drum(claim: Claim, ring: DrumRing) -> float:
 
 
 def _reach(normals: Array, room: Array) -> float:
-    """Largest move that half-planes a·δ ≥ −m allow, by the weak duality of every pair of them."""
+    """Return the largest move that half-planes a·δ ≥ −m allow, by weak duality of every pair."""
     longest = 0.0
     for direction in (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0):
         longest = max(longest, min(_supports(normals, room, np.array(direction)), default=math.inf))
@@ -89,7 +89,7 @@ def _reach(normals: Array, room: Array) -> float:
 
 
 def _supports(normals: Array, room: Array, direction: Array) -> Iterator[float]:
-    """Bounds on how far moves may go along a direction."""
+    """Yield bounds on how far moves may go along a direction."""
     for i, j in combinations(range(len(normals)), 2):
         pair = normals[[i, j]].T
         if abs(np.linalg.det(pair)) > BOUND.bowed:
@@ -99,7 +99,7 @@ def _supports(normals: Array, room: Array, direction: Array) -> Iterator[float]:
 
 
 def without(claim: Claim, gears: Mapping[str, float | Array]) -> tuple[Claim, Numbers]:
-    """The claim for the train in which some gears are held where they are claimed.
+    """Return the claim for the train in which some gears are held at their claimed places.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def without(claim: Claim, gears: Mapping[str, float | Array]) -> tuple[Claim, Nu
     Returns
     -------
     claim : Claim
-        With what their places leave open as `slack`.
+        With what these places leave open of lengths as `slack`.
     columns : ndarray of int
         Number of each of its columns among those of the whole train.
     """
@@ -141,7 +141,7 @@ def without(claim: Claim, gears: Mapping[str, float | Array]) -> tuple[Claim, Nu
 
 
 def _held(here: Situations, held: Train, gears: Iterable[str]) -> Situations:
-    """The situation without what holds some gears."""
+    """Return the situation without the elements that hold some gears."""
     train = here.train
     drums, rounds = ([r.gear not in gears for r in kind] for kind in (train.drums, train.rounds))
     splines = [gear not in gears for gear in train.splines]

@@ -1,4 +1,4 @@
-"""The bound of a single claim, by the names of what it bounds."""
+"""The bound of a single claim, by names of meshes, elements and coordinates."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from loadshare.train.train import Train
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """How far a claim is from the exact equilibrium, at most.
+    """Bounds on the distance of a claim from the exact equilibrium.
 
     Infinite where nothing was proved, and for what an equilibrium does not determine.
 
@@ -26,12 +26,12 @@ class Bound:
     relative : float
         Largest error of a mesh's torque, drive less coast, over the largest torque of a flank.
     torque : mapping of mesh to float
-        Of the torque on the driver [N·m].
+        Error of the torque on the driver [N·m].
     force : mapping of element to float
-        Of the force of every flank, bearing, stop, arc, round ring and spline [N], and of the
+        Error of the force of every flank, bearing, stop, arc, round ring and spline [N], and of the
         torque of every elastic shaft [N·m].
     place : mapping of coordinate to float
-        Of every rotation [rad] and displacement [m].
+        Error of every rotation [rad] and displacement [m].
     """
 
     relative: float
@@ -46,7 +46,7 @@ class Bound:
 
     @classmethod
     def of(cls, found: Bounds, row: int) -> Bound:
-        """Return one of not too many, of which all errors were found.
+        """Return the bound of one claim, if all errors were found, as they are for few claims.
 
         Raises
         ------
@@ -78,7 +78,7 @@ class Bound:
             if gear.is_tilted and names[0] in place:
                 # Displacements are given along another frame than that of the coordinates.
                 weights, errors = np.abs(gear.plane @ gear.frame.T), [place[n] for n in names]
-                # What has no bound along a direction that has no part in another is none there.
+                # An infinite error along a direction with weight zero does not count.
                 parts = np.multiply(weights, errors, where=weights > 0.0, out=np.zeros((2, 2)))
                 along = parts.sum(axis=1)
                 place |= dict(zip(names, along.tolist(), strict=True))

@@ -1,17 +1,17 @@
 r"""Splines whose friction is used up: how far they have slipped is open, what they carry is not.
 
 Where the force on a gear equals the friction bound :math:`F_m` of its spline, whatever the load,
-the gear is in balance anywhere from S1 to S2 along that force. In the case as given rounding
+the gear is in balance anywhere from S1 to S2 along that force. In the case as given, rounding
 decides to which end it goes, and no set of acting elements can be identified. As long as its place
-changes no force, none has to be: the gear is put where it is claimed, its place q open within a
-rectangle Q along the claimed force :math:`F u`,
+changes no force, none is needed: the gear is put at its claimed place, with its place q open within
+a rectangle Q along the claimed force :math:`F u`,
 
 .. math:: q \cdot u \in [a, b], \qquad \lvert q \cdot u^\perp \rvert \le w, \qquad
     a = S_1 - \mu, \quad b = S_2 + \mu, \quad w = \mu,
 
-and its spline is left out. What is then bounded holds for every q in Q: all forces, and with them
+and its spline is left out. The bounds then hold for every q in Q: those of all forces, and so of
 the force R(q) that the rest puts on the spline, :math:`\lvert R(q) - F u \rvert \le \epsilon`,
-and the friction bound, which is no less than :math:`F_m^-`. It remains to show that an exact
+and of the friction bound, which is no less than :math:`F_m^-`. It remains to show that an exact
 equilibrium has its place in Q. The law of the spline is the set-valued gradient :math:`\partial W`
 of a convex function whose level varies continuously with the torque, so that
 :math:`\partial W(q) - R(q)` has compact convex values and is upper semicontinuous: on Q the
@@ -21,7 +21,7 @@ variational inequality
     G \cdot (q - q^*) \ge 0 \quad \text{for all } q \in Q
 
 has a solution (Kakutani's fixed point). In the interior of Q that means G = 0, an exact
-equilibrium. On no side of Q can it be, with the force m(r) of the spline at a radius r:
+equilibrium. It cannot be on any side of Q; m(r) is the force of the spline at a radius r:
 
 - far side: there :math:`G \cdot u \le 0`, yet :math:`m(r) \ge F_m^- + K_w (r - S_2)` and r ≥ b, so
   that :math:`\partial W \cdot u \ge (F_m^- + K_w \mu)\, b / \sqrt{b^2 + w^2} > F + \epsilon`;
@@ -31,8 +31,8 @@ equilibrium. On no side of Q can it be, with the force m(r) of the spline at a r
 - lateral sides: there :math:`\pm G \cdot u^\perp \le 0`, yet :math:`m(r) \ge \min(K_w r, F_m^-)`,
   so that :math:`\pm \partial W \cdot u^\perp \ge w \min(K_w, F_m^- / r) > \epsilon`.
 
-Each last inequality is verified with what was bounded. Of several such splines each has its own
-rectangle; Q is their product, and the argument holds for each by itself. Source: formulation,
+Each last inequality is verified with the bounds. If there are several such splines, each has its
+own rectangle; Q is their product, and the argument holds for each separately. Source: formulation,
 sections 5 and 16.
 """
 
@@ -56,9 +56,9 @@ class OpenSlip:
     ----------
     gear : str
     number : int
-        Of the spline.
+        Number of the spline.
     force : ndarray, shape (2,)
-        On its spline, as claimed [N].
+        Claimed force on the spline [N].
     play : ndarray, shape (2,)
         How far the rectangle reaches from the claimed place along the gear's axes [m].
     """
@@ -104,7 +104,7 @@ def open_slips(claim: Claim) -> list[OpenSlip]:
 
 
 def reaction_error(claim: Claim, slip: OpenSlip, flanks: Array) -> Array:
-    """Error of the force on such a spline, from those of the flanks (flanks,), shape (2,) [N]."""
+    """Return the error of the force on such a spline from those of flanks (flanks,), (2,) [N]."""
     columns = claim.columns
     at = columns.places[slip.gear]
     left, rounding = (v[0, at : at + 2] for v in claim.balance(claim.forces))
@@ -113,7 +113,7 @@ def reaction_error(claim: Claim, slip: OpenSlip, flanks: Array) -> Array:
 
 
 def is_inside(claim: Claim, slip: OpenSlip, flanks: Array) -> bool:
-    """Whether an exact equilibrium has its place in the rectangle.
+    """Return whether an exact equilibrium has its place in the rectangle.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def is_inside(claim: Claim, slip: OpenSlip, flanks: Array) -> bool:
         A single one.
     slip : OpenSlip
     flanks : ndarray, shape (flanks,)
-        Errors of their forces, wherever in its rectangle the gear is [N].
+        Errors of the flanks' forces, valid wherever in its rectangle the gear is [N].
     """
     q = claim.columns.claims.splines.start + slip.number
     stiffness, stick, level, reach, _ = claim.graphs[0, q].tolist()

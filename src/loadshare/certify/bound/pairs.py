@@ -1,13 +1,12 @@
-r"""Arcs and radial elements at the claim: how they yield, and what their laws leave over.
+r"""Arcs and radial elements at the claim: how they yield, and the misfits of their laws.
 
-Arcs and radial elements push along the line from their centre
-and yield as
+Arcs and radial elements push along the line from their centre and yield as
 
 .. math:: \Delta o = \left(c_n\, u u^T \pm \frac{|d|}{F}\,(1 - u u^T)\right)\Delta F,
 
-u the direction and |d| the distance from the centre: a turn of the direction is a compliance too.
-Where a slip only begins, |d| = 0, u is the direction of the friction F. Whatever slips from there
-follows it, so that its direction is off by no more than 2 |ΔF|/F: it is held across u.
+with u the direction and |d| the distance from the centre: a turn of the direction is a compliance
+too. Where a slip only begins, |d| = 0, u is the direction of the friction F. The slip follows it,
+so that the direction is off by no more than 2 |ΔF|/F: the element is held across u.
 Source: formulation, sections 3, 5, 6 and 16.
 """
 
@@ -25,7 +24,7 @@ from loadshare.settings import BOUND
 def put_pairs(
     claim: Claim, act: Acts, found: Elements, least: Array, verge: Flags | None, softest: float
 ) -> None:
-    """Arcs and radial elements."""
+    """Write the figures of arcs and radial elements."""
     columns, here = claim.columns, claim.situations
     first, count = columns.first_pair, claim.count
     where = claim.lengths[0].value[:, first:].reshape(count, -1, 2)
@@ -41,7 +40,7 @@ def put_pairs(
     size = np.sqrt((claimed**2).sum(axis=2))
     begins = (act == Act.SLIP) & (size > 0.0)
     begins[:, arcs:] &= unmoved(claim, distance[:, arcs:])
-    # What begins to slip does so along its friction, across which it is held.
+    # An element that begins to slip does so along its friction, and is held across it.
     line = np.where(begins[:, :, None], claimed / np.where(size > 0.0, size, 1.0)[:, :, None], line)
     # An arc pushes outwards: its force does work against the distance.
     sign = np.ones(where.shape[1])
@@ -105,7 +104,7 @@ def put_pairs(
 
 
 def _first_pieces(claim: Claim, act: Acts) -> Array:
-    """Compliance of pairs on the first piece of their graph [m/N], (S, pairs); 0 of others."""
+    """Return compliances of pairs on the first piece of a graph [m/N], (S, pairs); 0 of others."""
     first, stick, _, _, last = claim.graphs.transpose(2, 0, 1)
     spring, radials = np.zeros(act.shape), slice(act.shape[1] - stick.shape[1], None)
     stiffness = np.where(np.isinf(stick) | (stick > 0.0), first, last)
@@ -131,17 +130,17 @@ def _by_force(
     where: tuple[Array, Array],
     laws: tuple[Array, Array],
 ) -> Flags:
-    """Put in walls that are powers by their forces, and return which these are, (S, rounds).
+    """Describe power-law walls by their forces, and return which these are, (S, rounds).
 
-    Those on the verge: as of a light Hertz contact, their tangent is taken at more than their
-    force. Up to there the wall is softer: it answers by something between that tangent and none.
-    Where secants take the place of curvatures, all that act.
+    They are those on the verge: as for a light Hertz contact, their tangent is taken at more than
+    their force. Up to that force the wall is softer: its response lies between that tangent's and
+    none. Where secants take the place of curvatures, they are all walls that act.
 
     Parameters
     ----------
     claim : Claim
     found : Elements
-        Whose `room` is filled in.
+        Elements whose `room` is filled in.
     act : ndarray of int8, shape (S, pairs)
     verge : ndarray of bool, shape (S, pairs), or None
         As in `elements`.
@@ -169,14 +168,14 @@ def _by_force(
     off = distance - radius - (size / stiffness) ** (1.0 / power)
     for target, value in zip(laws, (soft, off), strict=True):
         target[:, rounds] = np.where(chosen, value, target[:, rounds])
-    # A force changes by less than that all along its line while its components change by less.
+    # While both components change by less than this, the force changes by less than the spare.
     room = np.where(chosen, np.sqrt(0.5) * spare, np.inf)
     found.room[:, columns.all_of(columns.claims.rounds)] = np.repeat(room, 2, axis=1)
     return np.asarray(chosen)
 
 
 def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int, by_force: Flags) -> None:
-    """Curvature of the other walls that are powers, and what tangents leave at the claim."""
+    """Write the curvature of the other power-law walls, and the tangents' misfit at the claim."""
     power = claim.situations.round_power
     rounds = slice(arcs, arcs + power.shape[1])
     acting = (power != 1.0) & (acts[:, : power.shape[1]] != Act.OPEN) & ~by_force
@@ -194,7 +193,7 @@ def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int, by_force: Flags
 
 
 def _put_aside(claim: Claim, acts: Acts) -> tuple[Array, Array]:
-    """Friction of splines that are taken as open, (S, radials): its level [N], and per torque."""
+    """Return friction of splines taken as open, (S, radials): its level [N], and per torque."""
     is_open = acts == Act.OPEN
     spare = np.zeros(acts.shape)
     splines, fixed, rate = (
@@ -206,7 +205,7 @@ def _put_aside(claim: Claim, acts: Acts) -> tuple[Array, Array]:
 
 
 def _follow(claim: Claim, acts: Acts, yields: Array, follows: Array, shrinks: Array) -> None:
-    """Change of a spline's level and of its room with its torque, where they enter."""
+    """Write the change of a spline's level and of its room with its torque, where they enter."""
     columns, here = claim.columns, claim.situations
     for q, k in columns.claims.on_splines:
         stiffness, fixed, rate = (here.spline[:, k, j] for j in (0, 3, 4))

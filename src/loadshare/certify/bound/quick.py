@@ -1,22 +1,22 @@
 r"""The bound of many claims at once, from the convexity of the complementary energy.
 
-Along the way from a claim to the exact equilibrium every law is monotone, so that with compliances
-D that no element undercuts
+Every law is monotone along the way from a claim to the exact equilibrium, so that with compliances
+D below which no element falls
 
 .. math:: \Delta F^T D\,\Delta F \le \lvert \Delta F^T \epsilon \rvert, \qquad
     \Delta F = P r_f + N z,
 
-ε the misfits of the laws. With :math:`L L^T = N (N^T D N)^{-1} N^T` this is
+with ε the misfits of the laws. With :math:`L L^T = N (N^T D N)^{-1} N^T` this gives
 
 .. math:: \lvert \Delta F_e \rvert \le \lvert P r_f \rvert_e
     + \lVert L_e \rVert\, \bigl(\lVert L^T \epsilon \rVert
     + \textstyle\sum_k \lVert L_k \rVert\, \bar D_k \lvert P r_f \rvert_k \bigr),
 
-with compliances that no element exceeds in the last term. D, the smallest compliances among claims
-of which the same elements act, makes L the same for all of them: a claim costs two small
-products. The last term holds for what stays closed: a contact that opens may move by any length.
-So a load is carried by what has more force than its error, or by what cannot open. What cannot be
-shown so is left to `boxes`. Source: formulation, section 16.
+where no element exceeds the compliances :math:`\bar D`. D is taken as the smallest compliances
+among claims in which the same elements act, so that L is the same for all of them: a claim costs
+two small products. The last term holds for elements that stay closed: a contact that opens may move
+by any length. So a load is assigned to elements whose force exceeds its error, or that cannot open.
+Claims that cannot be bounded in this way are left to `boxes`. Source: formulation, section 16.
 """
 
 from __future__ import annotations
@@ -46,14 +46,13 @@ def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) ->
     scale : ndarray, shape (S,)
         Load of the claims [N].
     rounded : bool
-        Take what hardly moves for what does not, where it is no more than the rounding of the
-        moves.
+        Take parts of moves for zero that are no more than the rounding of the moves.
     """
     box = Box.unproved(claim, act)
     act, doubled = _with_near(claim, act)
     found = elements(claim, act, scale, None)
     if found.shrinks.any() or (claim.columns.train.slip is not None and found.follows.any()):
-        # With memory, what follows the torque is the room of a stop, a length and no force.
+        # With memory, the room of a stop follows the torque: a length, not a force.
         return box
     left, rounding = claim.balance(found.force)
     arms = np.abs(claim.columns.moments).sum(axis=1)
@@ -68,7 +67,7 @@ def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) ->
             box.force[pick], box.coordinate[pick] = group.errors(
                 left[pick], rounding[pick], scale[pick]
             )
-            # Lines that point elsewhere are looked at with another claim's.
+            # Claims whose lines point elsewhere are tried with the line of another claim.
             rows = rows[group.turned]
             if not len(rows):
                 break
@@ -76,7 +75,7 @@ def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) ->
 
 
 def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
-    """Ways of acting with contacts that all but touch closed, and which have a twin that acts.
+    """Return ways of acting with nearly touching contacts closed, and which a twin replaces.
 
     Two opposed contacts of a ring, without clearance between them, are one contact that holds both
     ways.
@@ -109,10 +108,10 @@ def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
 
 
 def _groups(claim: Claim, act: Acts) -> list[Numbers]:
-    """Rows with the same codes; of few claims that lean on a ring or spline, each by itself.
+    """Return rows with the same codes; of few claims that lean on a ring or spline, each alone.
 
-    By itself the turn of its line is one more compliance. Many share the line of one of them, and
-    those whose lines point elsewhere are left to twice the precision.
+    Alone, the turn of its line is one more compliance. Many claims share the line of one of them,
+    and those whose lines point elsewhere are left to twice the precision.
     """
     groups = alike(act)
     first = act.shape[1] - len(claim.columns.claims.radials)
@@ -122,7 +121,9 @@ def _groups(claim: Claim, act: Acts) -> list[Numbers]:
 
 
 def _over_tangents(claim: Claim, found: Elements, rows: Numbers | slice, scale: Array) -> Array:
-    """Largest compliance of flanks between two forces, over the tangent's, shape (rows, flanks).
+    """Return the largest compliance of flanks between two forces, over the tangent's.
+
+    Shape (rows, flanks).
 
     The tangent of a light Hertz contact is taken at more than its force.
     """
@@ -169,7 +170,7 @@ class _Group:
             u @ matrix[first + 2 * j : first + 2 * j + 2]
             for u, j in zip(self.reference, self.lined, strict=True)
         ]
-        # Of a single claim, that the line of a ring turns is one more compliance; arcs turn away.
+        # For a single claim, the turn of a ring's line is one more compliance; arcs turn away.
         self.turning = np.zeros(len(self.lined), dtype=bool)
         if len(rows) == 1:
             self.turning = self.lined >= claim.arcs[1].shape[1]
@@ -200,12 +201,12 @@ class _Group:
         self._set_stiffness()
 
     def _columns(self, scalar: Array, lined: Array) -> Array:
-        """Figures of all columns of the claims and figures of the lines, side by side."""
+        """Return figures of all columns of the claims and of the lines, side by side."""
         rest = np.zeros((len(lined), int(self.turning.sum())))
         return np.concatenate([scalar[self.pick][:, self.scalar], lined, rest], axis=1)
 
     def _pushed(self) -> Array:
-        """Forces of what may open, shape (rows, m): infinite of what cannot."""
+        """Return forces of elements that may open, shape (rows, m); infinite for all others."""
         claim, found, pick = self.claim, self.found, self.pick
         columns, arcs = claim.columns, claim.arcs[1].shape[1]
         pushed = np.full(found.force[pick].shape, np.inf)
@@ -214,13 +215,13 @@ class _Group:
         size[:, arcs:][claim.graphs[pick][:, :, 2] > 0.0] = np.inf
         first = columns.first_pair
         pushed[:, first::2] = pushed[:, first + 1 :: 2] = size
-        # Of two without clearance between them, one takes what the other cannot.
+        # Of two contacts without clearance between them, one takes what the other cannot.
         for rows, _, twin in self._twins():
             pushed[rows, twin] = np.inf
         return pushed
 
     def _twins(self) -> Iterator[tuple[Flags, int, int]]:
-        """Yield contacts that their twin replaces: where it does, a column of each."""
+        """Yield contacts that their twin replaces: in which claims, and a column of each."""
         columns = self.claim.columns
         contacts, first = len(columns.contacts), columns.flanks.stop
         at = [*columns.contacts.tolist(), *range(columns.arcs.start, columns.arcs.stop, 2)]
@@ -231,24 +232,24 @@ class _Group:
                 yield doubled[:, e], at[e] + k, at[twin] + k
 
     def _at_ends(self, figures: Array) -> Array:
-        """Figures of all columns (rows, m), as directions are; those of turns infinite."""
+        """Return figures of all columns (rows, m) in the order of `directions`; turns infinite."""
         at = self.claim.columns.first_pair + 2 * self.lined
         turns = np.full((len(figures), int(self.turning.sum())), np.inf)
         return np.concatenate([figures[:, self.scalar], figures[:, at], turns], axis=1)
 
     def _set_particular(self) -> None:
-        """Find how a load is carried by what yields in proportion."""
+        """Find how elements that yield in proportion carry a load."""
         self.particular = self.statics.particular
         self.held = self.statics.moves[:, :0]
         light = self.is_left | self.is_endless
         for left in (light | self.may_open, light, self.is_left, self.is_sliding):
-            # What may open, or yields without end, carries a load only where nothing else does.
+            # Elements that may open, or yield without limit, carry loads only if nothing else does.
             self.is_left = left
             known = Statics.of(self.directions[~left]) if left.any() else self.statics
             opening = self.directions[self.may_open & left]
             self.is_covered = self._is_idle(free_moves(known.moves, opening))
             if len(opening):
-                # What may open bears what nothing else does, as balance alone determines.
+                # Elements that may open carry what nothing else does, if balance determines it.
                 self.held, is_determined = held_moves(
                     known.moves, self.directions[left], self.claim.columns.force_at_end
                 )
@@ -259,7 +260,7 @@ class _Group:
                 break
 
     def _is_idle(self, moves: Array) -> bool:
-        """Whether no load is left along moves, beyond those that nothing at all resists.
+        """Return whether no load is left along moves, beyond those that nothing at all resists.
 
         Gears that carry nothing have none, to the last digit.
         """
@@ -268,7 +269,7 @@ class _Group:
         return bool((along <= EPS * len(moves) * self.load.max(axis=1, initial=0.0)).all())
 
     def _bears_none(self, moves: Array) -> bool:
-        """Whether what holds moves bears nothing."""
+        """Return whether the elements that hold moves carry nothing."""
         ways = np.abs(moves)
         if self.rounded:
             ways[ways <= BOUND.rounded * ways.max(axis=0, initial=0.0)] = 0.0
@@ -306,7 +307,7 @@ class _Group:
         self.into_energy = self.passes.T @ (self.soft.max(axis=0) * self.sizes)
 
     def errors(self, left: Array, rounding: Array, scale: Array) -> tuple[Array, Array]:
-        """Errors of all forces and coordinates of the claims."""
+        """Return the errors of all forces and coordinates of the claims."""
         claim, found, pick, lined = self.claim, self.found, self.pick, self.lined
         columns = claim.columns
         first, matrix = columns.first_pair, np.abs(columns.matrix.high)
@@ -330,12 +331,12 @@ class _Group:
         if self.statics.moves.size:
             stray = np.abs(left @ self.statics.moves).max(axis=1) + EPS * scale
         taken = (self.load @ np.abs(self.held)).max(axis=1, initial=0.0)
-        # What goes along a free move may end at any contact, and push what that joins.
+        # A load along a free move may end at any contact, and push what that joins.
         ended = stray * columns.force_at_end(self.statics.moves)
         rounding = rounding + found.rounding[pick] @ matrix + (ended + taken)[:, None]
         base, energy = self._under(left, misfit)
         base = base + taken[:, None] * self.is_left
-        # By what rigid parts contradict one another, one of them is open.
+        # Where rigid parts contradict one another, one of them is open by that much.
         width = width + np.abs(misfit @ self.rigid) @ np.abs(self.rigid).T
         base, energy = self._with(base, energy, rounding, width)
         errors = base + energy[:, None] * self.sizes
@@ -382,23 +383,23 @@ class _Group:
         return whole, places
 
     def _cover_twins(self, errors: Array) -> None:
-        """Give contacts that their twin replaces the twin's errors: it may be they that act."""
+        """Give contacts that their twin replaces the twin's errors: they may be those that act."""
         for rows, one, twin in self._twins():
             error = np.maximum(errors[:, one], errors[:, twin])
             errors[:, one] = np.where(rows, error, errors[:, one])
 
     def _under(self, load: Array, misfit: Array | float) -> tuple[Array, Array]:
-        """Sizes of the forces that carry a load, and of the misfit that is left for self-stress."""
+        """Return sizes of the forces that carry a load, and of the misfit left to self-stress."""
         force = np.abs(load @ self.particular.T)
         bent = np.sqrt(((misfit @ self.root) ** 2).sum(axis=1))
         return force, bent + (self.soft * force) @ self.sizes
 
     def _with(self, base: Array, energy: Array, load: Array, gap: Array) -> tuple[Array, Array]:
-        """Add what loads and gaps of given sizes may do."""
+        """Add the largest effects of loads and gaps of given sizes."""
         return base + load @ self.passes.T, energy + gap @ self.sizes + load @ self.into_energy
 
     def _followed(self, errors: Array) -> Array:
-        """Errors that come over friction which follows the torque."""
+        """Return the errors due to friction that follows the torque."""
         claim, found, pick = self.claim, self.found, self.pick
         columns = claim.columns
         rates, arms = found.follows[pick], np.abs(columns.moments)
@@ -419,7 +420,7 @@ class _Group:
         return np.asarray(enough[:, None] * total)
 
     def _is_proved(self, errors: Array, places: Array, moved: Array, scale: Array) -> Flags:
-        """Whether all that was assumed holds within the errors.
+        """Return whether all that was assumed holds within the errors.
 
         A closed contact may as well be open in the exact equilibrium: the laws are monotone there
         too. Then the coordinates may differ by more than the forces show.
@@ -430,7 +431,7 @@ class _Group:
         proved = np.isfinite(errors).all(axis=1) & np.isfinite(places).all(axis=1)
         light = np.maximum(force, BOUND.light * scale[:, None])[:, columns.flanks]
         proved &= (errors[:, columns.flanks] <= 0.1 * light).all(axis=1)
-        # Friction that is put aside was allowed for up to so large errors.
+        # Friction that is put aside was allowed for up to errors of this size only.
         slight = (errors[:, columns.flanks] <= BOUND.noise * scale[:, None]).all(axis=1)
         proved &= slight | (found.spare[pick] == 0.0).all(axis=1)
         # The curvature of a table is that of a corner within reach.
@@ -445,7 +446,7 @@ class _Group:
         closed = found.act[pick][:, : pushed.shape[1]] != Act.OPEN
         part = doubtful[:, : pushed.shape[1]]
         part[closed] = pushed[closed] < 0.0
-        # So may a ring, or a spline without friction, that is touched.
+        # A ring, or a spline without friction, that is touched may as well be open too.
         loose = claim.graphs[pick][:, :, 2] == 0.0
         radials = found.act[pick][:, pushed.shape[1] :]
         doubtful[:, pushed.shape[1] :] &= ~(loose & (radials == Act.STOP))

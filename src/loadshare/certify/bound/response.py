@@ -1,6 +1,6 @@
-"""How forces and coordinates of a set of columns answer loads and gaps, to first order.
+"""How forces and coordinates of a set of columns respond to loads and gaps, to first order.
 
-For the claims of which the same columns act. Source: formulation, section 16.
+For the claims in which the same columns act. Source: formulation, section 16.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from loadshare.settings import BOUND
 
 
 class Part:
-    """Claims of which the same columns act."""
+    """Claims in which the same columns act."""
 
     def __init__(
         self,
@@ -31,15 +31,16 @@ class Part:
         self.soft, self.misfit, self.width = found.soft[pick], found.misfit[pick], found.width[pick]
         self.left, self.rounding = left[rows], rounding[rows]
         moves = self.statics.moves
-        # Balance along moves that nothing resists is the case's own; only rounding may be left: of
-        # balances, and what errors of forces, smaller than these, have along rounded moves.
+        # Balance along moves that nothing resists is a property of the case; only rounding may be
+        # left: that of balances, and the part along rounded moves of errors of forces, which are
+        # smaller than the forces.
         self.stray = np.abs(self.left @ moves).max(axis=1, initial=0.0)
         if moves.size:
             known, force = self.statics.directions, np.abs(found.force[pick])
             along = np.abs(known @ moves) + EPS * (np.abs(known) @ np.abs(moves))
             spread = (self.rounding @ np.abs(moves) + force @ along).max(axis=1)
             self.stray += np.minimum(spread, EPS * force.max(axis=1, initial=0.0))
-        # What goes along a free move may end at any contact, and push what that joins.
+        # A load along a free move may end at any contact, and push what that joins.
         self.ended = self.stray * claim.columns.force_at_end(moves)
         self.left = self.left - self.left @ moves @ moves.T
         first = claim.columns.first_pair
@@ -53,9 +54,9 @@ class Part:
     def _set_following(self) -> None:
         """Find the torques over splines [N·m], and what follows them.
 
-        Along the line of each pair a level [1/m] and a room [1/N] per torque, (rows, pairs, 2);
-        where next to no torque decides the sense nothing is taken to follow. Where nothing follows,
-        no torques are looked at.
+        This is a level [1/m] and a room [1/N] per torque along the line of each pair, (rows, pairs,
+        2). Where the torque is so small that its sense is uncertain, nothing is taken to follow it.
+        Where nothing follows, torques are left out.
         """
         columns, found, where = self.claim.columns, self.found, np.ix_(self.rows, self.pairs)
         rates = found.follows[where], found.shrinks[where], found.spare[self.rows]
@@ -80,7 +81,7 @@ class Part:
         return spread
 
     def per_torque(self, vectors: Array, torque: Array) -> Array:
-        """Vectors of the pairs per torque, (S, pairs, 2), under torques, in their columns."""
+        """Return vectors of pairs per torque, (S, pairs, 2), times torques, in their columns."""
         total = np.zeros((len(torque), len(self.columns)))
         for k in (0, 1):
             total[:, self.at + k] = vectors[:, :, k] * (torque @ self.splined.T)
@@ -88,7 +89,7 @@ class Part:
 
 
 def yielding(soft: Array, skew: Array, at: Numbers, force: Array) -> Array:
-    """D F: compliances, and those off the diagonal of the pairs that begin at some columns."""
+    """Return D F: compliances, and those off the diagonal of pairs that begin at some columns."""
     moved = soft * force
     moved[..., at] += skew * force[..., at + 1]
     moved[..., at + 1] += skew * force[..., at]
@@ -96,11 +97,11 @@ def yielding(soft: Array, skew: Array, at: Numbers, force: Array) -> Array:
 
 
 class Response:
-    """How forces and coordinates answer a load [N] and a gap [m], with one claim's compliances.
+    """Response of forces and coordinates to a load [N] and a gap [m], with one claim's compliances.
 
-    Friction that follows a torque T is part of the answer: with levels B per torque, rooms C per
-    torque and T = M F of the response without them, the torque that comes is
-    (1 + M P Aᵀ B − M G C)⁻¹ T, G the forces by gaps.
+    Friction that follows a torque T is part of the response: with levels B per torque, rooms C per
+    torque and T = M F of the response without them, the resulting torque is
+    (1 + M P Aᵀ B − M G C)⁻¹ T, with G the forces per gap.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ class Response:
         if not np.isfinite(m).all():
             m = np.zeros_like(m)
         values, vectors = np.linalg.eigh(0.5 * (m + m.T))
-        # A self-stress among rigid parts has no compliance: it is left as it is claimed.
+        # A self-stress among rigid parts has no compliance: it is left as claimed.
         kept = np.abs(values) > BOUND.singular * np.abs(values).max(initial=0.0)
         basis = n @ vectors[:, kept]
         free = n @ vectors[:, ~kept]
@@ -158,7 +159,7 @@ class Response:
             elastic[0] + back[0] @ torque_by[0],
             elastic[1] + back[0] @ torque_by[1],
         )
-        # What cancels over a spline is known to the rounding of its parts.
+        # A sum that cancels over a spline is known only to the rounding of its terms.
         spread = EPS * len(part.columns) + min(self.defect, 1.0)
         self._torques = tuple(
             np.abs(v) + spread * np.abs(inverse) @ size
@@ -166,12 +167,12 @@ class Response:
         )
 
     def step(self, load: Array, gap: Array) -> tuple[Array, Array]:
-        """Forces and coordinates, of S loads and gaps."""
+        """Return forces and coordinates under S loads and gaps."""
         forces, moved = self.force_by, self.moved_by
         return load @ forces[0].T + gap @ forces[1].T, load @ moved[0].T + gap @ moved[1].T
 
     def reach(self, load: Array, gap: Array) -> tuple[Array, Array, Array]:
-        """Largest forces, coordinates and torques over splines under loads and gaps of sizes."""
+        """Return the largest forces, coordinates and spline torques for sizes of loads and gaps."""
         f, g, x, y = self._sizes
         t, u = self._torques
         enough = 1.0 / (1.0 - self.defect) if self.defect < 0.5 else np.inf

@@ -1,4 +1,4 @@
-"""Whether every force and gap that decides what acts keeps its sign within errors.
+"""Whether every force and gap that decides which elements act keeps its sign within errors.
 
 Source: formulation, section 16.
 """
@@ -16,7 +16,7 @@ from loadshare.certify.bound.elements import Elements
 def doubts(
     claim: Claim, found: Elements, rows: Numbers, errors: Array, moved: Array
 ) -> tuple[Flags, Flags]:
-    """Elements whose force or gap may change its sign within errors, shape (rows, elements).
+    """Return elements whose force or gap may change sign within errors, shape (rows, elements).
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def doubts(
 
 
 def _level_errors(claim: Claim, errors: Array, rows: Numbers | slice) -> Array:
-    """Errors of the levels of splines that follow the torque, shape (rows, radials) [N]."""
+    """Return errors of the levels of splines that follow the torque, shape (rows, radials) [N]."""
     columns = claim.columns
     found = np.zeros((len(errors), len(columns.claims.radials)))
     torque = errors[:, columns.flanks] @ np.abs(columns.moments).T
@@ -76,7 +76,7 @@ def _room(
     moved: Array,
     level_error: Array,
 ) -> tuple[Flags, Flags]:
-    """Whether each arc and radial element stays above and below the ends of its piece."""
+    """Return whether each arc and radial element stays above and below the ends of its piece."""
     arcs = claim.arcs[1].shape[1]
     size, distance = found.size[rows], found.distance[rows]
     low, high = np.ones(act.shape, bool), np.ones(act.shape, bool)

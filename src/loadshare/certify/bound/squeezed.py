@@ -14,7 +14,7 @@ from loadshare.settings import BOUND
 
 
 def squeezed(claim: Claim) -> Flags:
-    """Columns of the limits between which a gear may be squeezed, shape (S, m)."""
+    """Return the columns of limits between which a gear may be squeezed, shape (S, m)."""
     columns, here = claim.columns, claim.situations
     found = np.zeros((claim.count, len(columns.names)), dtype=bool)
     rigid = here.wall == 0.0

@@ -1,4 +1,4 @@
-"""Statics of a set of columns that act: what balances a load, and what balances itself."""
+"""Statics of a set of columns that act: forces that balance a load, and self-stresses."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ class Statics:
     def of(cls, directions: Array) -> Statics:
         """Return the statics of some rows of A.
 
-        From their singular values while they are few. Of many, with Q R = Aᵀ, columns in the order
-        of their pivots, and Z T the transpose of the rows of R that are not zero: that takes a
-        tenth of the work, and a library that a small case need not wait for.
+        Few rows are decomposed into singular values. Many are factorised as Q R = Aᵀ, with columns
+        in the order of their pivots, and the rows of R that are not zero, transposed, as Z T: that
+        takes a tenth of the work, but loads a library for which a small case need not wait.
         """
         count, n = directions.shape
         if not directions.any():
@@ -78,7 +78,7 @@ def _orthogonal(factors: Array, scales: Array, size: int) -> Array:
 
 
 def force_at_end(moves: Array, contacts: Array, pairs: Array) -> float:
-    """Force of the contact that ends a move which nothing resists, per load along it; at least 1.
+    """Return the force of a contact that ends an unresisted move, per load along it; at least 1.
 
     A contact that a move hardly closes takes more force than the load along the move.
 
@@ -87,7 +87,7 @@ def force_at_end(moves: Array, contacts: Array, pairs: Array) -> float:
     moves : ndarray, shape (n, l)
         Orthonormal.
     contacts, pairs : ndarray, shape (k, n) and (q, 2, n)
-        Directions of contacts, and of what resists in two.
+        Directions of contacts, and of elements that resist in two directions.
     """
     if not moves.size:
         return 1.0
@@ -99,7 +99,7 @@ def force_at_end(moves: Array, contacts: Array, pairs: Array) -> float:
 
 
 def free_moves(moves: Array, directions: Array) -> Array:
-    """Moves (n, k), orthonormal, along none of some directions (q, n), of moves (n, l)."""
+    """Return those of moves (n, l), orthonormal, that some directions (q, n) do not resist."""
     if not (moves.size and directions.size):
         return moves
     _, sizes, turn = np.linalg.svd(directions @ moves)
@@ -109,18 +109,18 @@ def free_moves(moves: Array, directions: Array) -> Array:
 def held_moves(
     moves: Array, directions: Array, at_end: Callable[[Array], float]
 ) -> tuple[Array, bool]:
-    """Moves (n, k) that others hold, as long as forces of all of these at most per load.
+    """Return moves (n, k) that others hold; their lengths bound all forces of these per load.
 
     The others may also let go, and the moves end elsewhere.
 
     Parameters
     ----------
     moves : ndarray, shape (n, l)
-        Orthonormal; of what carries.
+        Orthonormal; those that the carrying elements leave.
     directions : ndarray, shape (k, n)
-        Of others.
+        Directions of the others.
     at_end : callable
-        Returns the force of what may end one of some moves, per load along it.
+        Returns the force of an element that ends one of some moves, per load along it.
 
     Returns
     -------

@@ -1,16 +1,15 @@
 r"""Stiffness of a train at claims, with the contact states that the claims have.
 
-What acts is one row each along which it yields by a compliance: a scalar column, or of a pair its
-line and what is across. With rows A, compliances D and a load f,
+Each direction in which an acting element yields is a row with a compliance: a scalar column, or for
+a pair its line and the direction across. With rows A, compliances D and a load f,
 
 .. math:: A^T F = f, \qquad A X = D F, \qquad F = (P - G D P) f, \quad
     G = N (N^T D N)^{-1} N^T,
 
-P and N those of the statics (see `Statics`). The compliance of a load is the work that it does,
-:math:`F^T D F`: F makes it least, so that an error of F enters it squared and no figure is lost
-where stiff parts act next to soft ones. Friction that follows the torque t over a spline adds what
-the torque pushes by, and what it takes of the room up to a stop. Source: formulation, sections 3, 5
-and 6.
+with P and N of the statics (see `Statics`). The compliance of a load is the work that it does,
+:math:`F^T D F`: F minimises it, so that an error of F enters it squared and no digit is lost where
+stiff parts act next to soft ones. Friction that follows the torque t over a spline adds a push per
+torque, and takes part of the room up to a stop. Source: formulation, sections 3, 5 and 6.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ from loadshare.train.situations import Situations
 
 @dataclass(frozen=True, eq=False)
 class Tangents:
-    """How a train yields to a little more load, at each of S claims.
+    """How a train yields to a small further load, at each of S claims.
 
     Attributes
     ----------
@@ -44,7 +43,7 @@ class Tangents:
         Stiffness of every flank along its line of action at the force that it carries [N/m]; 0
         where it is open.
     rows : list of Rows
-        What acts, claim by claim.
+        Rows of the acting elements, claim by claim.
     """
 
     columns: Columns
@@ -52,7 +51,7 @@ class Tangents:
     rows: list[Rows]
 
     def torsion(self, gear: str) -> Array:
-        """Torque on a gear per rotation of it, (S,) [N·m/rad].
+        """Return the torque on a gear per rotation of it, (S,) [N·m/rad].
 
         0 where nothing resists, infinite where nothing yields.
         """
@@ -72,12 +71,12 @@ class Tangents:
 
 
 class Rows(NamedTuple):
-    """What acts in a claim.
+    """Rows of the acting elements of a claim.
 
     Attributes
     ----------
     directions, compliance : ndarray, shape (rows, n) and (rows,)
-        Its direction over the coordinates, and how it yields [m/N].
+        Direction in the coordinates, and compliance [m/N].
     pushing : ndarray, shape (n, splines)
         Force of friction at every coordinate, per torque over a spline [1/m].
     shrinking : ndarray, shape (rows, splines)
@@ -93,13 +92,13 @@ class Rows(NamedTuple):
     twist: Array
 
     def yields(self, load: Array, known: Statics) -> float:
-        """Compliance of a load, in its own direction [m/N]; `known` is of the directions."""
+        """Return the compliance of a load in its own direction [m/N]; `known` are the statics."""
         d, n = self.compliance, known.redundant
         borne = known.particular @ load
         if np.abs(self.directions.T @ borne - load).max() > BOUND.loose:
             return math.inf
         values, vectors = np.linalg.eigh(n.T @ (d[:, None] * n))
-        # A self-stress among rigid parts has no compliance, and none of the load's work.
+        # A self-stress among rigid parts has no compliance, and no part in the load's work.
         kept = np.abs(values) > BOUND.singular * np.abs(values).max(initial=0.0)
         basis = n @ vectors[:, kept]
         by_gap = basis / values[kept] @ basis.T
@@ -115,7 +114,7 @@ class Rows(NamedTuple):
 
 
 def tangents_of(columns: Columns, situations: Situations, answers: Equilibria) -> Tangents:
-    """Return how a train yields at S answers, what carries there taken to go on carrying.
+    """Return how a train yields at S answers, assuming that what carries there goes on carrying.
 
     Parameters
     ----------
@@ -135,7 +134,7 @@ def tangents_of(columns: Columns, situations: Situations, answers: Equilibria) -
 
 
 def _rows(claim: Claim, found: Elements, row: int) -> Rows:
-    """Directions and compliances of what acts in a claim, and what follows torques over splines."""
+    """Return the rows of the acting elements of a claim, and what follows torques over splines."""
     columns, matrix = claim.columns, claim.columns.matrix.high
     scalar = np.flatnonzero(found.active[row, : columns.first_pair])
     directions, yields = list(matrix[scalar]), found.soft[row, scalar].tolist()

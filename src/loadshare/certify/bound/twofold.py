@@ -1,7 +1,7 @@
 """Sums and products in twice the working precision, on arrays.
 
-Where parts of very unlike stiffness share a load, a residual that is small in double precision
-still leaves the torques open; evaluated so, its rounding no longer matters. The error-free
+Where parts of very different stiffness share a load, a residual that is small in double precision
+still leaves the torques open; in twice the precision its rounding no longer matters. The error-free
 transformations are those of Knuth and Dekker (Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26, 2005).
 """
 
@@ -30,7 +30,7 @@ class Twofold(NamedTuple):
 
 
 def two_sum(a: Array, b: Array) -> Twofold:
-    """Sum of two arrays and its exact rounding error."""
+    """Return the sum of two arrays and its exact rounding error."""
     total = a + b
     part = total - a
     return Twofold(total, (a - (total - part)) + (b - part))
@@ -43,7 +43,7 @@ def _halves(a: Array) -> tuple[Array, Array]:
 
 
 def two_product(a: Array, b: Array) -> Twofold:
-    """Product of two arrays and its exact rounding error."""
+    """Return the product of two arrays and its exact rounding error."""
     product = a * b
     ah, al = _halves(a)
     bh, bl = _halves(b)
@@ -51,18 +51,18 @@ def two_product(a: Array, b: Array) -> Twofold:
 
 
 def plus(one: Twofold, other: Twofold) -> Twofold:
-    """Sum of two."""
+    """Return the sum of two twofold arrays."""
     high, low = two_sum(one.high, other.high)
     return Twofold(*two_sum(high, low + (one.low + other.low)))
 
 
 def minus(one: Twofold, other: Twofold) -> Twofold:
-    """Difference of two."""
+    """Return the difference of two twofold arrays."""
     return plus(one, Twofold(-other.high, -other.low))
 
 
 def product(a: Array, b: Array) -> tuple[Twofold, Array]:
-    """Matrix product (S, k) by (k, m) of doubles, and the sum of the sizes of its terms.
+    """Return the matrix product (S, k) by (k, m) of doubles, and the sum of its terms' sizes.
 
     Only entries of `b` that are not zero are multiplied; all columns are added up at once.
     """
@@ -79,19 +79,19 @@ def product(a: Array, b: Array) -> tuple[Twofold, Array]:
 
 
 def exact(a: Array) -> Twofold:
-    """Doubles, as they are."""
+    """Return doubles as a twofold array."""
     return Twofold(a, np.zeros_like(a))
 
 
 def quotient(a: Array, b: Array) -> Twofold:
-    """Quotient of two arrays."""
+    """Return the quotient of two arrays."""
     q = a / b
     p, e = two_product(q, b)
     return Twofold(q, ((a - p) - e) / b)
 
 
 def power_two_thirds(force: Array) -> Twofold:
-    """F^(2/3) of arrays F ≥ 0, from the double cube root and one step of Newton's method."""
+    """Return F^(2/3) of arrays F ≥ 0, from the double cube root and one step of Newton's method."""
     y = np.cbrt(force)
     safe = np.where(y > 0.0, y, 1.0)
     square = two_product(safe, safe)

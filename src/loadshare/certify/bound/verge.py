@@ -1,10 +1,10 @@
-"""Claims on the verge: elements that may act in either of two ways, up to the bound itself.
+"""Claims on the verge: elements that may act in either of two ways, to within the bound itself.
 
-A contact that neither carries nor gapes, a spline at the end of a piece: the exact equilibrium has
-them one way or the other, and so has every equilibrium on the way to it from the claim, whose
-residuals vary in proportion. On that way the error grows at the rate that belongs to how they act,
-so it is at most the largest of the errors over all the ways in which they can. Source: formulation,
-section 16.
+Such elements are a contact that neither carries nor gapes, or a spline at the end of a piece. In
+the exact equilibrium they act one way or the other, and so they do in every equilibrium on the path
+to it from the claim, along which residuals vary in proportion. On that path the error grows at the
+rate that belongs to how they act, so it is at most the largest of the errors over all the ways in
+which they can act. Source: formulation, section 16.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
     scale : ndarray, shape (1,)
         Load of the claim [N].
     box : Box
-        What was found for them.
+        The box found for this way of acting.
     """
     free = ~_held_by_twins(claim, box)
     ways = {
@@ -54,7 +54,7 @@ def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
             ]
         )
         touching = _touching(acts, idle)
-        # What closes alone, and so can change no force, is as good as open.
+        # A contact that closes alone can change no force, and counts as open.
         opened, of = np.unique(
             [_without_idle(claim, a, list(tried), scale) for a in acts],
             axis=0,
@@ -64,18 +64,18 @@ def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
         verge[list(ways)] = True
         many = _each(claim, opened, scale, verge)
         if many.unbalanced.any():
-            # Unless it is what balances residuals that nothing else can.
+            # Unless it balances residuals that nothing else can balance.
             lost = acts[many.unbalanced[of.reshape(-1)]]
             lost[:, list(idle)] = Act.STOP
             acts = np.unique(np.concatenate([opened[~many.unbalanced], lost]), axis=0)
             many = _each(claim, acts, scale, verge)
-        # A way of acting in which the load is not in balance is no equilibrium's.
+        # A way of acting in which the load is not in balance belongs to no equilibrium.
         held = ~many.unbalanced
         if not held.any():
             break
         doubtful, above = many.doubtful[held], many.above[held]
         if not (doubtful & ~verge & free).any() and not np.array_equal(touching, opened):
-            # But it may push what is loose, until that touches elsewhere.
+            # But such a contact may push a loose part until that touches elsewhere.
             pushed = _each(claim, touching, scale, verge)
             doubtful, above = pushed.doubtful, pushed.above
         new = np.flatnonzero((doubtful & ~verge & free).any(axis=0))
@@ -90,20 +90,20 @@ def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
 
 
 def _each(claim: Claim, acts: Acts, scale: Array, verge: Flags) -> Box:
-    """Boxes of one claim with its elements acting in several ways."""
+    """Return the boxes of one claim with its elements acting in several ways."""
     rows = np.zeros(len(acts), dtype=np.intp)
     return boxes(claim.take(rows), acts, scale[rows], np.broadcast_to(verge, acts.shape))
 
 
 def _touching(acts: Acts, idle: Iterable[int]) -> Acts:
-    """Ways of acting with all contacts closed that cannot change a force."""
+    """Return ways of acting with all contacts closed that cannot change a force."""
     touching = acts.copy()
     touching[:, list(idle)] = Act.STOP
     return np.asarray(np.unique(touching, axis=0))
 
 
 def _held_by_twins(claim: Claim, box: Box) -> Flags:
-    """Stops of a drum without clearance that stay without force as the one opposite is pressed."""
+    """Return stops of drums without clearance that carry nothing as the opposite one is pressed."""
     stops, first = claim.columns.stops, claim.columns.flanks.stop
     held = np.zeros(box.doubtful.shape[1], dtype=bool)
     limits = claim.situations.stop[0].reshape(-1)
@@ -122,7 +122,7 @@ def _with(act: Acts, changes: dict[int, int]) -> Acts:
 
 
 def _idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> set[int]:
-    """Doubtful contacts that cannot change a force, whether they touch or not."""
+    """Return doubtful contacts that cannot change a force, whether they touch or not."""
     contacts = [e for e in doubtful if e < len(claim.columns.contacts)]
     verge = np.zeros(act.shape, dtype=bool)
     verge[0, contacts] = True
@@ -130,7 +130,7 @@ def _idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> set[int
 
 
 def _without_idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> Acts:
-    """One way of acting, with those doubtful elements open that cannot change a force in it."""
+    """Return a way of acting with those doubtful elements open that cannot change a force in it."""
     limits = [e for e in doubtful if act[e] == Act.STOP and _is_limit(claim, e)]
     verge = np.zeros((1, len(act)), dtype=bool)
     verge[0, doubtful] = True
@@ -138,9 +138,9 @@ def _without_idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) ->
 
 
 def _is_limit(claim: Claim, e: int) -> bool:
-    """Whether an element is open or pressed, and nothing else.
+    """Return whether an element can only be open or pressed.
 
-    A contact, a ring, a spline whose friction is put aside where it is open.
+    This holds for a contact, a ring, and a spline whose friction is put aside where it is open.
     """
     columns = claim.columns
     radial = e - len(columns.contacts) - (columns.arcs.stop - columns.arcs.start) // 2
@@ -149,7 +149,7 @@ def _is_limit(claim: Claim, e: int) -> bool:
 
 
 def _alone(claim: Claim, act: Acts, some: list[int], verge: Flags, scale: Array) -> set[int]:
-    """Elements, of some that are closed, without part in any self-stress."""
+    """Return those of some closed elements that take no part in any self-stress."""
     columns = claim.columns
     if not some:
         return set()
@@ -169,7 +169,7 @@ def _alone(claim: Claim, act: Acts, some: list[int], verge: Flags, scale: Array)
 
 
 def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
-    """How an element may act."""
+    """Return how an element may act."""
     columns = claim.columns
     contacts = len(columns.contacts)
     arcs = (columns.arcs.stop - columns.arcs.start) // 2
@@ -193,7 +193,7 @@ def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
 
 
 def _largest(many: Box, held: Flags) -> Box:
-    """Largest errors over all the ways."""
+    """Return the largest errors over all ways of acting."""
     force = many.force[held].max(axis=0)[None]
     coordinate = many.coordinate[held].max(axis=0)[None]
     none = np.zeros((1, many.doubtful.shape[1]), dtype=bool)

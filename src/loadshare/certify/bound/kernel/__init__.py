@@ -1,9 +1,10 @@
-"""The certificate of claims side by side, compiled with Numba: what `batch` asks for.
+"""The certificate of claims side by side, compiled with Numba, for `batch`.
 
-`of` is the train as columns, `here` the situations, `claim` the claims. First every claim is put
-into figures, `found`, and numbered by what acts in it (`claims`); then, with what `batch` makes of
-each such `group`, they become bounds (`bounds`). Nothing of it is shared with the certificate of
-single answers, nor with a solver: what they get wrong must not be wrong here too.
+`of` is the train as columns, `here` the situations, `claim` the claims. First the figures of every
+claim are written to `found`, and the claim is numbered by the set that acts in it (`claims`); then,
+with what `batch` computes for each such `group`, they become bounds (`bounds`). No code is shared
+with the certificate of single answers, nor with a solver, so that none of their mistakes is
+repeated here.
 """
 
 from loadshare.certify.bound.kernel.bounds import bound_all

@@ -1,8 +1,8 @@
-"""Claims side by side: their numbers in rows, one of each claim.
+"""Claims side by side: their numbers in rows, one number per claim.
 
-A loop over claims reads and writes few rows: of more, the compiler does not find out that they are
-apart, and takes one claim after another. Rows are full at all times, so that no loop has an end of
-its own; beyond the last claim they hold anything.
+A loop over claims reads and writes few rows: with more, the compiler cannot tell that they do not
+overlap, and takes one claim after another. Rows always have full width, so that all loops have the
+same length; beyond the last claim their entries have no meaning.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from loadshare.settings import BOUND
 
 @inlined
 def row_of(array, s):  # type: ignore[no-untyped-def]
-    """Row of a claim, or the only one."""
+    """Return the row of a claim, or the only one."""
     return s if len(array) > 1 else 0
 
 
 @within
 def put_rows(array, first, width, rows):  # type: ignore[no-untyped-def]
-    """Write what claims have, or what all have in common, (S or 1, k), into rows."""
+    """Write an array of claims, or one that all share, (S or 1, k), into rows."""
     set_apart()
     step = 1 if len(array) > 1 else 0
     for v in range(width):
@@ -31,7 +31,7 @@ def put_rows(array, first, width, rows):  # type: ignore[no-untyped-def]
 
 @within
 def take_rows(array, first, width, rows):  # type: ignore[no-untyped-def]
-    """Write rows into what claims have, (S, k)."""
+    """Write rows into an array of claims, (S, k)."""
     set_apart()
     for v in range(width):
         for k in range(len(rows)):
@@ -40,7 +40,7 @@ def take_rows(array, first, width, rows):  # type: ignore[no-untyped-def]
 
 @within
 def take_row(figures, first, width, row):  # type: ignore[no-untyped-def]
-    """Write a row into what claims have, (S,)."""
+    """Write a row into an array of claims, (S,)."""
     set_apart()
     for v in range(width):
         figures[first + v] = row[v]
@@ -48,7 +48,7 @@ def take_row(figures, first, width, row):  # type: ignore[no-untyped-def]
 
 @within
 def put_column(column, first, width, row):  # type: ignore[no-untyped-def]
-    """Write a number of each claim, or the only one there is, into a row."""
+    """Write a number of each claim, or the one that all share, into a row."""
     set_apart()
     step = 1 if len(column) > 1 else 0
     for v in range(width):
@@ -65,7 +65,7 @@ def fill(row, value):  # type: ignore[no-untyped-def]
 
 @within
 def put_sum(total, row, factor):  # type: ignore[no-untyped-def]
-    """Add the multiple of a row."""
+    """Add a multiple of a row."""
     set_apart()
     for v in range(BOUND.abreast):
         total[v] += factor * row[v]
@@ -73,7 +73,7 @@ def put_sum(total, row, factor):  # type: ignore[no-untyped-def]
 
 @within
 def put_sizes(total, row, factor):  # type: ignore[no-untyped-def]
-    """Add the sizes of the multiple of a row."""
+    """Add the sizes of a multiple of a row."""
     set_apart()
     for v in range(BOUND.abreast):
         total[v] += abs(factor * row[v])
@@ -81,7 +81,7 @@ def put_sizes(total, row, factor):  # type: ignore[no-untyped-def]
 
 @within
 def put_multiple(product, row, factor):  # type: ignore[no-untyped-def]
-    """Write the multiple of a row."""
+    """Write a multiple of a row."""
     set_apart()
     for v in range(BOUND.abreast):
         product[v] = factor * row[v]
@@ -89,7 +89,7 @@ def put_multiple(product, row, factor):  # type: ignore[no-untyped-def]
 
 @within
 def put_most(most, row, factor):  # type: ignore[no-untyped-def]
-    """Take the larger of a row and the multiple of another."""
+    """Take the larger of a row and a multiple of another."""
     set_apart()
     for v in range(BOUND.abreast):
         most[v] = larger(most[v], factor * row[v])
@@ -97,7 +97,7 @@ def put_most(most, row, factor):  # type: ignore[no-untyped-def]
 
 @within
 def put_largest(most, row, factor):  # type: ignore[no-untyped-def]
-    """Take the larger of a row and the multiple of the sizes of another."""
+    """Take the larger of a row and a multiple of the sizes of another."""
     set_apart()
     for v in range(BOUND.abreast):
         most[v] = larger(most[v], factor * abs(row[v]))

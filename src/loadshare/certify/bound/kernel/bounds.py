@@ -1,4 +1,4 @@
-"""Bounds on the torques of claims, from their figures and what is the same for their set."""
+"""Bounds on the torques of claims, from their own figures and those that their set shares."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from loadshare.certify.bound.kernel.options import compiled, within
 from loadshare.settings import BOUND
 
 FORCE, WAY, TORQUE, ARC, ARC_WAY, FAINT = range(6)
-"""Largest error of a force, way of an element, error of a torque; force and way of arcs; error of a
-force that is light."""
+"""Largest error of a force, movement of an element, error of a torque; force and movement of arcs;
+error of a light force."""
 
 
 @compiled
 def bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped-def]
-    """Largest error of a torque [N·m] of every claim; infinite where it is not shown."""
+    """Write the largest error of a torque [N·m] of every claim; infinite where it is not shown."""
     _bound_all(
         by_reference(of),
         by_reference(here),
@@ -67,7 +67,7 @@ def _bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untype
         reach = min(found.reach[s], found.faint[s])
         if not balanced or not found.aside[s] < np.inf or not taken <= reach:
             continue
-        # What is light is off by what it holds as well.
+        # Light elements are off by what they hold as well.
         found.faint[s] -= taken
         by_norm = group.by[g, TORQUE, 0] * residual, group.into[g] * residual
         errors[s] = _proved(of, found, group, g, s, residual, by_norm)
@@ -78,7 +78,7 @@ def _bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untype
 
 @within
 def _proved(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
-    """Error of a torque [N·m] if all holds that was assumed; else infinite."""
+    """Return the error of a torque [N·m] if all that was assumed holds; else infinity."""
     largest, faint, moved, torque = _answered(of, found, group, g, s, residual, carried)
     # Beyond their reach laws, above all of light Hertz contacts, no longer hold as assumed.
     holds = largest <= found.reach[s] and faint <= found.faint[s]
@@ -89,7 +89,7 @@ def _proved(of, found, group, g, s, residual, carried):  # type: ignore[no-untyp
 
 @within
 def _passed(of, here, claim, found, group, g, s, rest):  # type: ignore[no-untyped-def]
-    """Largest torque [N·m] and energy [√J] of what carries the load that is left over.
+    """Return largest torque [N·m] and energy [√J] of the forces that carry the load left over.
 
     Row by row, with the compliances of the claim itself.
 
@@ -118,14 +118,14 @@ def _passed(of, here, claim, found, group, g, s, rest):  # type: ignore[no-untyp
 
 @within
 def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
-    """Largest error of a force and of a light one [N], way of an element [m], error of a torque.
+    """Return largest errors of a force, of a light one [N] and of a torque, and a movement [m].
 
     Parameters
     ----------
     residual : float
         Load that is left over [N].
     carried : tuple of float
-        Torque [N·m] and energy [√J] of what carries it.
+        Torque [N·m] and energy [√J] of the forces that carry it.
     """
     bent, deepest, into, back, blind = 0.0, 0.0, group.into[g], 0.0, 0.0
     for i in range(group.root.shape[1]):
@@ -140,7 +140,7 @@ def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-unt
         more, back, blind = _carried(of, found, group, g, s)
         into += more
         spent += more * residual
-        # What a slip should carry along its line comes back as load.
+        # The load that a slip should carry along its line comes back as load.
         again = residual * (back / (1.0 - back)) if back < BOUND.gain else np.inf
         own, spent, residual = own + by_load * again, spent + into * again, residual + again
     gap, push, tilt = deepest + found.width[s], 0.0, 0.0
@@ -149,7 +149,7 @@ def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-unt
     proved = True
     if group.bows[g] > 0.0:
         # Errors act along lines that are nominal here; what that leaves out is bounded over a box
-        # some times as wide, which must hold the result.
+        # several times as wide, which must contain the result.
         proved = False
         pushed = _by(group, g, ARC, load, push, energy, gap)
         moved = _by(group, g, ARC_WAY, load, push, energy, gap) + blind
@@ -181,21 +181,21 @@ def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-unt
 
 @within
 def _by(group, g, what, load, push, energy, gap):  # type: ignore[no-untyped-def]
-    """One of the largest figures by load [N], push on arcs [N], energy [√J] and gap [m]."""
+    """Return a largest figure under load [N], push on arcs [N], energy [√J] and gap [m]."""
     by = group.by[g, what]
     return by[0] * load + by[1] * push + by[2] * energy + by[3] * gap
 
 
 @within
 def _pulled(group, g, q, load, push, energy):  # type: ignore[no-untyped-def]
-    """Error of the force of a radial element that takes part in carrying [N]; of others 0."""
+    """Return the force error of a radial element that takes part in carrying [N]; of others 0."""
     by = group.pull_by[g, q]
     return by[0] * load + by[1] * push + by[2] * energy if by[0] > 0.0 else 0.0
 
 
 @within
 def _pulled_way(found, group, g, s, load, push, energy):  # type: ignore[no-untyped-def]
-    """Way of an element by what radial elements yield that take part in carrying [m]."""
+    """Return the movement of an element as radial elements that take part in carrying yield [m]."""
     moved = 0.0
     if group.carries[g]:
         for q in range(found.soft.shape[1]):
@@ -206,10 +206,10 @@ def _pulled_way(found, group, g, s, load, push, energy):  # type: ignore[no-unty
 
 @within
 def _carried(of, found, group, g, s):  # type: ignore[no-untyped-def]
-    """What carrying a load by radial elements adds.
+    """Return what is added where radial elements carry a load.
 
-    Energy per load; the load that comes back of each, because a slip carries none along its line;
-    and the way [m] that the force of a slip does not determine.
+    Energy per load; the part of a load that comes back, because a slip carries none along its line;
+    and the movement [m] that the force of a slip does not determine.
     """
     more, back, blind = 0.0, 0.0, 0.0
     for q in range(found.soft.shape[1]):
@@ -228,7 +228,7 @@ def _carried(of, found, group, g, s):  # type: ignore[no-untyped-def]
 
 @within
 def _followed(of, found, group, g, s, residual, push, tilt, due):  # type: ignore[no-untyped-def]
-    """Load left over and energy, with what friction that follows the torque adds to them."""
+    """Return load left over and energy, with what friction that follows the torque adds."""
     spent, into, width = due
     energy = spent + group.into_by_push[g] * push
     energy += group.spread[g] * width + group.spread_of_arcs[g] * tilt

@@ -1,4 +1,4 @@
-"""Claims as figures: what acts, misfits, what is left over, residuals and scales."""
+"""Figures of claims: acting elements, misfits, load that is left over, residuals and scales."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from loadshare.extremes import larger, smaller
 from loadshare.numbering import numbered
 from loadshare.settings import BOUND, CERTIFY
 
-# As numbers among others, which a processor compares side by side.
+# As floats like the others, which a processor compares side by side.
 _OPEN, _CLOSED, _LIGHT, _ENDLESS = map(float, (OPEN, CLOSED, LIGHT, ENDLESS))
 
 
 @compiled
 def find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def]
-    """Put all claims into figures; returns how many sets of elements act in them."""
+    """Find the figures of all claims; return how many sets of elements act in them."""
     return _find_all(
         by_reference(of),
         by_reference(here),
@@ -49,7 +49,7 @@ def find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def
 
 @within
 def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def]
-    """Some claims side by side, but what is rare in them: radial elements, opposed contacts."""
+    """Process claims side by side, except for what is rare: radial elements, opposed contacts."""
     set_apart()
     count, last, claims = 0, 0, len(claim.rotation)
     for first in range(0, claims, BOUND.abreast):
@@ -83,7 +83,7 @@ def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-de
 
 @inlined
 def _put_scales(work):  # type: ignore[no-untyped-def]
-    """Rounding of lengths, and the deflection of cases [m]."""
+    """Write the rounding of lengths, and the deflection of cases [m]."""
     width, deflection = work.width, work.deflection
     for v in range(BOUND.abreast):
         width[v] = EPS * (width[v] + work.limits[v] + work.longest[v] + work.yielded[v])
@@ -94,7 +94,7 @@ def _put_scales(work):  # type: ignore[no-untyped-def]
 
 @within
 def _take(first, width, work, found):  # type: ignore[no-untyped-def]
-    """Write what is found of the claims at hand."""
+    """Store the figures of the present claims."""
     set_apart()
     take_rows(found.misfit, first, width, work.apart)
     take_rows(found.left, first, width, work.left_over)
@@ -117,7 +117,7 @@ def _take(first, width, work, found):  # type: ignore[no-untyped-def]
 
 @within
 def _put_loads(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
-    """Load and largest torque of claims, and the largest force of their flanks [N]."""
+    """Write load and largest torque of claims, and the largest force of their flanks [N]."""
     set_apart()
     flanks, top = len(of.arm), work.top
     load, torque = work.scale, work.largest
@@ -150,7 +150,7 @@ def _put_loads(of, here, claim, first, width, work):  # type: ignore[no-untyped-
 
 @within
 def _put_acts(of, work):  # type: ignore[no-untyped-def]
-    """Tell which contacts act, as `quick` does, and by how much the others are apart."""
+    """Find which contacts act, as `quick` does, and by how much the others are apart."""
     set_apart()
     flanks, contacts, top, approach = len(of.arm), len(of.twin), work.top, work.approach
     room, aside = work.room, work.aside
@@ -158,7 +158,7 @@ def _put_acts(of, work):  # type: ignore[no-untyped-def]
         work.resolution[v] = CERTIFY.resolution * (work.width[v] + work.limits[v])
     for c in range(contacts):
         acts, claimed, gap = work.acts[c], work.claimed[c], work.gap[c]
-        # As its force alone would have it.
+        # According to its force alone.
         for v in range(BOUND.abreast):
             force = abs(claimed[v])
             loaded = _ENDLESS if force < EPS * work.scale[v] else _LIGHT
@@ -189,7 +189,7 @@ def _put_acts(of, work):  # type: ignore[no-untyped-def]
 
 @inlined
 def _put_opposed(work, c, other):  # type: ignore[no-untyped-def]
-    """Let two opposed contacts of a ring that act be one that holds both ways."""
+    """Replace two opposed contacts of a ring that act by one that holds both ways."""
     for v in range(BOUND.abreast):
         if work.acts[c, v] != OPEN and work.acts[other, v] != OPEN:
             _hold_both_ways(work, c, other, v)

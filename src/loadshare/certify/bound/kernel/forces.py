@@ -33,11 +33,11 @@ from loadshare.settings import BOUND
 
 @within
 def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignore[no-untyped-def]
-    """Forces and misfits of contacts.
+    """Write forces and misfits of contacts.
 
-    Writes their largest compression [m], endless where one pulls; that of loaded flanks, or what
-    remains of their approach at rest [m]; and what is seen of residuals: length [m], work [J],
-    pull [N], and a sum in which nothing that is no number is lost.
+    Also writes their largest compression [m], infinite where one pulls; that of loaded flanks, or
+    what remains of their approach at rest [m]; and their part in residuals: length [m], work [J],
+    pull [N], and a sum that keeps every NaN.
     """
     set_apart()
     for row in (work.yielded, work.bent, work.misfit, work.energy, work.pulled, work.total):
@@ -53,7 +53,7 @@ def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignor
             carried += acts[v] + abs(claimed[v])
         _put_columns(of, work, c)
         if carried == 0.0:
-            # Nothing acts, and all are apart.
+            # It acts in none of the claims.
             fill(work.apart[c], 0.0)
             continue
         if c < len(of.arm):
@@ -65,13 +65,13 @@ def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignor
         _put_seen(work, c)
         _spread_contact(work, c, first, width, found, sets, new, alike)
     for v in range(BOUND.abreast):
-        # A contact that pulls is none.
+        # A contact cannot pull: nothing is bounded then.
         work.yielded[v] = work.yielded[v] if work.weakest[v] >= 0.0 else np.inf
 
 
 @inlined
 def _put_columns(of, work, c):  # type: ignore[no-untyped-def]
-    """Force of a contact in its column, of an arc in its two."""
+    """Write the force of a contact to its column, of an arc to its two."""
     flanks, push = len(of.arm), work.push
     k = c - len(of.twin) + len(of.apart)
     if k < 0:
@@ -86,7 +86,7 @@ def _put_columns(of, work, c):  # type: ignore[no-untyped-def]
 
 @inlined
 def _put_bent(work, c):  # type: ignore[no-untyped-def]
-    """Deflection of a flank, loaded or at rest."""
+    """Include the deflection of a flank, loaded or at rest."""
     bent, acts, compression = work.bent, work.acts[c], work.law[0]
     claimed, at_rest = work.claimed[c], work.at_rest[c]
     for v in range(BOUND.abreast):
@@ -97,7 +97,7 @@ def _put_bent(work, c):  # type: ignore[no-untyped-def]
 
 @inlined
 def _put_wall(of, here, c, first, width, work):  # type: ignore[no-untyped-def]
-    """Law of a stop or an arc; returns whether compliances are the same for all claims."""
+    """Write the law of a stop or an arc; return whether compliances are the same for all claims."""
     k, push = c - len(of.twin) + len(of.apart), work.push
     compression, least, most, holds = work.law
     put_column(here.wall[:, of.drum[c - len(of.arm)]], first, width, least)
@@ -115,14 +115,15 @@ def _put_wall(of, here, c, first, width, work):  # type: ignore[no-untyped-def]
 
 @inlined
 def _put_reach(of, work, c, reach, faint):  # type: ignore[no-untyped-def]
-    """Error of a force up to which a contact stays what it is; its compression, and any pull."""
+    """Include the force error up to which a contact stays as it is, its compression, any pull."""
     acts, push, compression, holds = work.acts[c], work.push, work.law[0], work.law[3]
     yielded, weakest = work.yielded, work.weakest
     for v in range(BOUND.abreast):
         reach[v] = smaller(reach[v], holds[v] if acts[v] == CLOSED else np.inf)
     for v in range(BOUND.abreast):
         faint[v] = smaller(faint[v], holds[v] if acts[v] > CLOSED else np.inf)
-    # What opens may move by any length; of two that touch, one takes what the other cannot.
+    # A contact that opens may move by any length; of two that touch, one takes what the other
+    # cannot.
     if of.twin[c] < 0:
         for v in range(BOUND.abreast):
             reach[v] = smaller(reach[v], push[v] if acts[v] == CLOSED else np.inf)
@@ -139,7 +140,7 @@ def _put_reach(of, work, c, reach, faint):  # type: ignore[no-untyped-def]
 
 @inlined
 def _put_seen(work, c):  # type: ignore[no-untyped-def]
-    """Misfit of a contact [m], and what is seen of residuals in it."""
+    """Write the misfit of a contact [m], and include its part in residuals."""
     claimed, acts, gap, compression = work.claimed[c], work.acts[c], work.gap[c], work.law[0]
     apart, longest, energy, total = work.apart[c], work.misfit, work.energy, work.total
     for v in range(BOUND.abreast):
@@ -153,7 +154,7 @@ def _put_seen(work, c):  # type: ignore[no-untyped-def]
         energy[v] = larger(energy[v], spent)
     put_most(work.pulled, claimed, -1.0)
     for v in range(BOUND.abreast):
-        # Idle beside an opposed one: two that carry are left to NumPy.
+        # Idle beside an opposed contact; claims in which both carry are left to NumPy.
         seen = apart[v] if apart[v] > -np.inf or claimed[v] != 0.0 else 0.0
         total[v] += claimed[v] + (0.0 * seen)
     for v in range(BOUND.abreast):
@@ -164,7 +165,7 @@ def _put_seen(work, c):  # type: ignore[no-untyped-def]
 
 @inlined
 def _spread_contact(work, c, first, width, found, sets, new, alike):  # type: ignore[no-untyped-def]
-    """Let the compliances of sets hold those of a contact that acts in them."""
+    """Extend the compliance ranges of sets by those of a contact that acts in them."""
     _, least, most, _ = work.law
     if alike:
         for number in range(*new):
@@ -173,14 +174,14 @@ def _spread_contact(work, c, first, width, found, sets, new, alike):  # type: ig
     for v in range(width):
         acts = work.acts[c, v]
         if acts != OPEN:
-            # What yields without end carries no load.
+            # A contact that yields without limit carries no load.
             upper = least[v] if acts == ENDLESS else most[v]
             spread(sets, found.number[first + v], c, least[v], upper)
 
 
 @within
 def put_springs(of, here, claim, first, width, work, found, sets, new):  # type: ignore[no-untyped-def]
-    """Forces and misfits of elastic shafts and bearings; the largest deflection so far [m]."""
+    """Write forces and misfits of elastic shafts and bearings; update the largest deflection."""
     set_apart()
     soft, contacts = work.given, len(of.twin)
     put_rows(claim.shaft_torque, first, width, work.wound)
@@ -215,10 +216,10 @@ def put_springs(of, here, claim, first, width, work, found, sets, new):  # type:
 
 @within
 def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-def]
-    """Forces and misfits of radial elements: the point of their graph next to what is claimed.
+    """Write forces and misfits of radial elements, at the point of the graph next to the claim.
 
-    Writes the largest of their lengths [m], whether their laws have a meaning (1 or 0), and whether
-    the bound covers them as well.
+    Also writes the largest of their lengths [m], whether their laws have a meaning (1 or 0), and
+    whether the bound covers them as well.
     """
     set_apart()
     contacts, at = len(of.twin), len(of.twin) + len(of.spring)
@@ -239,7 +240,7 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
         lawful &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
         noise, next_to = BOUND.noise * work.top[v], BOUND.near * work.widest[v]
         acts = level > 0.0 or force > noise or reach - distance <= next_to
-        # What is light carries no load.
+        # A light element carries no load.
         endless = max(force, level) < work.light[v]
         found.acts[s, contacts + q] = (ENDLESS if endless else CLOSED) if acts else OPEN
         soft, spare, misfit_x, misfit_y, slips, near = 0.0, np.inf, 0.0, 0.0, 0.0, 0.0
@@ -249,7 +250,7 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
             if q < of.rounds and here.round_power[0, q] != 1.0:
                 near, soft, least = rolling_at(here, s, q, force, work.light[v])
                 near = near if force > 0.0 else min(near, distance)
-                # Of either component of the force.
+                # For either component of the force.
                 holds = np.sqrt(0.5) * BOUND.bent * max(force, work.light[v])
                 if endless:
                     work.faint[v], spare = min(work.faint[v], holds), 0.0
@@ -283,7 +284,7 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
         work.apart[at + 2 * q, v], work.apart[at + 2 * q + 1, v] = misfit_x, misfit_y
         found.held[s, q] = np.inf
         if rate > 0.0 and near <= 0.0 and not endless and sticks(law, force):
-            # So it does until the torque is half of what it is.
+            # It sticks until the torque has fallen to half.
             found.held[s, q], rate = 0.5 * level / rate, 0.0
         found.soft[s, q] = soft if soft < np.inf else 0.0
         found.spare[s, q], found.rate[s, q] = spare, rate
@@ -294,7 +295,7 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
 
 @inlined
 def spread(sets, number, at, least, most):  # type: ignore[no-untyped-def]
-    """Let the compliances of a set hold some more [m/N]."""
+    """Extend the range of a compliance of a set [m/N]."""
     if number >= 0:
         sets.least[number, at] = min(sets.least[number, at], least)
         sets.most[number, at] = max(sets.most[number, at], most)
@@ -302,7 +303,7 @@ def spread(sets, number, at, least, most):  # type: ignore[no-untyped-def]
 
 @within
 def put_pushes(left, sizes, force, start, at, value):  # type: ignore[no-untyped-def]
-    """What forces carry of the load at every coordinate [N], and the sizes of its terms."""
+    """Write −Aᵀ F at every coordinate [N], and the sum of the sizes of its terms."""
     set_apart()
     left[:], sizes[:] = 0.0, 0.0
     for j in range(len(force)):
@@ -317,7 +318,7 @@ def put_pushes(left, sizes, force, start, at, value):  # type: ignore[no-untyped
 
 @within
 def put_balance(of, here, first, width, work):  # type: ignore[no-untyped-def]
-    """Load that is left over [N]: the largest, with its rounding; and over the load of the case."""
+    """Write the load left over [N], the largest with its rounding; include it in `worst`."""
     set_apart()
     left, sizes = work.left, work.sizes
     largest, residual, rounding, total = work.largest_push, work.residual, work.rounding, work.total
@@ -350,7 +351,7 @@ def put_balance(of, here, first, width, work):  # type: ignore[no-untyped-def]
     for c in range(len(left)):
         put_multiple(work.left_over[c], left[c], 1.0)
     for j in range(2 * len(of.pull_gear)):
-        # What is claimed leaves it over, not the point of the graph next to it.
+        # The residual is that of the claim, not of the point of the graph next to it.
         c = of.at[of.start[of.first_pull + j]]
         put_sum(left[c], work.excess[j], -1.0)
     unbalanced = work.given
@@ -359,7 +360,7 @@ def put_balance(of, here, first, width, work):  # type: ignore[no-untyped-def]
         put_largest(unbalanced, left[c], 1.0)
         put_sizes(total, left[c], 1.0)
     for v in range(BOUND.abreast):
-        # The largest may have passed over what is not a number.
+        # The largest may have passed over a NaN.
         known = total[v] < np.inf
         residual[v] = residual[v] if known and work.covered[v] > 0.0 else np.inf
         worst, over = work.worst[v], unbalanced[v] / work.scale[v]

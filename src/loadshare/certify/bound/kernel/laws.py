@@ -11,7 +11,7 @@ from loadshare.settings import BOUND, LAWS
 
 @inlined
 def _level(of, here, claim, s, q):  # type: ignore[no-untyped-def]
-    """Force at which a spline slips [N]."""
+    """Return the force at which a spline slips [N]."""
     k = q - of.rounds
     r = row_of(here.spline, s)
     bound = here.spline[r, k, 3]
@@ -25,10 +25,10 @@ def _level(of, here, claim, s, q):  # type: ignore[no-untyped-def]
 
 @inlined
 def law_of(of, here, claim, s, q, distance):  # type: ignore[no-untyped-def]
-    """Graph of a radial element; not a number where it has no meaning.
+    """Return the graph of a radial element; NaN where it has no meaning.
 
     First stiffness, S1, level, S2, last stiffness, and the force at the end of the first piece. A
-    wall that is a power stands as its tangent at the distance (see `graphs.wall`).
+    wall with a power law is given by its tangent at the distance (see `graphs.wall`).
     """
     if q < of.rounds:
         reach = here.round_radius[row_of(here.round_radius, s), q]
@@ -55,10 +55,10 @@ def law_of(of, here, claim, s, q, distance):  # type: ignore[no-untyped-def]
 
 @inlined
 def rolling_at(here, s, q, force, light):  # type: ignore[no-untyped-def]
-    """Distance [m] at which a wall that is a power bears a force.
+    """Return the distance [m] at which a wall with a power law carries a force.
 
-    Further the largest and the smallest compliance [m/N] next to it; the tangents of a force that
-    is light are taken at more than that.
+    Also returns the largest and the smallest compliance [m/N] next to it; for a light force,
+    tangents are taken at a larger one.
     """
     reach = here.round_radius[row_of(here.round_radius, s), q]
     stiffness = here.round_stiffness[row_of(here.round_stiffness, s), q]
@@ -70,7 +70,7 @@ def rolling_at(here, s, q, force, light):  # type: ignore[no-untyped-def]
 
 @inlined
 def stiffest(law):  # type: ignore[no-untyped-def]
-    """Compliance of a graph that no two of its points undercut [m/N].
+    """Return a compliance below which that between two points of a graph never falls [m/N].
 
     A graph whose last piece is as stiff as its first, without a step of the force, is nowhere
     stiffer than that; a ring is as stiff as its wall.
@@ -81,7 +81,7 @@ def stiffest(law):  # type: ignore[no-untyped-def]
 
 @inlined
 def flank_law(of, here, s, e, force, scale):  # type: ignore[no-untyped-def]
-    """Law of a flank at a force.
+    """Return the law of a flank at a force.
 
     Compression [m], smallest and largest compliance [m/N] next to it, and the error of the force
     up to which they hold [N].
@@ -98,10 +98,10 @@ def flank_law(of, here, s, e, force, scale):  # type: ignore[no-untyped-def]
 
 @inlined
 def _by_power(bending, hertz, force, root, light, root_of_light):  # type: ignore[no-untyped-def]
-    """Compression [m] by a law of powers, smallest and largest compliance [m/N] next to it.
+    """Return compression [m] by a power law, smallest and largest compliance [m/N] next to it.
 
-    A Hertz contact that is light may lose its force: its largest is the secant to none, which has
-    no end where there is none.
+    A light Hertz contact may lose its force: its largest compliance is the secant to zero force,
+    infinite where it carries none.
     """
     compression = bending * force + hertz * root * root
     soft = bending + 2.0 / 3.0 * hertz / root
@@ -114,15 +114,15 @@ def _by_power(bending, hertz, force, root, light, root_of_light):  # type: ignor
 
 @inlined
 def _holds(hertz, force, light):  # type: ignore[no-untyped-def]
-    """Error of a force up to which compliances next to it hold [N]."""
+    """Return the error of a force up to which compliances next to it hold [N]."""
     return np.inf if hertz == 0.0 else 0.1 * max(force, light)
 
 
 @inlined
 def put_laws(of, here, e, first, width, work):  # type: ignore[no-untyped-def]
-    """Laws of a flank at the forces of claims, in four rows, as `flank_law` has them.
+    """Write the laws of a flank at the forces of claims to four rows, as in `flank_law`.
 
-    Returns whether compliances are the same for all claims.
+    Return whether compliances are the same for all claims.
     """
     force, (compression, least, most, holds) = work.push, work.law
     if of.is_tabled[e]:
@@ -154,9 +154,9 @@ def put_laws(of, here, e, first, width, work):  # type: ignore[no-untyped-def]
 
 @compiled
 def _by_table(forces, compressions, force, near):  # type: ignore[no-untyped-def]
-    """Law of a table at a force, as `_flank`; it is straight beyond the last point.
+    """Return the law of a table at a force, as in `flank_law`; linear beyond the last point.
 
-    Corners that are near do not end it: laws on both sides of them are among those it tells of.
+    Corners nearby do not limit it: the compliances include those on both sides of them.
     """
     last = len(forces) - 2
     while last > 0 and np.isnan(forces[last + 1]):
@@ -183,11 +183,11 @@ def _by_table(forces, compressions, force, near):  # type: ignore[no-untyped-def
 
 @inlined
 def nearest(law, force, distance, light):  # type: ignore[no-untyped-def]
-    """Point of a graph at a force that is nearest to a distance: distance [m], force [N].
+    """Return the point of a graph at a force nearest to a distance: distance [m], force [N].
 
-    A distance below 0 stands for the first piece. Further the compliance [m/N] there (of a slip
-    across it, wherever it ends), and by how much the force may change. What is light slips where
-    the place says so.
+    A distance below 0 stands for the first piece. Also returns the compliance [m/N] there (for a
+    slip, across it, wherever it ends), and by how much the force may change. A light element slips
+    where its place says so.
     """
     first, stick, level, reach, last, end = law
     if np.isinf(stick):
@@ -207,7 +207,7 @@ def nearest(law, force, distance, light):  # type: ignore[no-untyped-def]
 
 @inlined
 def sticks(law, force):  # type: ignore[no-untyped-def]
-    """Whether a spline would stick at half the level as well."""
+    """Return whether a spline would stick at half the level as well."""
     first, stick, level, reach, _, end = law
     if np.isinf(stick):
         return 0.5 * level >= first * reach
@@ -216,6 +216,6 @@ def sticks(law, force):  # type: ignore[no-untyped-def]
 
 @inlined
 def rate_of(of, here, s, q):  # type: ignore[no-untyped-def]
-    """Change of a spline's level with the torque over it [1/m]."""
+    """Return the change of a spline's level with the torque over it [1/m]."""
     r, k = row_of(here.spline, s), q - of.rounds
     return abs(here.spline[r, k, 4]) if np.isnan(here.spline[r, k, 3]) else 0.0

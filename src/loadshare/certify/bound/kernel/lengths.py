@@ -22,10 +22,10 @@ from loadshare.settings import BOUND
 
 @within
 def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
-    """Coordinates, clockings and offsets of claims [m], and where their gears are.
+    """Write coordinates, clockings and offsets of claims [m], and where their gears are.
 
-    Writes the sum of the largest sizes of both as their width, and the largest offset of a centre
-    as their deflection.
+    Also writes the largest coordinate plus the largest offset as the width, and the largest offset
+    of a centre as the deflection.
     """
     set_apart()
     x, varying, shift, moved, square = work.x, work.varying, work.shift, work.moved, work.given
@@ -70,7 +70,7 @@ def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-
 
 @within
 def put_lengths(of, work):  # type: ignore[no-untyped-def]
-    """Lengths A X [m] with clockings and offsets, what of them remains at rest, turns of lines."""
+    """Write lengths A X [m] with clockings and offsets, their parts at rest, and turns of lines."""
     set_apart()
     length, at_rest, across, shift = work.length, work.at_rest, work.across, work.shift
     length[:], at_rest[:] = 0.0, 0.0
@@ -87,7 +87,7 @@ def put_lengths(of, work):  # type: ignore[no-untyped-def]
 
 @within
 def put_limits(of, here, first, width, work):  # type: ignore[no-untyped-def]
-    """Take gaps and floats from the lengths [m]; the largest of them, and the largest approach."""
+    """Subtract gaps and floats from lengths [m]; write the largest of them and of approaches."""
     set_apart()
     limits, approach, given = work.limits, work.approach, work.given
     flanks = work.gap[: len(of.arm)]
@@ -110,9 +110,9 @@ def put_limits(of, here, first, width, work):  # type: ignore[no-untyped-def]
 
 @within
 def put_gaps(of, here, first, width, work):  # type: ignore[no-untyped-def]
-    """Gaps of flanks, stops and arcs, the widest of them, and unit vectors of the latter.
+    """Write gaps of flanks, stops and arcs, the widest of them, and unit vectors of arcs.
 
-    Where a gear stands beyond a neighbour on whose ring its own rolls, `behind` is 1.
+    Where a gear is beyond a neighbour on whose ring its own rolls, `behind` is 1.
     """
     set_apart()
     flanks, drums = len(of.arm), len(of.drum_gear)

@@ -1,4 +1,4 @@
-"""How the functions of this room are compiled."""
+"""How the functions of this package are compiled."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 from loadshare import compilation
 
-# Nothing is allocated in here, so Numba need not count who holds an array: counting would take
+# Nothing is allocated in here, so Numba need not count references to arrays: counting would take
 # twice as long as judging.
 _how: dict[str, Any] = {
     "nogil": True,
@@ -15,7 +15,7 @@ _how: dict[str, Any] = {
     "_nrt": False,
 }
 compiled = compilation.jit(**_how)
-# Else what is called in an inlined function would be inlined as well.
+# Otherwise a function called in an inlined function would be inlined as well.
 within = compilation.within(forceinline=False, **_how)
-# Claim by claim they read the same arrays, whose places would be read again by each of them.
+# Called claim by claim, these read the same arrays, whose addresses each call would load again.
 inlined = compilation.within(forceinline=True, **_how)

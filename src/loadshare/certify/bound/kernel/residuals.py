@@ -1,4 +1,4 @@
-"""Residuals of a claim, as single answers have them, and how far it is displaced."""
+"""Residuals of a claim, as for single answers, and how far it is displaced."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from loadshare.settings import BOUND, CERTIFY
 
 @within
 def put_worst(of, here, claim, first, width, work):  # type: ignore[no-untyped-def]
-    """Largest scaled residuals of claims but of balance: of laws, signs, and what is no column.
+    """Write the largest scaled residuals of claims except balance: of laws, signs, and the rest.
 
-    Not a number where something claimed is none, and where two opposed contacts carry: these are
-    for `residuals`.
+    NaN where a claimed figure is NaN, and where two opposed contacts carry: these are left to
+    `residuals`.
     """
     set_apart()
     force, length, total = work.pulled, work.misfit, work.total
@@ -59,7 +59,7 @@ def put_worst(of, here, claim, first, width, work):  # type: ignore[no-untyped-d
 
 @inlined
 def _excess(graph, v, offset, pull, band):  # type: ignore[no-untyped-def]
-    """Excess [N] of a radial element's pull over what its graph admits (see `residuals`)."""
+    """Return the excess [N] of a radial element's pull over its graph (see `residuals`)."""
     x, y, lifting = offset[0], offset[1], abs(pull[2])
     radius, force = np.sqrt(x * x + y * y), np.sqrt(pull[0] * pull[0] + pull[1] * pull[1])
     low, high = _interval(graph, v, radius, band)
@@ -72,7 +72,7 @@ def _excess(graph, v, offset, pull, band):  # type: ignore[no-untyped-def]
 
 @inlined
 def _interval(graph, v, radius, band):  # type: ignore[no-untyped-def]
-    """Forces that a graph admits within the band about a radius."""
+    """Return least and largest force that a graph admits within the band about a radius."""
     first, stick, level, reach, last = (
         graph[0, v],
         graph[1, v],
@@ -100,7 +100,7 @@ def _interval(graph, v, radius, band):  # type: ignore[no-untyped-def]
 
 @inlined
 def _put_strayed(of, work):  # type: ignore[no-untyped-def]
-    """Largest lengths [m] by which gears are where no coordinate leads them."""
+    """Include lengths [m] by which gears are where no coordinate can take them."""
     length, total, moved, square = work.misfit, work.total, work.moved, work.push
     fill(square, 0.0)
     for g in of.still:
@@ -136,7 +136,7 @@ def _put_strayed(of, work):  # type: ignore[no-untyped-def]
 
 @inlined
 def _put_free(of, here, first, width, work):  # type: ignore[no-untyped-def]
-    """Largest forces [N] claimed of bearings that bear nothing."""
+    """Include the forces [N] that are claimed of bearings without stiffness."""
     force, total, given, square = work.pulled, work.total, work.given, work.push
     for k in range(len(of.place)):
         g = of.place[k, 1]
@@ -153,7 +153,7 @@ def _put_free(of, here, first, width, work):  # type: ignore[no-untyped-def]
 
 @inlined
 def _squeeze(of, here, claim, s, work, v, d, band):  # type: ignore[no-untyped-def]
-    """What the squeeze of a drum's opposed arcs leaves open [N] (see `residuals`)."""
+    """Return the force [N] that a squeeze of opposed arcs leaves open (see `residuals`)."""
     first = 2 * len(of.drum_gear) + 2 * d
     squeeze = min(claim.ring_force[s, first], claim.ring_force[s, first + 1])
     if squeeze <= 0.0:
@@ -181,9 +181,9 @@ def _squeeze(of, here, claim, s, work, v, d, band):  # type: ignore[no-untyped-d
 
 @within
 def put_displaced(of, work):  # type: ignore[no-untyped-def]
-    """How far displacements go to a warning (see `Measuring.worst`).
+    """Write how close displacements come to a warning (see `Measuring.worst`).
 
-    Not a number where an approach is neglected that only gears without force may take up.
+    NaN where an approach is neglected that only gears without force may take up.
     """
     set_apart()
     most, furthest, worst = work.given, work.push, work.displaced
