@@ -1,8 +1,8 @@
 """The numbers by which solvers, studies and certificates decide: what is small, when to stop.
 
-One table for all rooms, a part for each. Every number has its meaning next to it and, where it is
-known, the reason for its size; what is not a ratio says its unit. What is compiled with them is
-compiled again when one changes (`code_cache.py`).
+One table for all packages, a part for each. Every number has its meaning next to it and, where it
+is known, the reason for its size; one that is not a ratio states its unit. Code compiled with them
+is compiled again when one changes (`code_cache.py`).
 """
 
 from loadshare.settings.allowed import ALLOWED

@@ -1,4 +1,4 @@
-"""What a case file may hold."""
+"""Limits on what a case file may hold."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Allowed(NamedTuple):
-    """What a case file may hold: far more than any machine needs, and no more than can be read."""
+    """Limits on a case file: far more than any machine needs, and no more than can be read."""
 
     bytes: int = 4 * 2**20
     """Size of a file: read in five seconds, whatever is in it."""
@@ -27,7 +27,7 @@ class Allowed(NamedTuple):
     problems: int = 1000
     """Problems of a case that are reported."""
     options: int = 200
-    """Names among which the nearest one to a slip is looked for."""
+    """Names among which the nearest one to a misspelt name is looked for."""
     name: int = 200
     """Characters of a name."""
     file_name: int = 255
@@ -37,11 +37,11 @@ class Allowed(NamedTuple):
     power: float = 12.0
     """Exponent in a unit."""
     smallest: float = 1e-40
-    """Number other than zero, in SI units: its cube is a number still."""
+    """Number other than zero, in SI units: its cube is still a double."""
     largest: float = 1e40
     """Number in SI units: likewise."""
     length: float = 1e4
-    """Length [m]: beyond it lies what is meant in millimetres and written in megametres."""
+    """Length [m]: a longer one was meant in millimetres and written in megametres."""
     friction: float = 1e3
     """Coefficient of friction [-]."""
     teeth: int = 100_000

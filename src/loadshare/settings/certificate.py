@@ -13,10 +13,10 @@ class Certify(NamedTuple):
     tolerance: float = 1e-9
     """Largest scaled residual of a certified answer."""
     band: float = 1e-9
-    """Band in which a margin counts as none, in deflections of the case."""
+    """Band in which a margin counts as zero, in deflections of the case."""
     largest: float = 1e-3
-    """Largest tolerance: an answer that misses by more than a thousandth is not certified, it is
-    guessed, and Ω is read to three digits behind the point."""
+    """Largest tolerance: an answer that may be off by more than a thousandth would be a guess, and
+    Ω is read to three digits after the point."""
     rounded: float = 16.0 * EPS
     """Rounding of energies, relative to the sum of their sizes."""
     resolution: float = 16.0 * EPS
@@ -24,8 +24,8 @@ class Certify(NamedTuple):
     terms, each known to a few EPS, as displacements are products over coordinates. A train on soft
     shafts, whose input turns by a thousand turns, misses its laws by up to 6 EPS."""
     abreast: int = 8
-    """Positions of a result that are looked at together: NumPy takes as long for one of them, and
-    whoever reads a single one pays for no more than these."""
+    """Positions of a result that are judged together: NumPy takes as long for one of them, and
+    reading a single one costs no more than these."""
     together: int = 2048
     """Answers judged together: as many as a processor's own memory holds."""
     least_deflection: float = 1e-6
@@ -33,43 +33,42 @@ class Certify(NamedTuple):
     trains: int = 64
     """Trains of which the mechanics are kept: more than the positions of a march judged in turn."""
     carries: float = 1e-9
-    """Part of the load from which on a contact counts as carrying, and of the deflection within
-    which a radius counts as at a corner: the band of the certificate."""
+    """Part of the load above which a contact counts as carrying, and of the deflection within which
+    a radius counts as at a corner: the band of the certificate."""
     rank: float = 1e-10
-    """Relative size below which a singular value of unit rows is none."""
+    """Relative size below which a singular value of unit rows counts as zero."""
     flat: float = 1e-13
-    """Relative stiffness below which a move is held by nothing: round-off of the stiffest
-    element."""
+    """Relative stiffness below which nothing holds a move: round-off of the stiffest element."""
     nothing: float = 1e-15
-    """Curvature that is none: what round-off leaves where rigid contacts allow no move."""
+    """Curvature that counts as zero: round-off where rigid contacts allow no move."""
     turned: float = 0.01
-    """Angle [rad] of a line of action or a ring's arm from which on a warning is given: forces are
-    off by 1 % then, about as far as mesh stiffnesses are known."""
+    """Angle [rad] of a line of action or a ring's arm above which a warning is given: forces are
+    then off by 1 %, about as far as mesh stiffnesses are known."""
     neglected: float = 0.01
-    """Share of the case's deflection that the approach neglects, from which on a warning is given:
-    what compliances make of it changes torques by about 1 %."""
+    """Share of the case's deflection that the approach neglects, above which a warning is given: by
+    way of compliances it changes torques by about 1 %."""
     meaningless: float = 1.0
-    """Share from which on an answer is refused: the neglected approach is all of the deflection, or
+    """Share from which an answer is refused: the neglected approach is all of the deflection, or
     the compression all of a tooth's height."""
     compressed: float = 0.1
-    """Share of a tooth's height by which it yields, from which on a warning is given: the square of
-    it, 1 %, is what linear bending neglects."""
+    """Compression, as a share of a tooth's height, above which a warning is given: linear bending
+    neglects its square, 1 %."""
     apart: float = 0.02
-    """Opening of a mesh without a given backlash, over the height of its teeth, from which on it is
-    told: 0.045 modules, about the play that teeth usually have."""
+    """Opening of a mesh without a given backlash, over the height of its teeth, above which it is
+    reported: 0.045 modules, about the play that teeth usually have."""
     height: float = 2.25
     """Height of a tooth in modules: addendum 1, dedendum 1.25."""
     fewest: int = 17
-    """Teeth of a gear of which none are known: the fewest without undercut (20 deg), so that its
+    """Tooth number assumed where none is known: the fewest without undercut (20 deg), so that the
     teeth are the highest."""
     noise: float = 1e-12
-    """Force, over the largest one, that is a solver's rounding."""
+    """Force, over the largest one, that counts as a solver's rounding."""
     alike: float = 1e-9
     """Relative difference of figures that differ by round-off alone."""
     near_root: float = 1e-8
     """Newton step, relative, beyond which a claimed force is no start for the root of a law."""
     roots: int = 60
-    """Newton's steps for the root of a law, from above."""
+    """Most Newton steps for the root of a law, from above."""
     root: float = 1e-15
     """Last of these steps, relative."""
 
@@ -79,91 +78,90 @@ class Bound(NamedTuple):
 
     noise: float = 1e-12
     """Force, over the largest one, of a contact that may as well be open: a solver's rounding over
-    a clear gap. It is put aside; so is the friction of a spline that takes no more torque than
-    that."""
+    a clear gap. It is put aside; so is the friction of a spline that transmits no more torque than
+    this."""
     light_friction: float = 1e-10
     """Friction, in loads of the claim, that may be put aside where nothing else bounds a torque."""
     enough: float = 1e-11
-    """Relative bound with which double precision is content."""
+    """Relative bound below which twice the precision is not tried."""
     together: int = 512
-    """Claims that are looked at in twice the precision at a time."""
+    """Claims that are bounded in twice the precision at a time."""
     abreast: int = 64
-    """Claims whose products Numba finds side by side."""
+    """Claims whose products Numba computes side by side."""
     soft: float = 1e5
-    """Largest compliance of a turn of a line, at first, in compliances of the claim: what is softer
+    """Largest compliance of a turn of a line, at first, over the largest of the claim: a softer one
     hardly carries."""
     softest: float = 1e11
-    """The same at last, where a turn that is stiffer bounds nothing."""
+    """The same in the second attempt, where a stiffer turn bounds nothing."""
     yielding: float = 1e3
-    """Largest compliance of what slips, in compliances of the claim."""
+    """Largest compliance of an element that slips, over the largest of the claim."""
     light: float = 1e-9
     """Force, in loads of the claim, at which the tangent of a contact without force is taken. Below
-    it a Hertz contact is softer still: it answers by something between that tangent and none."""
+    it a Hertz contact is softer still: its response lies between that tangent's and none."""
     reached: float = 4.0
     """Times the force of a contact on the verge up to which its tangent holds."""
     apart: float = 1e-6
-    """Gap, over the largest deflection, that is clear."""
+    """Gap, over the largest deflection, above which a contact is clearly open."""
     corner: float = 1e-12
     """Relative distance from a level within which a force is on it, up to rounding."""
     secant: float = 0.9
-    """Part of the tangent compliance that the secant to the exact force keeps. The bound is far
-    below a tenth of the force wherever it is of use; elsewhere it is refused."""
+    """Least secant compliance to the exact force, over the tangent's. The bound is far below a
+    tenth of the force wherever it is of use; elsewhere it is refused."""
     bent: float = 0.05
-    """Error, over the force, up to which `secant` holds for a wall that is a power."""
+    """Error, over the force, up to which `secant` holds for a wall with a power law."""
     endless: float = 1e300
-    """Compliance, over the tangent's, of a Hertz contact without force: there is no largest."""
+    """Compliance, over the tangent's, of a Hertz contact without force: it is unbounded."""
     near: float = 1e-6
     """Gap, over the widest one, within which a contact counts among those that may carry."""
     touching: float = 1e-9
     """The same in large batches, whose claims are exact to rounding: fewer sets of elements."""
     opposed: float = 1.0 - 1e-6
-    """Cosine from which on two arcs are opposed."""
+    """Cosine above which two arcs are opposed."""
     in_line: float = 1e-12
-    """Angle [rad] between two arcs' lines that is rounding: what they squeeze stays in between."""
+    """Angle [rad] between two arcs' lines that is rounding: the arcs can hold a squeezed float."""
     angle: float = 0.02
     """Angle [rad] between two lines that still count as nearly the same."""
     references: int = 16
-    """Claims whose lines are tried on all those whose elements act alike."""
+    """Claims whose lines are tried for all claims whose elements act alike."""
     few: int = 8
-    """Claims up to which each is bounded by itself where lines turn."""
+    """Number of claims up to which each is bounded separately where lines turn."""
     gain: float = 0.5
-    """Largest share of an error that may come back over friction that follows the torque."""
+    """Largest share of an error that may be fed back by friction that follows the torque."""
     wider: float = 2.0
-    """How far a box goes beyond what came out of the one before."""
+    """Size of a box over the result of the box before."""
     passes: int = 8
     """Boxes that are tried; the second mostly holds."""
     singular: float = 1e-15
-    """Compliance of a self-stress, over the largest, below which it is shared by rigid parts
-    alone."""
+    """Compliance of a self-stress, over the largest, below which it is one of rigid parts alone."""
     shared: float = 1e-7
-    """Part of a force in a self-stress of rigid parts from which on it is undetermined."""
+    """Part of a force in a self-stress of rigid parts above which it is undetermined."""
     balanced: float = 1e-12
     """Load along a move that nothing resists, over the load, that is rounding."""
     rounded: float = 64.0 * EPS
     """The same over any force: sums of many terms."""
     wider_lines: tuple[float, float] = (2.0, 10.0)
-    """Times the error without it, over which the turn of lines is bounded."""
+    """Sizes of the box over which the turn of lines is bounded, over the error without a turn."""
     sets_distinguished: int = 1000
     """Sets of elements that are distinguished in a batch."""
     sets_together: int = 64
-    """Sets whose figures are found at a time, so that memory is bounded."""
+    """Sets whose figures are computed at a time, so that memory is bounded."""
     sets: int = 2000
     """Sets of elements of which the statics are kept, so that memory is bounded."""
     slip_turns: float = 1e-4
-    """Angle by which a slip may turn."""
+    """Angle [rad] by which a slip may turn."""
     slack: float = 1e-6
-    """Part of the level within which a force is on it where the place says that something slips."""
+    """Part of the level within which a force is on it where the place shows that it slips."""
     at_end: float = 1e-6
     """Distance of a slip from the end of its room, over the slip, within which it is at the end."""
     next_to: float = 1e-12
-    """The same over the displacement: rounding of what has moved far."""
+    """The same over the displacement: rounding after a long move."""
     turned: float = 1e-11
     """Error of a torque over a spline, in torques of the claim, for which its room is made wider.
-    That much is hardly ever asked for: friction mostly needs its clearance by more than this."""
+    This is hardly ever needed: friction mostly uses up its clearance by more than this."""
     slight: float = 1e-6
     """Play, in deflections of the claim, of a gear that counts as locked."""
     bowed: float = 1e-3
-    """Play, in centre distances of an arc, below which the arc is taken for its tangent and a
+    """Play, in centre distances of an arc, below which the arc is replaced by its tangent and a
     bow."""
     trains: int = 64
     """Trains of which the columns are kept: more than the positions of a march judged in turn."""
@@ -179,22 +177,22 @@ class Bound(NamedTuple):
     by_singular_values: int = 32
     """Directions, and coordinates, up to which singular values take no longer than reflections."""
     loose: float = 1e-7
-    """Part of a coordinate in a move that nothing resists from which on it is undetermined."""
+    """Part of a coordinate in a move that nothing resists above which it is undetermined."""
     on_the_verge: int = 7
-    """Elements on the verge of which every combination is tried. With more, convexity alone bounds
-    the error (see `quick`), which asks for no combination."""
+    """Most elements on the verge of which every combination is tried. With more, convexity alone
+    bounds the error (see `quick`), which needs no combination."""
     verge_passes: int = 4
     """Passes in which further elements may turn out to be on the verge."""
     idle: float = 1e-9
     """Part in self-stresses below which a contact cannot change a force."""
     still: tuple[tuple[float, float], ...] = ((1e-10, 1e-4), (1e-10, 0.0), (2e-9, 1e-4))
-    """Force by which a spline may give way in what room it has, in loads of the claim, and change
-    of a slip, over the slip, and still not move, as they are tried in turn. What they leave of
-    the law is bounded."""
+    """Pairs that are tried in turn, up to which a spline counts as not moving: force by which it
+    may give way within its room, in loads of the claim, and change of a slip, over the slip. What
+    they neglect of the law is bounded."""
     digits: int = 20
     """Elements whose ways of acting make one number below 2⁶³."""
     step: float = 1e-12
-    """Relative room below a friction bound from which on a graph jumps."""
+    """Relative room below a friction bound above which a graph jumps."""
 
 
 CERTIFY = Certify()

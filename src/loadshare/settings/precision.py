@@ -1,4 +1,4 @@
-"""What a double resolves."""
+"""Resolution of a double."""
 
 from __future__ import annotations
 
