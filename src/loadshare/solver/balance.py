@@ -39,7 +39,7 @@ def is_unbalanced(structure: Structure, load: Array, tolerance: float = CERTIFY.
         forces, _ = nnls(np.vstack([held, -held, pushing]).T, load / size)
     except RuntimeError:
         return False
-    # The residual has the round-off of the load; its part along what acts should be zero, and goes.
+    # The residual has the load's round-off; its part along what acts should be 0 and is removed.
     acting = np.vstack([held, pushing[forces[2 * len(held) :] > 0.0]])
     left = load / size - np.concatenate([held, -held, pushing]).T @ forces
     left -= np.linalg.lstsq(acting, acting @ left)[0]

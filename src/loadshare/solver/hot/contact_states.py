@@ -76,7 +76,7 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
     stick = np.where(throughout, np.inf, stick)
     power = numbers[:, 6]
     if (power != 1.0).any():
-        # The tangent is not used where the law is no power, such as friction without a stop.
+        # The tangent is not used where the law is not a power, such as friction without a stop.
         with np.errstate(invalid="ignore"):
             begin, slope = tangent_wall(
                 reach, last, power, radius + np.zeros_like(reach), LAWS.wall_start
