@@ -188,7 +188,7 @@ class _Enclosure(Part):
             if not len(left):
                 break
             middle = left[len(left) // 2]
-            # If the operators of one claim prove no other, claims are not alike: one at a time.
+            # If the operators of one claim prove no other, the others are unlike: one at a time.
             rows = left if alike else np.array([middle])
             response = Response(self, int(middle))
             force[rows], coordinate[rows] = self._errors(response, rows)

@@ -1,4 +1,4 @@
-r"""The figures that claims share in which the same elements act.
+r"""Figures shared by claims in which the same elements act.
 
 With r the largest residual of balance, q the norm of :math:`L^T \epsilon` and w the rounding of
 lengths, the bound of `quick` is
@@ -27,7 +27,7 @@ from loadshare.settings import BOUND
 
 
 class Groups(NamedTuple):
-    """Figures that claims share in which the same elements act, for G sets of elements.
+    """Figures shared by claims in which the same elements act, for G sets of elements.
 
     Rows of L (rows): contacts, springs, both columns of every radial element; 0 for idle elements.
     """
@@ -189,7 +189,7 @@ class Plan:
         return Operators(particular, whole.redundant, moves, ended, borne, is_covered)
 
     def groups(self, acts: Acts, least: Array, most: Array) -> Groups:
-        """Return the figures that the claims of each of some sets share.
+        """Return the figures shared by the claims of each set.
 
         Parameters
         ----------
