@@ -1,8 +1,8 @@
-"""Lines of code by package, and functions that are long or branch much.
+"""Lines of code by package, and functions that are long or branch often.
 
 Run with ``python -m benchmarks.code_lines src [FOLDER ...]``. A line counts if it carries code:
-blank lines, comments, and strings on their own (docstrings) do not. Complexity is McCabe's,
-as ruff counts it.
+blank lines, comments, and strings on their own (docstrings) do not. Complexity is McCabe's, as ruff
+counts it.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 LONG = 80
-"""Lines of a function, from `def` to its end, beyond which it is listed."""
+"""Lines of a function above which it is listed."""
 BRANCHED = 25
-"""Complexity beyond which it is listed."""
+"""Complexity above which a function is listed."""
 NO_CODE = {
     *(tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT),
     *(tokenize.ENCODING, tokenize.ENDMARKER),
@@ -82,7 +82,7 @@ def branched(folders: Iterable[Path]) -> Iterator[tuple[str, str, int, int]]:
 
 
 def package(file: Path) -> str:
-    """Return the package of a file: the first two names of it."""
+    """Return the package of a file: the first two parts of its path."""
     parts = file.parent.parts
     return ".".join(parts[parts[:1] == ("src",) :][:2])
 

@@ -1,4 +1,4 @@
-"""What the commands that publish share: their options, and a line per step."""
+"""Shared parts of the commands that publish: their options, and a line per step."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Quiet = Annotated[bool, typer.Option("--quiet", help="Tell no steps.")]
 
 
 def application(command: Callable[..., Any]) -> typer.Typer:
-    """Return the application that is one command."""
+    """Return an application with one command."""
     app = typer.Typer(
         rich_markup_mode=None,
         pretty_exceptions_enable=False,
@@ -33,5 +33,5 @@ def application(command: Callable[..., Any]) -> typer.Typer:
 
 
 def teller(quiet: bool) -> Callable[[str], None]:
-    """Return what reports each step on stderr, or nothing."""
+    """Return a function that reports each step on stderr, or does nothing."""
     return (lambda _: None) if quiet else (lambda step: typer.echo(step, err=True))

@@ -9,7 +9,7 @@ from typing import Any
 
 
 def write_figures(path: Path, content: dict[str, Any]) -> None:
-    """Write figures as JSON; what is not finite becomes null."""
+    """Write figures as JSON; non-finite numbers become null."""
     text = json.dumps(_plain(content), indent=1, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
 

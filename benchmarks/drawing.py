@@ -10,7 +10,7 @@ INK, PALE = "#222222", "#dddddd"
 
 
 def altair() -> Any:
-    """Return altair, imported when something is drawn."""
+    """Return altair, which is imported only for drawing."""
     return import_module("altair")
 
 
@@ -35,6 +35,6 @@ def write(chart: Any, stem: Path) -> list[Path]:
     files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg", "html")]
     chart.save(str(files[0]), scale_factor=2.0)
     chart.save(str(files[1]))
-    # Inline: the page carries its scripts and opens without a network.
+    # Inline: the page contains its scripts and opens without a network.
     chart.save(str(files[2]), inline=True)
     return files

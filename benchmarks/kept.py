@@ -1,4 +1,4 @@
-"""Verdicts on many numbered problems, kept as lines of a file: a run that was stopped goes on."""
+"""Verdicts on numbered problems, kept as lines of a file so that a stopped run can continue."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ Row = dict[str, Any]
 
 
 def parser(description: str, what: str, count: int, folder: str) -> argparse.ArgumentParser:
-    """Return a parser of the options of every run: how many, from which on, and where to keep them.
+    """Return a parser of the options of every run: how many, from which number, and the folder.
 
     Parameters
     ----------
     description : str
     what : str
-        What is counted.
+        Name of the things that are counted.
     count : int
-        How many by default.
+        Default number.
     folder : str
-        Name of the folder in ``build`` by default.
+        Default folder in ``build``.
     """
     found = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawTextHelpFormatter
@@ -43,15 +43,15 @@ def parser(description: str, what: str, count: int, folder: str) -> argparse.Arg
 
 
 def publish(page: Path | None, about: str, command: str, found: str) -> None:
-    """Print what was found, and write it to a page if one is given.
+    """Print the results, and write them to a page if one is given.
 
     Parameters
     ----------
     page : Path or None
     about : str
-        Title and what was measured, as Markdown.
+        Title and a description of the measurement, as Markdown.
     command : str
-        Words after ``python -m`` by which it is measured.
+        Module and options after ``python -m`` that give the results.
     found : str
         Tables.
     """
@@ -63,18 +63,18 @@ def publish(page: Path | None, about: str, command: str, found: str) -> None:
 
 
 def numbers(options: argparse.Namespace) -> range:
-    """Return the numbers of the problems that a run is to solve."""
+    """Return the numbers of the problems that a run should solve."""
     return range(options.first, options.first + options.count)
 
 
 def known(path: Path, of: Mapping[str, Any]) -> dict[int, Row]:
-    """What is on file of one kind, by number; a last line that was cut off is left out.
+    """Return the rows of one kind that are on file, by number, without a truncated last line.
 
     Parameters
     ----------
     path : Path
     of : mapping
-        What all rows of the kind have in common, such as their seed.
+        Items that all rows of the kind have in common, such as their seed.
     """
     found: dict[int, Row] = {}
     if path.exists():
@@ -104,16 +104,17 @@ def run(
     ----------
     numbers : range
     of : mapping
-        What distinguishes these verdicts from others in the file.
+        Items that distinguish these verdicts from others in the file.
     path : Path
-        File of verdicts; those it holds already are not found again.
+        File of verdicts; problems that it contains are not judged again.
     judge : callable
-        From the number of a problem to plain data.
+        Function from the number of a problem to plain data.
     processes : int
     warm : callable
-        Called once in every process, so that no problem pays for what it imports at first.
+        Called once in every process, so that first imports do not count for any problem.
     tell : callable, optional
-        Called with how many are done, of how many; written to standard error by default.
+        Called with the numbers of problems done and in total; by default they are written to
+        standard error.
 
     Returns
     -------
@@ -135,12 +136,12 @@ def run(
 
 
 def progress(done: int, total: int) -> None:
-    """Write how far it has come to standard error."""
+    """Write the progress to standard error."""
     print(f"\r{done} of {total}", end="" if done < total else "\n", file=sys.stderr, flush=True)  # noqa: T201
 
 
 class _Judge:
-    """A judge that returns the number as well."""
+    """A judge that also returns the number."""
 
     def __init__(self, judge: Callable[[int], Row]) -> None:
         self.judge = judge

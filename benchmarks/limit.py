@@ -1,4 +1,4 @@
-"""A limit on the time of what may not end."""
+"""A time limit for code that might not end."""
 
 from __future__ import annotations
 
@@ -7,18 +7,19 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 WAITING = 20.0
-"""How many times as long anything may take that does not use the processor all the time."""
+"""Factor on the limit of processor time that gives the limit of elapsed time."""
 
 
 class TooLong(BaseException):
-    """What ran took longer than it may."""
+    """Code ran longer than its time limit."""
 
 
 @contextmanager
 def limited(seconds: float) -> Iterator[None]:
-    """Raise `TooLong` in what takes longer.
+    """Raise `TooLong` in code that takes longer.
 
-    Processor time counts, so that a busy machine is no reason; what only waits has its end as well.
+    Processor time counts, so that a busy computer does not matter; code that only waits is limited
+    too.
     """
 
     def stop(*_: object) -> None:

@@ -1,9 +1,9 @@
 """Loaded tooth contact analysis: time and agreement, as Markdown tables.
 
-Run with ``python -m benchmarks.ltca``. First both models of the teeth on the shipped pairs and on
-that of ISO/TR 6336-30, example 1, at five positions of the mesh cycle and three loads; then the
-contact programme against other methods. Times are processor times, the least of several runs, so
-that no model pays for what is imported and set up once.
+Run with ``python -m benchmarks.ltca``. First, both models of the teeth are compared on the shipped
+pairs and on that of ISO/TR 6336-30, example 1, at five positions of the mesh cycle and three loads;
+then the contact programme is compared with other methods. Times are processor times, the shortest
+of several runs, so that imports and one-time preparation do not count.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ POSITIONS = 5
 
 
 class Clock:
-    """Processor times, and the largest part by which a run's wall time was longer."""
+    """Processor times, and the largest relative excess of wall time."""
 
     waited = 0.0
 
     def timed(self, action: Callable[[], T], repeat: int = 1) -> tuple[T, float]:
-        """Answer of an action, and the least of its times [s]."""
+        """Return the answer of an action, and the shortest of its times [s]."""
         best = math.inf
         for _ in range(repeat):
             wall, start = time.perf_counter(), time.process_time()
@@ -75,7 +75,7 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
 
 
 def gears() -> HelicoidPair:
-    """The pair, its wheel solid to 60 % of its diameter, with 10 µm of lead crowning."""
+    """Return the pair, its wheel solid to 60 % of its diameter, with 10 µm of lead crowning."""
     helix = math.radians(15.8)
     pinion = HelicoidGear(
         8e-3, 17, 0.1, helix_angle=helix, profile_shift=0.145, dedendum=1.4,
@@ -86,14 +86,14 @@ def gears() -> HelicoidPair:
 
 
 def on_half_planes(gears: GearPair) -> PairCompliance:
-    """Compliances by slices whose bodies are rigid."""
+    """Return the compliances by slices with rigid bodies."""
     driver = Slices(gears.driver, 1, rigid_body=True)
     driven = Slices(gears.driven, gears.driven_side, rigid_body=True)
     return PairCompliance(driver, driven, "slices")
 
 
 def compare_models() -> None:
-    """Time and error of the slices against finite elements, for every pair."""
+    """Print time and error of the slices against finite elements, for every pair."""
     pairs: dict[str, tuple[GearPair, float]] = {}
     for name in ("p12", "p46", "p610"):
         file = load_pair(PAIRS / f"{name}.toml")
@@ -108,13 +108,13 @@ def compare_models() -> None:
 
 
 def renewed(pair: GearPair) -> GearPair:
-    """The pair again, so that nothing is kept from run to run."""
+    """Return a copy of the pair, so that no run uses cached results of another."""
     made: GearPair = replace(pair)  # type: ignore[type-var]
     return made
 
 
 def model_row(pair: GearPair, torque: float) -> list[str]:
-    """Times and errors of one pair."""
+    """Return times and errors of one pair."""
 
     def whole(compliance: PairCompliance | Model) -> Array:
         return ltca(renewed(pair), torque, POSITIONS, FIT_LOADS, compliance).secant(0.9)
@@ -135,13 +135,13 @@ def model_row(pair: GearPair, torque: float) -> list[str]:
 
 
 def errors(ratio: Array) -> tuple[str, str]:
-    """Error of the mean, and of the shape over the cycle."""
+    """Return the error of the mean, and that of the shape over the cycle."""
     mean = float(ratio.mean())
     return f"{100 * (mean - 1):+.1f} %", f"{100 * float(np.abs(ratio / mean - 1).max()):.1f} %"
 
 
 def compare_programmes(pair: HelicoidPair) -> None:
-    """One linear contact (widths held) by every method, and the whole contact with its law."""
+    """Compare all methods on a linear contact (widths fixed), and on the contact with its law."""
     compliance = pair_compliance(pair, "slices")
     rows: list[list[str]] = []
     for points in (16, 32, 64):
@@ -151,14 +151,14 @@ def compare_programmes(pair: HelicoidPair) -> None:
 
 
 def programme_rows(problem: ContactProblem, pair: HelicoidPair) -> list[list[str]]:
-    """Rows of the table for one contact problem."""
+    """Return the rows of the table for one contact problem."""
     load, count = TORQUE / pair.arm, len(problem.gap)
     force = np.full(count, load / count)
     secant = problem.compliance(force)[0]
     even = 0.5 * (secant + secant.T)
 
     def by_nnls() -> np.ndarray:
-        """NNLS of the Cholesky factor, with the load as a row of weight 1e5."""
+        """Solve by NNLS with the Cholesky factor; the load is a row of weight 1e5."""
         root = np.linalg.cholesky(even / even.max())
         gap = np.linalg.solve(root, problem.gap / even.max())
         heavy = np.vstack([root.T, np.full((1, count), 1e5)])
@@ -191,10 +191,10 @@ def programme_rows(problem: ContactProblem, pair: HelicoidPair) -> list[list[str
 
 
 def _by_lemke(matrix: np.ndarray, gap: np.ndarray, load: float) -> np.ndarray | None:
-    """Lemke's complementary pivots, from the textbook.
+    """Solve by Lemke's complementary pivots, from the textbook.
 
-    Unknown are the forces and the approach, complementary to the gaps and to what the forces carry
-    beyond the load; all stand over the largest compliance and the load.
+    The unknowns are the forces and the approach. They are complementary to the gaps and to the
+    excess of the forces over the load. All are divided by the largest compliance and the load.
     """
     size = len(gap) + 1
     unit = matrix.max() * load
@@ -225,13 +225,13 @@ def _by_lemke(matrix: np.ndarray, gap: np.ndarray, load: float) -> np.ndarray | 
         if np.isinf(ratio).all():
             return None
         least = np.flatnonzero(ratio <= ratio.min() + 1e-15)
-        # Should several leave at once, the artificial one does, so that the pivots end.
+        # If several could leave at once, the artificial one does, so that the pivots end.
         leaving = int(next((k for k in least if basis[k] == artificial), least[0]))
     return None
 
 
 def _violation(matrix: np.ndarray, gap: np.ndarray, load: float, force: np.ndarray | None) -> str:
-    """Worst scaled residual of a linear contact, its approach taken where most load is."""
+    """Return the worst scaled residual of a linear contact; its approach is weighted by force."""
     if force is None:
         return "no answer"
     yielded = matrix @ force
@@ -254,7 +254,7 @@ def main() -> None:
         f"{platform.machine()}\n"
     )
     pair = gears()
-    # The first run imports and makes tables.
+    # The first run imports modules and builds tables.
     ltca(replace(pair), TORQUE, 1, compliance="slices", points=8)
     compare_models()
     compare_programmes(pair)

@@ -1,9 +1,9 @@
-"""Chart of both models of the teeth, time against accuracy.
+"""Chart of both models of the teeth: time against accuracy.
 
-Run with ``python -m benchmarks.ltca_chart docs/pictures/ltca_models.svg``. Whole analyses of the
-shipped pairs, five positions and three loads, by finite elements of three refinements, by slices on
-the gear's body and by slices on half-planes. The error is that of the mean stiffness against the
-limit of refinement, K₀ of K(h) = K₀ + c hᵖ through the three.
+Run with ``python -m benchmarks.ltca_chart docs/pictures/ltca_models.svg``. It shows whole analyses
+of the shipped pairs at five positions and three loads, by finite elements of three refinements, by
+slices on the gear's body and by slices on half-planes. The error is that of the mean stiffness
+against the limit of refinement, K₀ of K(h) = K₀ + c hᵖ through the three.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ MODELS = (*(f"elements, level {n}" for n in LEVELS), "slices", "slices on half-p
 
 
 def measured(name: str) -> dict[str, tuple[float, float]]:
-    """Time [s] and mean stiffness [N·m/rad] of every model on a shipped pair."""
+    """Return time [s] and mean stiffness [N·m/rad] of every model for a shipped pair."""
     pair = load_pair(PAIRS / f"{name}.toml")
     gears = pair.geometry
 
@@ -58,7 +58,7 @@ def measured(name: str) -> dict[str, tuple[float, float]]:
 
 
 def limit(stiffness: list[float]) -> float:
-    """K₀ from stiffnesses with 1, 2 and 3 elements on a length."""
+    """Return K₀ from stiffnesses with 1, 2 and 3 elements per length."""
     first, second = (a - b for a, b in pairwise(stiffness))
 
     def misfit(p: float) -> float:
@@ -86,7 +86,7 @@ def main() -> None:
 
 
 def chart(rows: list[dict[str, Any]]) -> Any:
-    """Errors over times, both logarithmic; refinements of the elements joined."""
+    """Draw errors over times, both logarithmic; lines join the refinements of the elements."""
     data = alt.InlineData(values=[row | {"%": abs(row["%"])} for row in rows])
     families = ["finite elements", "slices", "slices on half-planes"]
     seconds, percents = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0), (0.3, 1.0, 3.0, 10.0, 30.0)

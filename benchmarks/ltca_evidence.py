@@ -1,8 +1,8 @@
 """Loaded tooth contact analysis against published figures and its own refinement, as Markdown.
 
-Run with ``python -m benchmarks.ltca_evidence`` in the repository. It measures what the page on
-loaded tooth contact states: ISO/TR 6336-30, example 1; refinement of elements and of contact
-points; the stiffness ranges of the seed paper. Times are in ``benchmarks/ltca.py``.
+Run with ``python -m benchmarks.ltca_evidence`` in the repository. It measures the results that the
+page on loaded tooth contact states: ISO/TR 6336-30, example 1; refinement of elements and of
+contact points; the stiffness ranges of the seed paper. Times are in ``benchmarks/ltca.py``.
 """
 
 from __future__ import annotations
@@ -37,32 +37,32 @@ LINE_LOAD = 300e3
 
 
 def say(text: str = "") -> None:
-    """Print a line at once."""
+    """Print a line immediately."""
     sys.stdout.write(text + "\n")
     sys.stdout.flush()
 
 
 def iso_pair(bore: float | None = None) -> HelicoidPair:
-    """ISO/TR 6336-30, example 1, its wheel solid to a bore radius [m]."""
+    """Return the pair of ISO/TR 6336-30, example 1, its wheel solid to a bore radius [m]."""
     pinion = HelicoidGear(8e-3, 17, 0.1, helix_angle=HELIX, profile_shift=0.145, dedendum=1.4)
     wheel = HelicoidGear(8e-3, 103, 0.1, helix_angle=-HELIX, dedendum=1.4, rim=bore)
     return HelicoidPair(pinion, wheel, 0.5)
 
 
 def compliances(gears: HelicoidPair, model: Model | None) -> PairCompliance:
-    """Compliances from finite elements, from slices, or (None) from slices on half-planes."""
+    """Return compliances from finite elements, slices, or (None) slices on half-planes."""
     return pair_compliance(gears, model) if model else on_half_planes(gears)
 
 
 def mean_stiffness(gears: HelicoidPair, model: Model | None) -> float:
-    """Mean over the cycle at 300 N/mm, per face width [N/(mm·µm)]."""
+    """Return the mean over the cycle at 300 N/mm, per face width [N/(mm·µm)]."""
     torque = LINE_LOAD * 0.1 * gears.driver_gear.radius
     found = ltca(gears, torque, 8, FIT_LOADS, compliances(gears, model), 32).secant(0.9)
     return float(found.mean()) / gears.driver_gear.base_radius**2 / 0.1 * 1e-9
 
 
 def single_stiffness(model: Model | None, bore: float | None) -> float:
-    """Largest stiffness of one pair alone, virtual spur pair times cos β [N/(mm·µm)]."""
+    """Return the largest stiffness of one pair alone: virtual spur pair times cos β [N/(mm·µm)]."""
     pinion = HelicoidGear(8e-3, 19, 0.1, profile_shift=0.145, dedendum=1.4)
     wheel = HelicoidGear(8e-3, 115, 0.1, dedendum=1.4, rim=bore)
     gears = HelicoidPair(pinion, wheel, 134 * 4e-3 + 0.14 * 8e-3)
@@ -75,7 +75,7 @@ def single_stiffness(model: Model | None, bore: float | None) -> float:
 
 
 def standard() -> None:
-    """ISO/TR 6336-30, example 1."""
+    """Print the table on ISO/TR 6336-30, example 1."""
     formula = formula_stiffness(
         (17, 103), profile_shift=(0.145, 0.0), dedendum=(1.4, 1.4), contact_ratio=1.5491,
         helix_angle=HELIX,
@@ -94,8 +94,8 @@ def standard() -> None:
 
 
 def against(model: Model | None, bore: float | None, single: float, mesh: float) -> list[str]:
-    """C' and c_γα of a model with their differences from the standard."""
-    # The virtual spur wheel is solid to the same part of its root.
+    """Return C' and c_γα of a model with their differences from the standard."""
+    # The virtual spur wheel is solid to the same fraction of its root radius.
     spur = bore and bore * (115 * 4e-3 - 1.4 * 8e-3) / iso_pair().driven_gear.root
     found = single_stiffness(model, spur), mean_stiffness(iso_pair(bore), model)
     return [
@@ -106,12 +106,12 @@ def against(model: Model | None, bore: float | None, single: float, mesh: float)
 
 
 def refined(level: int, layers: int) -> Divisions:
-    """Elements `level` times as fine as at level 1."""
+    """Return elements that are `level` times as fine as at level 1."""
     return Divisions(2 * level, 2 * level, math.ceil(level / 2), level, level + 1, layers * level)
 
 
 def convergence(name: str, layers: int, levels: Iterable[int]) -> None:
-    """Stiffness of a shipped pair over refinement of elements and of contact points."""
+    """Print the stiffness of a shipped pair over refinement of elements and of contact points."""
     pair = load_pair(PAIRS / f"{name}.toml")
     gears, default = pair.geometry, pair_compliance(pair.geometry)
     reference = stiffness(pair, default, 32)
@@ -134,18 +134,18 @@ def convergence(name: str, layers: int, levels: Iterable[int]) -> None:
 
 
 def stiffness(pair: PairFile, compliance: PairCompliance, points: int) -> float:
-    """Mean secant stiffness at the rated torque over five positions [N·m/rad]."""
+    """Return the mean secant stiffness at the rated torque over five positions [N·m/rad]."""
     found = ltca(pair.geometry, pair.torque, 5, (1.0,), compliance, points)
     return float(found.secant(1.0).mean())
 
 
 def percent(one: float, other: float) -> str:
-    """Difference of one from the other."""
+    """Return the relative difference of one value from the other, as text."""
     return f"{100 * (one / other - 1):+.2f} %"
 
 
 def say_order(found: dict[int, float]) -> None:
-    """Observed order from refinements by two."""
+    """Print the observed order of convergence from refinements by two."""
     for n in found:
         if 2 * n in found and 4 * n in found:
             first, second = found[n] - found[2 * n], found[2 * n] - found[4 * n]
@@ -155,7 +155,7 @@ def say_order(found: dict[int, float]) -> None:
 
 
 def seed() -> None:
-    """Ranges of the seed's Fig. 7."""
+    """Print the ranges of the seed's Fig. 7."""
     rows = []
     for name, (low, high) in PAPER.items():
         pair = load_pair(PAIRS / f"{name}.toml")

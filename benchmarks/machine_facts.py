@@ -1,4 +1,4 @@
-"""Where and with what something was measured."""
+"""The computer and the software of a measurement."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def facts() -> dict[str, str]:
 
 
 def _load() -> str:
-    """Processes that wait for a core, this one included."""
+    """Return the number of processes that wait for a core, including this one."""
     try:
         return ", ".join(f"{load:.2f}" for load in os.getloadavg())
     except (AttributeError, OSError):

@@ -48,21 +48,23 @@ STRESS = ("verge", "free-pinion", "friction", "lost-contact", "stick-limit", "so
 FIRST = 1e-3
 """First step over the input's value."""
 STEPS = {False: 8, True: 14}
-"""Steps there are at most: to confirm a derivative, and to refute one."""
+"""Most steps: to confirm a derivative, and to refute one."""
 LEAST = {"m": 1e-6, "rad": 1e-4, "": 1e-4, "rad/(N*m)": 1e-11, "rad/(N*m)^(2/3)": 1e-10}
-"""First step of inputs that are zero, in SI units; 1 for others."""
+"""First step of inputs that are zero, in SI units; 1 for other units."""
 MOVED, STILL = 20.0, 1e-6
-"""Round-off of displacements over that of torques, and the least that they are measured by [m]."""
+"""Round-off of displacements over that of torques, and the smallest displacement to which it is
+referred [m]."""
 NOISE = {False: 2e-13, True: 2e-14}
-"""Round-off of a torque over the largest: of a solve in doubles, and of the train's own data."""
+"""Round-off of a torque over the largest torque: of a solve in doubles, and of the train's own
+data."""
 TEETH = 1e-4
-"""Relative error of a difference beyond which it does not say enough."""
+"""Relative error above which a difference is not accurate enough."""
 KEYS = 6
-"""Inputs of a case that are drawn."""
+"""Number of inputs that are drawn from a case."""
 TRIES = 8
-"""Shipped cases that are searched for a critical value."""
+"""Number of shipped cases that are searched for a critical value."""
 FINE = ("agrees", "undefined")
-"""Outcomes that need no look."""
+"""Outcomes that need no closer look."""
 FIGURES = {
     "stated": "stated error over the derivative",
     "known": "error of the difference over it",
@@ -74,17 +76,17 @@ Array = np.ndarray
 
 @dataclass(frozen=True)
 class Verdict:
-    """One derivative to one side, compared.
+    """The comparison of one derivative on one side.
 
     Attributes
     ----------
     outcome : str
-        "exception", "agrees", "vague" (agrees, within an error that says nothing), "outside" (of
-        its stated error), "missed" (none, yet differences converge),
-        "undefined" (none, and reported as such), "unnamed" (none, without a reason), "undecided"
+        "exception", "agrees", "vague" (agrees, but its stated error is too large), "outside" (of
+        its stated error), "missed" (not given, although differences converge), "undefined" (not
+        given, and reported as such), "unnamed" (not given, without a reason), "undecided"
         (differences do not converge).
     excess : float
-        Distance over the sum of both errors.
+        Difference over the sum of both errors.
     stated, known : float
         Errors of the derivative and of the difference, over the largest derivative.
     told : str
@@ -103,14 +105,14 @@ def differenced(
 ) -> tuple[Array, Array] | None:
     """Return the one-sided derivatives of torques and displacements, and their errors.
 
-    None where there is no equilibrium to that side, or differences do not converge.
+    None if there is no equilibrium on that side, or differences do not converge.
     """
     solved = loaded(case)
     train = build_train(solved)
     cycle = train.flank_positions(position)
     value = item.value
     is_computed = look_up(case.to_dict(), parse(item.key)) is None
-    # Faces that are that little beside one another count as opposite: heights have few digits.
+    # Faces offset by no more than this count as opposite, because heights have few digits.
     is_height = item.key.endswith((".centre[2]", ".height"))
     widths = [gear.face_width.si for gear in case.gears.values() if gear.face_width]
     written = WRITTEN * max(widths, default=0.0) if is_height else 0.0
@@ -133,7 +135,7 @@ def differenced(
     if here is None:
         return None
     first = FIRST * abs(value.number) or LEAST.get(value.si_unit, 1.0) / value.factor
-    # Torques and displacements have round-off of their own.
+    # The round-off of torques differs from that of displacements.
     count = len(train.meshes)
     sizes = np.full(len(here), np.abs(here[:count]).max(initial=0.0))
     sizes[count:] = MOVED * np.abs(here[count:]).max(initial=STILL)
@@ -160,9 +162,9 @@ def differenced(
 
 
 def _best(limits: list[tuple[Array, Array]]) -> tuple[Array, Array]:
-    """Choose the limit of least error, figure by figure, that no nearer one contradicts.
+    """Choose for each figure the limit of least error that no nearer limit contradicts.
 
-    Away from the value another set may hold, on which differences converge as well.
+    Further from the value another active set may act, on which differences converge as well.
     """
     values = np.array([value for value, _ in limits[1:]])
     apart = np.array([np.abs(b[0] - a[0]) for a, b in pairwise(limits)])
@@ -183,7 +185,7 @@ def _relative_error(error: Array, value: Array) -> float:
 
 
 def figures(train: Train, position: int, fine: bool) -> Array:
-    """Torques on drivers, then displacements in the planes of the gears."""
+    """Return the torques on drivers, then the displacements in the planes of the gears."""
     train = train_at(train, position)
     found = answered(train, position)
     if fine:
@@ -201,7 +203,7 @@ def figures(train: Train, position: int, fine: bool) -> Array:
 
 
 def answered(train: Train, position: int) -> Equilibrium:
-    """Return a certified equilibrium; what it leaves open need not be of least norm."""
+    """Return a certified equilibrium; its undetermined part need not be of least norm."""
     machine = Machine(train)
     found = machine.answer(machine.situations([position]), CERTIFY.tolerance, vectorised.settle)
     if found.passed[0]:
@@ -210,7 +212,7 @@ def answered(train: Train, position: int) -> Equilibrium:
 
 
 def judged(case: ls.Case, found: Sensitivity, item: Input, position: int, side: str) -> Verdict:
-    """Compare a derivative to one side with differences."""
+    """Compare a derivative on one side with differences."""
     rates = found.rates[position, item.key, side]
     sign = 1.0 if side == "rising" else -1.0
     value = np.array(list(rates.torque.values()))
@@ -246,7 +248,7 @@ def _compared(rates: object, known: tuple[Array, Array], count: int) -> Verdict:
     allowed = stated + known[1]
     excess = np.where(defined & (off > 0.0), off / np.maximum(allowed, 1e-300), 0.0)
     worst = float(excess.max(initial=0.0))
-    # Where differences see a derivative, its stated error must not drown it.
+    # If differences resolve a derivative accurately, its stated error must be small as well.
     seen = _relative_error(known[1][:count], known[0][:count]) < TEETH
     vague = seen and _relative_error(stated[:count], known[0][:count]) > TEETH
     return Verdict(
@@ -258,10 +260,10 @@ def _compared(rates: object, known: tuple[Array, Array], count: int) -> Verdict:
 
 
 def problem(seed: int, number: int) -> tuple[str, ls.Case, int] | None:
-    """Problem of a number, with a position; the same one every time.
+    """Return the problem of a number, with a position; the same one every time.
 
-    Five kinds take turns: shipped, stressed, drawn twice, and a shipped one on a critical value.
-    None where none was found that has one.
+    Five kinds alternate: shipped, stress, random (twice), and a shipped case on a critical value.
+    None if no case with a critical value was found.
     """
     rng = np.random.default_rng([seed, number])
     kind = number % 5
@@ -284,7 +286,7 @@ def problem(seed: int, number: int) -> tuple[str, ls.Case, int] | None:
 
 
 def critical(case: ls.Case, rng: np.random.Generator) -> tuple[str, ls.Case, int] | None:
-    """Put a case on one of its critical values along a length that it gives."""
+    """Put a case on one of its critical values along a length that it contains."""
     keys = [i for i in inputs_of(case, None) if i.value.si_unit == "m" and _varies(i.key)]
     if not keys:
         return None
@@ -307,7 +309,7 @@ def _varies(key: str) -> bool:
 
 
 def one(seed: int, number: int) -> dict[str, Any]:
-    """Compare the derivatives of one problem by some of its inputs, to both sides; plain data."""
+    """Compare derivatives of one problem by some of its inputs, both sides; return plain data."""
     drawn = problem(seed, number)
     if drawn is None:
         return {"name": "", "position": 0, "verdicts": []}
@@ -333,7 +335,7 @@ def one(seed: int, number: int) -> dict[str, Any]:
 
 
 def text(rows: Sequence[dict[str, Any]]) -> str:
-    """Return a Markdown table of all, and what is to be looked into."""
+    """Return a Markdown table of all results, and a list of those that need a closer look."""
     lines = []
     every = [v for row in rows for v in row["verdicts"]]
     for row in rows:
@@ -371,7 +373,7 @@ digits. A derivative *agrees* if it is within its own stated error of the differ
 
 
 def main() -> None:
-    """Run it, and print what was found."""
+    """Run the comparison and print the results."""
     what = "problems, each of some inputs"
     parser = kept.parser(str(__doc__), what, 400, "sensitivities")
     parser.add_argument("--seed", type=int, default=1)

@@ -1,9 +1,10 @@
-"""Tolerance study of the seed's transmission: time, rate, memory, and those of a peer's way.
+"""Tolerance study of the seed's transmission: time, rate and memory, also for a peer.
 
-Run with ``python -m benchmarks.tolerance [--samples N] [--workers K] [--peers N]``. The peer way is
-a loop over CVXPY with parameters, compiled once and solved again for every sample and position; it
-is given the first samples of the study, and its answers are compared with the study's. Neither
-building its data nor compiling it is in its time; all is in the study's.
+Run with ``python -m benchmarks.tolerance [--samples N] [--workers K] [--peers N]``. The peer is a
+loop over CVXPY with parameters, compiled once and solved again for every sample and position. It
+gets the first samples of the study, and its answers are compared with the study's. The time of the
+peer includes neither the preparation of its data nor its compilation; the time of the study
+includes everything.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ STUDY = "errors"
 
 
 def main() -> None:
-    """Run the study, then the peer way, and print a Markdown table."""
+    """Run the study, then the peer, and print a Markdown table."""
     parser = argparse.ArgumentParser(description="Time, rate and memory of a tolerance study.")
     parser.add_argument("--samples", type=int, default=1_000_000)
     parser.add_argument("--workers", type=int, default=2)
@@ -94,7 +95,7 @@ class Watch(threading.Thread):
         self.start()
 
     def run(self) -> None:
-        """Look five times a second."""
+        """Sample the memory five times a second."""
         while not self._done.wait(0.2):
             self.peak = max(self.peak, sum(map(_resident, self._processes())))
 
@@ -118,7 +119,7 @@ def _resident(process: str) -> int:
 
 
 def peer_way(case: ls.Case, found: Tolerance, count: int, ours: float) -> list[tuple[str, str]]:
-    """Solve the first samples by CVXPY with parameters; `ours` is the study's time each [s]."""
+    """Solve the first samples by CVXPY with parameters; `ours` is the study's time for each [s]."""
     entry = PEERS["CVXPY, parameters"]
     tolerance = min(entry.tolerances)
     peer = entry.make(tolerance)

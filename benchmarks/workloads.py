@@ -1,4 +1,4 @@
-"""What is measured: cases with many samples of errors, clearances and loads, at fixed seeds."""
+"""Workloads: cases with many samples of errors, clearances and loads, at fixed seeds."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ class Workload:
     ----------
     name, title : str
     kind : str
-        "QP" or "SOCP"; "law" is added where a nonlinear law needs an outer loop.
+        "QP" or "SOCP"; "law" is added if a nonlinear law needs an outer loop.
     case : Case
-        What the samples leave as it is.
+        The case that the samples change.
     samples : mapping of str to ndarray, shape (count,)
         By key and unit, as `loadshare.solve_many` takes them.
     peers : int
-        How many samples peers are given: the first ones.
+        Number of samples, the first ones, that peers are given.
     limits : mapping of str to (float, float)
-        Between which the samples of a key are drawn.
+        Limits between which the samples of a key are drawn.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Workload:
             yield self.case.replace(changes)
 
     def drawn(self, count: int) -> dict[str, Array]:
-        """Return so many samples, drawn as these are."""
+        """Return `count` samples with the same distribution."""
         return _drawn(self.name, self.limits, count)
 
     def some(self, count: int) -> dict[str, Array]:
@@ -94,7 +94,7 @@ def workloads(cases: Path, quick: bool) -> list[Workload]:
     Raises
     ------
     LoadshareError
-        If the folder does not hold the seed's cases.
+        If the folder does not contain the seed's cases.
     """
     folder = cases / "fgfbstts"
     if not folder.is_dir():
@@ -179,14 +179,14 @@ def _branched(size: int, curved: bool) -> tuple[Case, dict[str, tuple[float, flo
 
 
 def _law(stiffness: str) -> dict[str, str]:
-    """A law of which bending makes 0.7 and Hertz contact 0.3 where the mesh winds up by 1 mrad."""
+    """Return a law with 0.7 of bending and 0.3 of Hertz contact at a wind-up of 1 mrad."""
     k, unit = float(stiffness.split()[0]), "rad/(N*m)"
     hertz = 0.3 * (1e-3 * k) ** (1.0 / 3.0) / k
     return {"b": f"{0.7 / k!r} {unit}", "c": f"{hertz!r} {unit}^(2/3)"}
 
 
 def _with_laws(case: Case) -> Case:
-    """Give the meshes laws in place of their stiffness."""
+    """Give the meshes laws instead of stiffnesses."""
     changes: dict[str, Any] = {}
     for name, mesh in case.to_dict()["meshes"].items():
         changes[f"meshes.{name}.stiffness"] = None

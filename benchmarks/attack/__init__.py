@@ -1,1 +1,1 @@
-"""Tampered answers against the certificate: none may pass whose torque is wrong."""
+"""Tampered answers against the certificate: none may pass with a wrong torque."""

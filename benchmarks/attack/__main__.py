@@ -1,4 +1,4 @@
-"""Attack on the certificate: tampered answers, of which none may pass with a wrong torque.
+"""Attack on the certificate: no tampered answer may pass with a wrong torque.
 
 Run with ``python -m benchmarks.attack --count 10000 --page docs/evidence/attack.md``.
 """
@@ -16,7 +16,7 @@ from benchmarks.attack.ways import WAYS
 
 
 def text(found: list[Attack]) -> str:
-    """Table by way, and what slipped through."""
+    """Return a table of results by way of tampering, and the answers that slipped through."""
     lines = [
         f"{len(found)} tampered answers of {len({a.train for a in found})} trains",
         "",

@@ -1,8 +1,8 @@
 """Balance of forces and moments of a train, written from its data alone, and its null space.
 
-Nothing of the solver, the scene or the certificate is used: columns are forces as vectors on bodies
-(formulation, sections 1, 2, 5, 6), and self-stress is what NumPy's singular value decomposition
-leaves of them.
+Nothing of the solver, the scene or the certificate is used. The columns are force vectors on bodies
+(formulation, sections 1, 2, 5, 6); self-stresses are the null space of these columns, from NumPy's
+singular value decomposition.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from loadshare.train.situations import situation_of
 Array = NDArray[np.float64]
 
 RANK = 1e-11
-"""Singular value, over the largest, that counts as none."""
+"""Singular values below this fraction of the largest one count as zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,15 +34,15 @@ class Column:
     Attributes
     ----------
     field, name : str
-        Where it stands in the equilibrium.
+        Field of the equilibrium that holds the force, and its key there.
     axis : int
-        Component along the gear's frame, for vectors.
+        Of a vector: component along the gear's frame.
     unit : float
-        What one newton along the column is in the claim's unit.
+        Value of one newton along the column in the claim's unit.
     compliance : float
         [m/N] at the claimed force.
     acts : bool
-        Whether the claim has it closed, or it cannot open.
+        Whether the contact is closed in the claim, or cannot open.
     """
 
     field: str
@@ -55,7 +55,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Balance:
-    """Forces of a claim, and what they do on bodies.
+    """Forces of a claim, and their effect on bodies.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Balance:
 
     @cached_property
     def groups(self) -> list[list[str]]:
-        """Gears that turn as one, without those that turn with the output."""
+        """Groups of gears that turn as one, without the group of the output."""
         gears = self.train.gears
         groups = {name: [name] for name in gears}
         for shaft in self.train.shafts.values():
@@ -81,7 +81,7 @@ class Balance:
 
     @cached_property
     def rows(self) -> dict[tuple[str, str], int]:
-        """Number of the coordinate by gear and "x", "y", or "turn"."""
+        """Index of each coordinate by gear and "x", "y", or "turn"."""
         moving = [n for n, g in self.train.gears.items() if g.support is not None]
         found = {(gear, axis): 0 for gear in moving for axis in "xy"}
         found = {key: k for k, key in enumerate(found)}
@@ -92,7 +92,7 @@ class Balance:
 
     @cached_property
     def lever(self) -> Array:
-        """Radius [m] by which each coordinate turns; 1 for a way."""
+        """Radius [m] that converts each rotation into a length; 1 for displacements."""
         size = max(self.rows.values(), default=-1) + 1
         levers = np.ones(size)
         for group in self.groups:
@@ -103,7 +103,7 @@ class Balance:
 
     @cached_property
     def columns(self) -> tuple[tuple[Column, ...], Array]:
-        """All forces, and the matrix (coordinates, forces) of what each does."""
+        """All forces, and the matrix (coordinates, forces) of their effect on the coordinates."""
         made: list[Column] = []
         parts: list[Array] = []
 
@@ -186,16 +186,16 @@ class Balance:
 
     @cached_property
     def compliance(self) -> Array:
-        """[m/N] of every force."""
+        """Compliance [m/N] of every force."""
         return np.array([c.compliance for c in self.columns[0]])
 
     @cached_property
     def acting(self) -> NDArray[np.intp]:
-        """Numbers of the forces that act."""
+        """Indices of the forces that act."""
         return np.flatnonzero([c.acts for c in self.columns[0]])
 
     def null_space(self, some: NDArray[np.intp]) -> Array:
-        """Self-stress of some forces as columns, shape (forces, redundants)."""
+        """Return the self-stresses of some forces as columns, shape (forces, redundants)."""
         matrix = self.columns[1][:, some]
         _, sizes, right = np.linalg.svd(matrix, full_matrices=True)
         rank = int((sizes > RANK * max(sizes.max(initial=0.0), 1.0)).sum())
@@ -204,7 +204,7 @@ class Balance:
         return found
 
     def unbalance(self) -> float:
-        """Largest unbalanced force [N] of the claim, over its largest force: this file's test."""
+        """Return the largest unbalanced force over the largest force: a check of this module."""
         columns, matrix = self.columns
         load = np.zeros(len(self.lever))
         for gear, torque in situation_of(self.train, self.claim.index).torques.items():
@@ -244,7 +244,7 @@ class Balance:
         return radials[name]
 
     def followed(self, found: Equilibrium, more: Array) -> Equilibrium:
-        """Let displacements follow forces that were added, as nearly as the laws allow."""
+        """Return the claim with displacements that follow added forces, by least squares."""
         matrix = self.columns[1][:, self.acting]
         wanted = self.compliance[self.acting] * more[self.acting]
         moved = np.linalg.lstsq(-matrix.T, wanted, rcond=None)[0]

@@ -1,4 +1,4 @@
-"""What the certificate makes of tampered answers."""
+"""The verdict of the certificate on tampered answers."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from benchmarks.attack.ways import WAYS
 from loadshare.certify import certify
 
 EACH = 40
-"""Attacks on one victim."""
+"""Number of attacks on one victim."""
 ALLOWED = 1e-9
 """Error of a torque, over the largest one, above which no answer may pass."""
 ROUNDING = 1e-14
-"""Error, over the largest torque, that is that of the reference in double digits."""
+"""Error from rounding the reference to double precision, over the largest torque."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,8 @@ class Attack:
     error : float
         Of the worst torque, over the largest.
     margin : float
-        Least bound on a torque less its error, over the largest torque; infinite without bounds.
+        Smallest difference between the bound on a torque and its error, over the largest torque;
+        infinite without bounds.
     """
 
     train: str
@@ -43,19 +44,19 @@ class Attack:
 
     @property
     def slipped(self) -> bool:
-        """Whether a wrong torque passed."""
+        """Whether the answer passed with a wrong torque."""
         return self.passed and self.error > ALLOWED
 
 
 def attacks(seed: int, count: int, each: int = EACH) -> Iterator[Attack]:
-    """Yield so many attacks, on one victim after another.
+    """Yield `count` attacks, on one victim after another.
 
     Parameters
     ----------
     seed, count : int
-        The attacks depend on nothing else.
+        They alone determine the attacks.
     each : int
-        Attacks on one victim.
+        Number of attacks on one victim.
     """
     ways = list(WAYS)
     odds = np.array([WAYS[w][1] for w in ways])
@@ -64,7 +65,7 @@ def attacks(seed: int, count: int, each: int = EACH) -> Iterator[Attack]:
             return
         rng = np.random.default_rng([seed, number])
         order = rng.choice(ways, size=4 * each, p=odds / odds.sum())
-        # A way that this train gives no room is as good as tried.
+        # Some ways do not apply to this train, so more are drawn than are needed.
         tried = map(one, repeat(victim), order, repeat(rng))
         found = list(islice((a for a in tried if a is not None), min(each, count)))
         count -= len(found)
@@ -72,12 +73,12 @@ def attacks(seed: int, count: int, each: int = EACH) -> Iterator[Attack]:
 
 
 def part(share: tuple[int, int]) -> list[Attack]:
-    """Attack with one seed so many times, in a process of its own."""
+    """Return the attacks of one share (seed, count), in a process of its own."""
     return list(attacks(*share))
 
 
 def one(victim: Victim, way: str, rng: np.random.Generator) -> Attack | None:
-    """Tamper and judge; None where there is no room for this way."""
+    """Tamper with the victim's answer and judge the claim; None if the way does not apply to it."""
     claim = WAYS[way][0](victim, rng)
     if claim is None:
         return None

@@ -31,8 +31,8 @@ SHIPPED = (
     "two_path/clocking_error",
 )
 COMMON = 1e-2
-"""Shift of all gears together [m], which moves nothing against anything and makes every length of
-the case look large."""
+"""Common shift of all gears [m]: it changes no relative position, but makes every length of the
+case look large."""
 PATIENCE = 20.0
 """Processor time for the reference of one train [s]."""
 
@@ -47,7 +47,7 @@ class Victim:
     train : Train
     answer : Equilibrium
     torque : mapping of mesh to float
-        In 50 digits, rounded [N·m].
+        Computed in 50 digits, then rounded [N·m].
     """
 
     case: Case
@@ -57,7 +57,7 @@ class Victim:
 
     @property
     def largest(self) -> float:
-        """Largest torque [N·m], of flanks and from outside; flanks may squeeze each other."""
+        """Largest torque [N·m] of flanks or from outside; flanks may squeeze each other."""
         flanks = (
             abs(mesh.lever(d)) * self.answer.flank_force[mesh.flank_name(d)]
             for mesh in self.train.meshes.values()
@@ -67,7 +67,7 @@ class Victim:
         return max(*flanks, *map(abs, outside))
 
     def errors(self, found: Equilibrium) -> dict[str, float]:
-        """Error of every torque of a claim [N·m]."""
+        """Return the error of every torque of a claim [N·m]."""
         return {
             name: abs(
                 sum(mesh.lever(d) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks)
@@ -78,7 +78,7 @@ class Victim:
 
 
 def victim(case: Case, index: int) -> Victim | None:
-    """Solve a position and find its reference; None where it has no answer or no reference."""
+    """Solve a position and find its reference; None if it has no answer or no reference."""
     try:
         found = ls.explain(case, index)
         with limited(PATIENCE):
@@ -87,14 +87,15 @@ def victim(case: Case, index: int) -> Victim | None:
         return None
     if not any(exact.torque.values()):
         return None
-    # Everything is claimed, also what would follow from displacements, and can be tampered with.
+    # The claim also states the forces that would follow from displacements: they can be tampered
+    # with.
     claim = claim_of(found.train, found.equilibrium)
     answer = claim.equilibrium(index, found.equilibrium.undetermined)
     return Victim(case, found.train, answer, dict(exact.torque))
 
 
 def victims(seed: int) -> Iterator[Victim]:
-    """Yield shipped trains, those that are hard to judge, and drawn ones without end."""
+    """Yield shipped trains, trains that are hard to judge, and random trains without end."""
     for case in (*(ls.load_case(CASES / f"{name}.toml") for name in SHIPPED), *hard()):
         found = victim(case, 1)
         assert found is not None, case.name
@@ -119,7 +120,7 @@ def hard() -> Iterator[Case]:
 
 
 def in_series(ratio: float) -> Case:
-    """A stiff split behind a soft mesh: three planets, stiffer than the mesh that drives their sun.
+    """Return a stiff split behind a soft mesh: three planets whose sun is driven by a soft mesh.
 
     Parameters
     ----------
@@ -149,7 +150,7 @@ def in_series(ratio: float) -> Case:
 
 
 def shifted(case: Case, way: float) -> Case:
-    """Return the same train with all gears beside their places by the same way along x [m]."""
+    """Return the same train with all gears shifted by the same distance along x [m]."""
     data, offsets = case.to_dict(), build_train(case).offsets
     errors = data.setdefault("errors", {})
     for gear in data["gears"]:

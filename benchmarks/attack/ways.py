@@ -1,4 +1,4 @@
-"""Ways to tamper with an answer; each gives one claim that looks like an equilibrium, or none."""
+"""Ways to tamper with an answer; each returns a claim that looks like an equilibrium, or None."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FIELDS = (
     "support_force",
 )
 SMALLEST, LARGEST = 1e-13, 1e-2
-"""Sizes of self-stress and of moved forces, over the load."""
+"""Range of sizes of self-stress and of moved forces, over the load."""
 NUMBER = re.compile(r"\s*([-+0-9.eE]+)\s+(\S+)\s*")
 
 Claim = Equilibrium | None
@@ -37,17 +37,17 @@ Way = Callable[[Victim, np.random.Generator], Claim]
 
 
 def _spread(rng: np.random.Generator, low: float, high: float) -> float:
-    """Size between two, each decade as likely as the next."""
+    """Draw a size between two limits, uniformly in its logarithm."""
     return float(10.0 ** rng.uniform(math.log10(low), math.log10(high)))
 
 
 def _load(victim: Victim) -> float:
-    """Largest flank force [N]."""
+    """Return the largest flank force [N]."""
     return max(victim.answer.flank_force.values())
 
 
 def a_number(victim: Victim, rng: np.random.Generator) -> Claim:
-    """One claimed number, by 1e-12 to 1e-6 of itself."""
+    """Change one claimed number by a fraction of 1e-12 to 1e-6."""
     there = [(f, n) for f in FIELDS for n in getattr(victim.answer, f)]
     field, name = there[rng.integers(len(there))]
     table = dict(getattr(victim.answer, field))
@@ -61,7 +61,7 @@ def a_number(victim: Victim, rng: np.random.Generator) -> Claim:
 
 
 def all_numbers(victim: Victim, rng: np.random.Generator) -> Claim:
-    """Every claimed number, each by as much of itself at random."""
+    """Change every claimed number by a random fraction."""
     size = _spread(rng, 1e-12, 1e-6)
     fields: dict[str, Any] = {
         field: {
@@ -85,12 +85,12 @@ def _sized(victim: Victim, rng: np.random.Generator, direction: Array) -> Array:
 
 
 def self_stress(victim: Victim, rng: np.random.Generator) -> Claim:
-    """Balanced self-stress of what acts; displacements stay."""
+    """Add a balanced self-stress of the acting forces; displacements stay."""
     return _self_stress(victim, rng, follow=False)
 
 
 def self_stress_followed(victim: Victim, rng: np.random.Generator) -> Claim:
-    """Balanced self-stress of what acts; displacements follow."""
+    """Add a balanced self-stress of the acting forces; displacements follow."""
     return _self_stress(victim, rng, follow=True)
 
 
@@ -104,7 +104,7 @@ def _self_stress(victim: Victim, rng: np.random.Generator, follow: bool) -> Clai
 
 
 def weakest_self_stress(victim: Victim, rng: np.random.Generator) -> Claim:
-    """The self-stress that the laws resist least for its size, displacements following it.
+    """Add the self-stress that the laws resist least for its size; displacements follow.
 
     Stiff loops behind soft meshes hide most: this is the hardest to see.
     """
@@ -118,7 +118,7 @@ def weakest_self_stress(victim: Victim, rng: np.random.Generator) -> Claim:
 
 
 def self_stress_of_everything(victim: Victim, rng: np.random.Generator) -> Claim:
-    """Balanced self-stress of all forces, those of open contacts too."""
+    """Add a balanced self-stress of all forces, including those of open contacts."""
     balance = Balance(victim.train, victim.answer)
     space = balance.null_space(np.arange(len(balance.columns[0])))
     if space.shape[1] == 0:
@@ -128,7 +128,7 @@ def self_stress_of_everything(victim: Victim, rng: np.random.Generator) -> Claim
 
 
 def wrong_flank(victim: Victim, rng: np.random.Generator) -> Claim:
-    """A part of a flank's force on the other flank, or drawn instead of pushed."""
+    """Change the forces of a mesh's flanks by a part of the largest; a flank may even pull."""
     forces = dict(victim.answer.flank_force)
     mesh = list(victim.train.meshes.values())[rng.integers(len(victim.train.meshes))]
     part = _spread(rng, SMALLEST, 1.0)
@@ -144,7 +144,7 @@ def wrong_flank(victim: Victim, rng: np.random.Generator) -> Claim:
 
 
 def _rebalanced(victim: Victim, column: int, change: float) -> Equilibrium | None:
-    """Change one force [N] and let the others balance it, as little as they can."""
+    """Change one force [N] and balance it with the smallest change of the others."""
     balance = Balance(victim.train, victim.answer)
     some = np.union1d(balance.acting, [column])
     space = balance.null_space(some)
@@ -156,7 +156,7 @@ def _rebalanced(victim: Victim, column: int, change: float) -> Equilibrium | Non
 
 
 def dropped_contact(victim: Victim, rng: np.random.Generator) -> Claim:
-    """A contact that carries, or a part of it, let go; the others balance and follow."""
+    """Release a closed contact, wholly or in part; the others balance and displacements follow."""
     balance = Balance(victim.train, victim.answer)
     closed = [
         (k, getattr(victim.answer, c.field)[c.name])
@@ -168,7 +168,7 @@ def dropped_contact(victim: Victim, rng: np.random.Generator) -> Claim:
 
 
 def added_contact(victim: Victim, rng: np.random.Generator) -> Claim:
-    """A force on an open contact, which the others balance and follow."""
+    """Add a force on an open contact; the others balance and displacements follow."""
     balance = Balance(victim.train, victim.answer)
     opened = [
         k
@@ -182,7 +182,7 @@ def added_contact(victim: Victim, rng: np.random.Generator) -> Claim:
 
 
 def wrong_stage(victim: Victim, rng: np.random.Generator) -> Claim:
-    """A spline or round ring at another stage: more or less force, or its gear elsewhere."""
+    """Change the force of a spline or round ring, or the displacement of its gear."""
     names = {s.name: g for g, s in victim.train.splines.items()}
     names |= {r.name: r.gear for r in victim.train.rounds}
     if not names:
@@ -202,7 +202,7 @@ def wrong_stage(victim: Victim, rng: np.random.Generator) -> Claim:
 
 
 def another_case(victim: Victim, rng: np.random.Generator) -> Claim:
-    """The certified answer of a case of which one input is a little different."""
+    """Claim the certified answer of a case in which one input is slightly different."""
     keys = list(_quantities(victim.case.to_dict()))
     path, text = keys[rng.integers(len(keys))]
     number, unit = NUMBER.fullmatch(text).groups()  # type: ignore[union-attr]
@@ -234,7 +234,7 @@ def _quantities(data: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
 
 
 def another_load(victim: Victim, rng: np.random.Generator) -> Claim:
-    """All forces and displacements grown alike, where laws are straight and gaps nothing."""
+    """Scale all forces and displacements: another load's answer if laws are linear, gaps zero."""
     factor = 1.0 + rng.choice([-1.0, 1.0]) * _spread(rng, 1e-12, 1e-3)
     laws = (law for mesh in victim.train.meshes.values() for law in mesh.laws)
     if rng.integers(2) and all(isinstance(law, PowerLaw) and law.is_linear for law in laws):
@@ -261,4 +261,4 @@ WAYS: dict[str, tuple[Way, float]] = {
     "another case's answer": (another_case, 0.7),
     "another load": (another_load, 0.3),
 }
-"""Ways by what they do, and how often each is tried, over the others."""
+"""Ways of tampering by what they do, each with the relative frequency at which it is tried."""

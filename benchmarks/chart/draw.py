@@ -1,4 +1,4 @@
-"""Work-precision charts, and cost against the number of branches."""
+"""Work-precision charts, and time against the number of branches."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from benchmarks.drawing import altair, styled, write
 from benchmarks.peers import PEERS
 
 FLOOR = 1e-16
-"""Errors below one rounding are drawn here."""
+"""Smaller errors, below one rounding, are drawn here."""
 COLOURS = {
     "ours, batch": "#b30000",
     "ours, batch (new case)": "#d9544f",
@@ -50,7 +50,7 @@ SHAPES = (
 def draw_precision(measures: Sequence[Measure], titles: dict[str, str], folder: Path) -> list[Path]:
     """Draw error against time, one panel per workload.
 
-    A filled mark is the median error, the open one above it the worst, joined by a line.
+    A filled mark is the median error, the open mark above it the worst; a line joins them.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def draw_branches(measures: Sequence[Measure], folder: Path) -> list[Path]:
 
 
 def _by_method(measures: Sequence[Measure]) -> tuple[Any, Any]:
-    """Colours and shapes of the methods that were measured."""
+    """Return colours and shapes of the methods that were measured."""
     alt = altair()
 
     names = [n for n in (*OURS, *PEERS) if any(m.method == n for m in measures)]

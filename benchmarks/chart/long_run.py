@@ -1,4 +1,4 @@
-"""A million equilibria in bounded memory, in a process of its own so that the peak is its own."""
+"""A million equilibria in bounded memory, in a separate process so that the peak is its own."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ print(json.dumps({"equilibria": certified, "seconds": time.perf_counter() - star
 
 
 def long_run(workload: Workload, count: int = EQUILIBRIA) -> dict[str, float]:
-    """Solve very many samples of a workload and return how many, how long, and the peak of memory.
+    """Solve very many samples of a workload; return their number, the time and the peak of memory.
 
     Parameters
     ----------

@@ -30,9 +30,10 @@ OURS_NUMPY = "ours, batch (NumPy)"
 OURS_NEW, OURS_SOLVE = "ours, solve (new case)", "ours, solve (again)"
 OURS = (OURS_BATCH, OURS_FIRST, OURS_NUMPY, OURS_NEW, OURS_SOLVE)
 PATIENCE = 12.0
-"""Seconds that one method at one tolerance may take on a workload; then it has had its samples."""
+"""Seconds that one method at one tolerance may take on a workload; then no further samples are
+solved."""
 RUNS = 3
-"""Runs of a batch, of which the median counts."""
+"""Runs of a batch; the median counts."""
 
 Tell = Callable[[str], None]
 Answer = TypeVar("Answer")
@@ -46,24 +47,24 @@ class Measure:
     ----------
     workload, method : str
     tolerance : float or None
-        As requested from the method; None where it has none.
+        As requested from the method; None for a method without one.
     samples : int
-        Samples that it was given and whose error is known.
+        Samples that it was given and that have a reference.
     answered, certified : int
-        Of these: answers it claims, and answers that pass the certificate at 1e-9.
+        Of these: those that it answered, and those whose answers pass the certificate at 1e-9.
     microseconds, cpu : float
-        Median time of an answer, elapsed and of the processor [µs]; of a batch, its time over its
-        samples.
+        Median time of an answer, elapsed and of the processor [µs]; for a batch, its time divided
+        by the number of its equilibria.
     inside, inside_cpu : float
-        Of these the time inside the peer's compiled calls [µs]; NaN for what has none of its own.
+        The part of these times inside the peer's compiled calls [µs]; NaN if it has none.
     reported : float
-        Time that the peer's solver reports of itself [µs], which may leave updates of its data out.
+        Time that the peer's solver reports [µs], which may not include updates of its data.
     median, worst : float
         Relative error of its answers.
     setup : float
-        Preparation that is not in the time [ms].
+        Preparation that is not part of the time [ms].
     failure : str
-        Its message the first time it had no answer.
+        Message of the first sample without an answer.
     """
 
     workload: str
@@ -94,12 +95,12 @@ class Sample:
     Attributes
     ----------
     number : int
-        Among the workload's samples; those without a reference are left out.
+        Among the workload's samples. Samples without a reference are left out.
     case : Case
     train : Train
     form, reduced : Form
-        Whole, and with those contacts only that act in the answer of some sample: a better
-        reduction than can be had before all answers are known.
+        The whole problem, and the problem with only those contacts that act in the answer of some
+        sample: a better reduction than is possible before all answers are known.
     truth : Reference
     """
 
@@ -113,7 +114,7 @@ class Sample:
 
 @dataclass(slots=True)
 class Times:
-    """Times of answers [s], one of each kind per answer."""
+    """Times per answer [s]: one entry of each kind per timed piece of work."""
 
     wall: list[float] = field(default_factory=list)
     cpu: list[float] = field(default_factory=list)
@@ -124,7 +125,7 @@ class Times:
     def take(
         self, work: Callable[[], Answer], shared: int = 1, clock: Clock | None = None
     ) -> Answer:
-        """Time some work that answers so many samples at once; what fails is not counted."""
+        """Time work that gives `shared` answers at once; work that raises is not counted."""
         if clock is not None:
             clock.reset()
         cpu, wall = time.process_time(), time.perf_counter()
@@ -140,7 +141,7 @@ class Times:
         return found
 
     def microseconds(self) -> dict[str, float]:
-        """Medians [µs], under the names that they have in `Measure`."""
+        """Return the medians [µs] under the names of `Measure`."""
         kinds = ("wall", "cpu", "inside", "inside_cpu", "reported")
         medians = {
             k: 1e6 * float(np.median(v)) if (v := getattr(self, k)) else math.nan for k in kinds
@@ -172,7 +173,7 @@ def prepare(workload: Workload) -> list[Sample]:
 
 
 def error_of(sample: Sample, torque: dict[str, float], moved: dict[str, np.ndarray]) -> float:
-    """Relative error of torques and of determined floats against the reference, the larger one."""
+    """Return the relative error of torques or of determined floats, whichever is larger."""
     truth = sample.truth
     size = max(abs(t) for t in truth.torque.values())
     worst = max(abs(torque[m] - t) for m, t in truth.torque.items()) / size
@@ -185,7 +186,7 @@ def error_of(sample: Sample, torque: dict[str, float], moved: dict[str, np.ndarr
 
 
 def claimed(train: Train, found: Equilibrium) -> tuple[dict[str, float], dict[str, np.ndarray]]:
-    """Torques of an answer [N·m], and displacements [m] in the transverse frames."""
+    """Return the torques of an answer [N·m], and displacements [m] in the transverse frames."""
     torque = {}
     for name, mesh in train.meshes.items():
         parts = [mesh.lever(d) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks]
@@ -196,9 +197,10 @@ def claimed(train: Train, found: Equilibrium) -> tuple[dict[str, float], dict[st
 def measure(
     workload: Workload, methods: Iterable[str], tell: Tell, samples: Sequence[Sample] | None = None
 ) -> list[Measure]:
-    """Measure methods on a workload; ours before the peers and once more after them.
+    """Measure methods on a workload; ours before the peers and again after them.
 
-    A machine's speed changes within the minutes that the peers take: the mean of both times counts.
+    The computer's speed changes within the minutes that the peers take, so the mean of both times
+    counts.
 
     Parameters
     ----------
@@ -206,7 +208,7 @@ def measure(
     methods : iterable of str
         Names of peers, and of `OURS`.
     tell : callable
-        Called with what is being measured.
+        Called with the name of each measurement.
     samples : sequence of Sample, optional
         Prepared ones.
     """
@@ -263,9 +265,9 @@ def _summary(
 
 
 def _batch(workload: Workload, samples: Sequence[Sample], method: str) -> Measure:
-    """`loadshare.solve_many` of all positions on one core, everything included.
+    """Measure `loadshare.solve_many` for all positions on one core, everything included.
 
-    Of a case that was solved before, or as `OURS_FIRST` of one never seen (see `_single`).
+    The case was solved before; for `OURS_FIRST` it is a new object (see `_single`).
     """
     engine = "vectorised" if method == OURS_NUMPY else "compiled"
     keep = ("torque", "displacement")
@@ -282,7 +284,7 @@ def _batch(workload: Workload, samples: Sequence[Sample], method: str) -> Measur
 
     positions = build_train(workload.case).count
     _, setup = solve(min(16, workload.count))
-    # So many that what a call costs by itself does not decide how many are solved.
+    # The number of samples is found from a run long enough that the cost of a call hardly counts.
     needed, some = samples[-1].number + 1, min(workload.count, 1000)
     _, seconds = solve(some)
     count = int(min(workload.count, max(needed, PATIENCE * some / max(seconds, 1e-6))))
@@ -309,10 +311,10 @@ def _batch(workload: Workload, samples: Sequence[Sample], method: str) -> Measur
 
 
 def _single(workload: Workload, samples: Sequence[Sample], name: str) -> Measure:
-    """`loadshare.solve` at all positions: of a case never seen, or of one solved just before.
+    """Measure `loadshare.solve` at all positions, of a new case or of one solved just before.
 
-    A case is never seen if no such object was solved or built into a train before; what was learnt
-    of cases with other numbers is known.
+    A case is new if this object was never solved or built into a train; what was learnt from cases
+    with other numbers is still known.
     """
     errors, times, failure = [], Times(), ""
     setup = Times()

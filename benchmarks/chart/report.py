@@ -1,4 +1,4 @@
-"""The report on speed: what was measured, with what, and what the ratios are."""
+"""The report on speed: what was measured, with which tools, and the ratios of the times."""
 
 from __future__ import annotations
 
@@ -17,21 +17,22 @@ from benchmarks.chart.measure import (
 from benchmarks.peers import PEERS
 
 GOOD_WORST, GOOD_MEDIAN = 1e-9, 1e-12
-"""Errors of ours that a ratio requires."""
+"""Largest worst and median errors of ours with which a ratio counts."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ratio:
-    """How many times faster ours is, and the target; None for the record only.
+    """The ratio of a peer's time to ours, and its target.
 
     Attributes
     ----------
     workload, ours : str
     peers : tuple of str
-        Of these the one that is fastest counts.
+        The fastest of them counts.
     wanted : float or None
+        Target for how many times faster ours is; None if it is only recorded.
     calls : bool
-        Whether the peer's time is that inside its compiled calls, not all of it.
+        Whether only the time inside the peer's compiled calls counts.
     """
 
     workload: str
@@ -88,7 +89,7 @@ def speed_report(
     facts : mapping of str
         Versions, processor, date.
     memory : mapping of str to float
-        Equilibria, seconds and largest memory [MiB] of the long run; empty where it was left out.
+        Equilibria, seconds and largest memory [MiB] of the long run; empty if it was left out.
     seconds : float
         Of the whole measurement.
     quick : bool
@@ -234,7 +235,7 @@ def best(measures: Sequence[Measure], workload: str, method: str) -> Measure | N
 
 
 def _fastest(measures: Sequence[Measure], wanted: Ratio) -> tuple[Measure, float] | None:
-    """The fastest of the peers of a ratio, and its time [µs]; None where none has an answer."""
+    """Return the fastest of the peers of a ratio and its time [µs]; None if none has an answer."""
     found = [m for p in wanted.peers if (m := best(measures, wanted.workload, p)) is not None]
     timed = [(m, m.inside_cpu if wanted.calls else m.cpu) for m in found]
     return min(timed, key=lambda pair: pair[1], default=None)

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.chart` without the words: measure, save, draw, report."""
+"""The work of `python -m benchmarks.chart`: measure, save, draw, report."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SCALED = (
     "DAQP",
     "DAQP, reduced",
 )
-"""Methods on 4 to 64 branches."""
+"""Methods measured on 4 to 64 branches."""
 FIGURES = "speed.json"
 
 
@@ -37,7 +37,7 @@ def measure_all(cases: Path, quick: bool, tell: Callable[[str], None]) -> dict[s
     quick : bool
         Fewer samples, no long run.
     tell : callable
-        Called with what is being measured.
+        Called with the name of each measurement.
     """
     start = time.perf_counter()
     found: list[Measure] = []

@@ -1,11 +1,11 @@
-"""Critical values of random paths against dense scans: what is missed, invented, or raises.
+"""Critical values of random paths against dense scans: events that are missed, invented, or raise.
 
 Run with ``python -m benchmarks.critical_paths [--count N] [--points N] [--processes N]``. Every
 path is a random train (stars and split-torque trains with rings, splines, backlash, Hertz contact,
 tabulated laws, errors, elastic shafts and bearings) along one to three inputs that take the same
-value. Its events are compared with the states of all elements in a scan by the batch path,
-determined from forces and displacements alone; a path with another end must give the same events.
-The run may be stopped at any time; the same command goes on where it was.
+value. Its events are compared with the states of all elements in a scan by the batch path; the scan
+determines these states from forces and displacements alone. A path with another end must give the
+same events. The run may be stopped at any time; the same command continues it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Events of a path against a scan, and against those of a path with another end."""
+"""Comparison of the events of a path with a scan, and with those of a path with another end."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from loadshare.study.events import Event
 
 Array = NDArray[np.float64]
 NEAR = 2e-9
-"""Distance of a sample from an event, relative, at which its state is not compared."""
+"""Relative distance from an event within which the state of a sample is not compared."""
 SAME = 1e-11
-"""Distance, over the largest value, at which two paths have the same event."""
+"""Distance, over the largest value, within which two paths have the same event."""
 
 
 def compared(found: Critical, values: Array, seen: StatesByName) -> tuple[list[str], list[str]]:
-    """Return what events miss of a scan, and what they report that it does not show.
+    """Return the changes that events miss, and those that they report but a scan does not show.
 
-    Samples in intervals that are named as not proved are left out; beyond each of them states are
+    Samples in intervals that are named as not proved are left out; beyond each of them the state is
     taken from the scan again.
     """
     missed: list[str] = []
@@ -43,7 +43,7 @@ def compared(found: Critical, values: Array, seen: StatesByName) -> tuple[list[s
 
 
 def _disagreement(events: Sequence[Event], values: Array, states: NDArray[np.str_]) -> int | None:
-    """First sample whose state is not the one that events give; None if all agree."""
+    """Return the first sample whose state contradicts the events; None if all agree."""
     if not len(values):
         return None
     before = states[0] if not events else events[0].before
@@ -57,13 +57,13 @@ def _disagreement(events: Sequence[Event], values: Array, states: NDArray[np.str
 
 
 def between(found: Critical) -> Array:
-    """Values between neighbouring events, where a scan's steps may be too wide."""
+    """Return values between neighbouring events, where the steps of a scan may be too wide."""
     ends = sorted({found.start, found.stop, *(e.value for e in found.events)})
     return np.array([0.5 * (a + b) for a, b in pairwise(ends)])
 
 
 def apart(found: Critical, other: Critical) -> list[str]:
-    """Events that two ranges do not have in common although both hold them."""
+    """Return the events that differ between two ranges, where both contain them."""
     largest = max(abs(found.stop), abs(found.start))
     size = 1e-9 * largest
     top = other.stop - size

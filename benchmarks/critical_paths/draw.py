@@ -24,9 +24,9 @@ class Path:
     keys : tuple of str
     unit : str
     start, stop, other : float
-        Ends, and another upper end.
+        Ends of the path, and another upper end.
     machines : bool
-        Whether every value is a machine of its own.
+        Whether every value needs a machine of its own.
     """
 
     number: int
@@ -71,7 +71,7 @@ def _drawn(number: int, rng: np.random.Generator) -> Path:
 
 
 def text(value: float, unit: str) -> str | float:
-    """Write a value of a path as a case has it."""
+    """Return a value of a path as it is written in a case."""
     return f"{float(value)!r} {unit}" if unit else float(value)
 
 
@@ -115,7 +115,7 @@ Kind = tuple[Sequence[str], str, float, float, bool]
 
 
 def _kinds(bench: Workbench, rng: np.random.Generator) -> Iterable[Kind]:
-    """Yield inputs that the case has: keys, unit, ends, and whether they change the machine."""
+    """Yield inputs of the case: keys, unit, ends, and whether they change the machine."""
     data = bench.data
     errors = [f"errors.{g}.installation.amount" for g in data.get("errors", {})]
     yield errors, "um", 0.0, 1e6 * DEFLECTION * 10.0 ** rng.uniform(0.0, 1.2), False

@@ -1,4 +1,4 @@
-"""One path judged: its events, a scan, and a path of another end."""
+"""Verdict on one path: its events against a scan and a path with another end."""
 
 from __future__ import annotations
 
@@ -22,29 +22,29 @@ from loadshare.study.follow.line import Line
 Array = NDArray[np.float64]
 StatesByName = NDArray[np.str_]
 EVERY = 3
-"""Each how many-th path is followed to another end as well."""
+"""One path in this many is also followed to another end."""
 
 
 @dataclass(slots=True)
 class Outcome:
-    """What became of a path.
+    """The result for one path.
 
     Attributes
     ----------
     keys, unit, start, stop
-        The path's own.
+        Those of the path.
     seconds, scanning : float
-        Processor time of finding its events, and of the scan.
+        Processor time to find its events, and of the scan.
     events, unproved, unconfirmed : int
-        How many there are.
+        Numbers of events, unproved intervals and unconfirmed events.
     width : float
-        Of what is not proved, over the range.
+        Width of the unproved intervals, over the range.
     asked : int
-        Samples of the scan with a certified answer.
+        Number of samples of the scan with a certified answer.
     missed, invented : list of str
-        Where the scan shows other changes.
+        Changes that only the scan, or only the events show.
     moved : list of str
-        Events that a path of another end has elsewhere.
+        Events that differ on a path with another end.
     refused, raised : str
         Why there are no events.
     """
@@ -95,7 +95,7 @@ def judged(path: Path, points: int, engine: str) -> Outcome:
 
 
 def followed(path: Path, stop: float) -> Critical:
-    """Find a path's events up to an end."""
+    """Return a path's events up to an end."""
     ends = [text(v, path.unit) for v in (path.start, stop)]
     return ls.critical(path.case, path.keys, *ends, positions=[1])
 
@@ -103,14 +103,14 @@ def followed(path: Path, stop: float) -> Critical:
 def shown(
     path: Path, found: Critical, points: int, engine: str
 ) -> tuple[Array, dict[str, StatesByName]]:
-    """Scan a path at so many values, and between its events: the values, and states there."""
+    """Scan a path at `points` values and between its events; return the values and states."""
     line = Line(path.case, found.parameter, path.start, path.stop)
     values = np.union1d(np.linspace(path.start, path.stop, points), between(found))
     return values, scanned(path, line, values, engine)
 
 
 def _answered(seen: Mapping[str, StatesByName], count: int) -> int:
-    """Number of samples of which any state is known."""
+    """Return the number of samples in which any state is known."""
     answered = np.zeros(count, dtype=bool)
     for states_by_name in seen.values():
         answered |= states_by_name != ""
@@ -118,5 +118,5 @@ def _answered(seen: Mapping[str, StatesByName], count: int) -> int:
 
 
 def one(points: int, engine: str, number: int) -> dict[str, Any]:
-    """Judge one path; plain data."""
+    """Judge one path; return plain data."""
     return asdict(judged(random_path(number), points, engine))

@@ -23,13 +23,13 @@ from loadshare.train.samples import samples_of
 
 Array = NDArray[np.float64]
 StatesByName = dict[str, NDArray[np.str_]]
-"""States of elements at the values of a scan, by name."""
+"""States of each element at the values of a scan, by name."""
 BAND = 1e-8
 """Force over load, or radius over deflection, within which a scan does not decide on a state."""
 BLOCK = 8192
 """Samples solved together."""
 CLIMBING = 20
-"""Samples of a block at most that climb the ladder where the hot path has no answer."""
+"""Most samples of a block that go through the slower methods when the hot path has no answer."""
 
 
 def states_by_name(
@@ -75,7 +75,7 @@ def states_by_name(
 
 
 def _spline_state(law: at.Graph, radius: Array, force: Array) -> Array:
-    """State of a spline by radius and force over the units; empty within round-off of a corner."""
+    """Return the state of a spline from scaled radius and force; empty close to a corner."""
     jump = law.bound > law.first * law.stick * (1.0 + 1e-9)
     state = np.where(radius < law.reach, "slip", "stop")
     state = np.where(radius < law.stick, "stick", state)
@@ -87,7 +87,7 @@ def _spline_state(law: at.Graph, radius: Array, force: Array) -> Array:
 
 
 class Balance(Judge):
-    """A judge of balance alone: states do not hang on bounds, which take ten times as long."""
+    """A judge of balance alone: states do not depend on bounds, which take ten times as long."""
 
     def judge(self, *given: Any, **named: Any) -> Verdicts:
         """Judge equilibria as if all torques were bounded."""
@@ -98,16 +98,16 @@ class Balance(Judge):
 
 
 class Scan(Machine):
-    """A machine that asks for balance alone."""
+    """A machine whose certificate checks balance alone."""
 
     @cached_property
     def judge(self) -> Judge:
-        """Its certificate."""
+        """Certificate that checks balance alone."""
         return Balance(self.train)
 
 
 def _thinned(rows: NDArray[np.intp], most: int) -> NDArray[np.intp]:
-    """Every how many-th row there may be."""
+    """Return every n-th row, such that at most `most` remain."""
     return rows[:: max(1, -(-len(rows) // most))]
 
 
@@ -135,7 +135,7 @@ def scanned(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
 
 
 def _climbed(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
-    """States by the ladder from the hot path to the slowest way."""
+    """Return states from the whole sequence of methods, from the hot path to the slowest."""
     states: StatesByName = {}
     table = _table(path, values)
     for block in solve_blocks(path.case, table, positions=[1], engine=engine, workers=1):

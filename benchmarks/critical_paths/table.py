@@ -1,4 +1,4 @@
-"""What a run of random paths came to, as Markdown."""
+"""The results of a run of random paths, as Markdown."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FAULTS = ("missed", "invented", "moved")
 
 
 def text(rows: Sequence[Row]) -> str:
-    """Return a table of all paths, and those with something to look into."""
+    """Return a table of all paths, and a list of those that need a closer look."""
     faults = [line for row in rows for line in _fault_lines(row)]
     parts = [
         summary(rows),

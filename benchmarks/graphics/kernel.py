@@ -1,7 +1,8 @@
-"""The compiled kernel of the hot path for CUDA: its own functions, one sample to a thread.
+"""The compiled kernel of the hot path for CUDA: the same functions, one sample to a thread.
 
-What `loadshare.solver.hot.kernel` does side by side along the last axis, a thread does for a width
-of one, in local memory. It goes from set to set by itself, as `exchange` does with all samples.
+`loadshare.solver.hot.kernel` works on samples side by side along the last axis; a thread does so
+for a width of one, in local memory. It exchanges its active set alone, as `exchange` does for all
+samples.
 """
 
 # Numba has no types.
@@ -31,10 +32,10 @@ from loadshare.solver.hot.kernel.set_arrays import SetArrays
 from loadshare.solver.hot.kernel.work import _EACH, _RADIAL, _SPRING, Work
 
 ASKED = -2
-"""Verdict on a sample that needs a set which is not prepared."""
+"""Verdict on a sample that needs an active set that is not prepared."""
 
 _NUMPY = ModuleType("numpy")
-"""What the kernel uses of NumPy, as CUDA knows it."""
+"""The functions of NumPy that the kernel uses, as CUDA knows them."""
 _NUMPY.__dict__.update(
     inf=np.inf,
     sqrt=math.sqrt,
@@ -46,14 +47,14 @@ _NUMPY.__dict__.update(
 
 
 def on_device(function: Any, known: dict[Any, Any] | None = None) -> Any:
-    """Return a function that Numba compiles for the processor as one that CUDA compiles.
+    """Return a function that Numba compiles for the CPU as one that CUDA compiles.
 
     Parameters
     ----------
     function
-        A function or a dispatcher of Numba; what it calls is translated with it.
+        A function or a dispatcher of Numba; the functions it calls are translated with it.
     known : dict, optional
-        What has been translated already.
+        Functions that have been translated already.
     """
     known = {} if known is None else known
     plain = getattr(function, "py_func", function)
@@ -200,7 +201,7 @@ def _work(s, n, pool, numbers, marks):
 
 @cuda.jit(device=True)
 def _number(states, keys, order, key_of):
-    """Number of a set among those prepared, −1 if it is not; see `exchange`."""
+    """Return the index of an active set among those prepared, −1 if it is not; see `exchange`."""
     key = np.int64(0)
     for k in range(states.shape[0]):
         key += key_of[k] * states[k]
@@ -229,15 +230,15 @@ def _without_wedges(opposed, here, proposal):
 
 
 def settling(floats: int, switches: int, registers: int | None = None) -> Any:
-    """Return the kernel for samples that need so many floats, and so many switches.
+    """Return the kernel for samples that need given numbers of floats and switches.
 
-    Both are literal in it, so that a thread has what it works on in local memory.
+    Both are literals in it, so that the arrays of a thread lie in local memory.
 
     Parameters
     ----------
     floats, switches : int
     registers : int, optional
-        That a thread has at most; fewer registers leave room for more threads.
+        Most registers of a thread; fewer registers leave room for more threads.
     """
 
     @cuda.jit(max_registers=registers)
@@ -280,7 +281,7 @@ def settling(floats: int, switches: int, registers: int | None = None) -> Any:
 
 
 def floats_of(numbers: NDArray[np.intp], n: int) -> int:
-    """Return how many floats a thread works with, at most.
+    """Return the largest number of floats that a thread works with.
 
     Parameters
     ----------

@@ -33,14 +33,14 @@ from loadshare.train.samples import samples_of
 from loadshare.train.situations import stack
 
 RUNS = 3
-"""Runs, of which the median counts."""
+"""Number of runs; the median counts."""
 BLOCKS = (64, 128, 256)
-"""Threads of a block that are tried."""
+"""Numbers of threads per block that are tried."""
 
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """A workload on both.
+    """The measurement of a workload on a core and on the device.
 
     Attributes
     ----------
@@ -48,18 +48,18 @@ class Measure:
     title : str
     equilibria : int
     core, device, moved : float
-        Time of an equilibrium on a core, on the device, and of moving what it takes and what it
-        finds [µs].
+        Time of an equilibrium on a core, on the device, and for moving its input and its answer
+        [µs].
     threads : int
         Threads of a block on the device.
     sets : int
-        Sets that samples visited.
+        Number of active sets that samples visited.
     visits : float
-        Sets that a sample visits, on average.
+        Mean number of active sets that a sample visits.
     settled, settled_by_core : int
-        Equilibria that either finds by itself.
+        Number of equilibria that the device finds, and that the core finds.
     alike : int
-        Of those that both find, how many are on the same set.
+        Number of equilibria that both find on the same active set.
     worst : float
         Largest difference of forces on the same set, over the largest force of the sample.
     """
@@ -81,7 +81,7 @@ class Measure:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Prepared:
-    """Samples of a machine, and where they begin."""
+    """Samples of a machine, and their start."""
 
     structure: Structure
     loading: Loading
@@ -89,12 +89,12 @@ class Prepared:
     states: States
 
     def fresh(self) -> Iterate:
-        """Return the iterate at the start, as a copy."""
+        """Return a copy of the iterate at the start."""
         return self.iterate.take(np.arange(self.loading.count))
 
 
 def prepared(workload: Workload, count: int) -> Prepared:
-    """Return so many equilibria, of all positions; each begins where the linear rule says."""
+    """Return `count` equilibria over all positions; each starts on the set the rule predicts."""
     positions = range(1, build_train(workload.case).count + 1)
     ((_, samples),) = samples_of(workload.case, workload.drawn(count // len(positions)))
     machine = Machine(samples.train)
@@ -108,7 +108,7 @@ def prepared(workload: Workload, count: int) -> Prepared:
 
 
 def on_core(start: Prepared) -> tuple[float, Iterate, Found]:
-    """Settle on one core; return the time [s], and what is found."""
+    """Settle on one core; return the time [s], the iterate and what was found."""
     times = []
     for _ in range(RUNS):
         iterate = start.fresh()
@@ -122,7 +122,7 @@ _KEYS = np.random.default_rng(5).integers(1 << 62, size=1 << 12) | 1
 
 
 class Device:
-    """Samples on the device, with the sets that are prepared so far."""
+    """Samples on the device, with the active sets that are prepared so far."""
 
     def __init__(self, start: Prepared, kernel: Any, floats: int) -> None:
         self.start, self.kernel, self.floats = start, kernel, floats
@@ -151,7 +151,7 @@ class Device:
         self.lookup = *(cuda.to_device(np.ascontiguousarray(one)) for one in lookup), self.opposed
 
     def begin(self) -> None:
-        """Bring the samples where they begin."""
+        """Put the samples back to their start."""
         iterate, states, count = self.start.fresh(), self.start.states, self.start.loading.count
         given = Given(
             np.arange(count),
@@ -188,7 +188,7 @@ class Device:
         return float(cuda.event_elapsed_time(begun, ended)) * 1e-3
 
     def settle(self, threads: int) -> int:
-        """Settle all samples, preparing the sets that they ask for; return how often."""
+        """Settle all samples, preparing the sets they ask for; return the number of launches."""
         self.begin()
         some, times = self._order(np.arange(self.start.loading.count)), 0
         while len(some):
@@ -197,14 +197,14 @@ class Device:
             asked = self.given.verdict.copy_to_host() == ASKED
             some = np.flatnonzero(asked)
             if len(some):
-                # A set that was asked for is prepared the next time.
+                # A set that was asked for is prepared for the next launch.
                 more = np.unique(self.states.copy_to_host()[some], axis=0)
                 self.sets = np.unique(np.concatenate([self.sets, more]), axis=0)
                 self._pack()
         return times
 
     def timed(self, threads: int) -> float:
-        """Return the median time of all samples [s], every set prepared."""
+        """Return the median time of all samples [s] when every set is prepared."""
         some, times = self._order(np.arange(self.start.loading.count)), []
         for _ in range(RUNS):
             self.begin()
@@ -212,14 +212,14 @@ class Device:
         return float(np.median(times))
 
     def _order(self, some: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Samples that begin on one set one after another: neighbours take the same steps."""
+        """Return samples sorted by their first set, so that neighbours take the same steps."""
         keys = self.start.states[some].astype(np.int64) @ _KEYS[: self.sets.shape[1]]
         return some[np.argsort(keys, kind="stable")]
 
     def moved(self) -> float:
         """Return the median time to bring samples to the device and answers back [s].
 
-        In memory whose pages stay where they are, and that is there on both sides.
+        The host memory is pinned, and memory is allocated on both sides before.
         """
         there = [*self.samples, self.given.roots, self.states]
         back = [self.given.xs, self.given.forces, self.given.verdict, self.states]
@@ -238,7 +238,7 @@ class Device:
 
 
 def measured(workload: Workload, start: Prepared, kernel: Any, floats: int) -> Measure:
-    """Measure a workload on both, and compare what they find."""
+    """Measure a workload on both, and compare the answers."""
     count = start.loading.count
     core, iterate, found = on_core(start)
     device = Device(start, kernel, floats)
@@ -271,13 +271,13 @@ def measured(workload: Workload, start: Prepared, kernel: Any, floats: int) -> M
 
 
 def kernel_for(starts: list[Prepared], registers: int | None = None) -> tuple[Any, int]:
-    """Return one kernel that holds sets of all, and the floats that a thread has."""
+    """Return one kernel that suits the sets of all, and the number of floats of a thread."""
     floats = 2 * max(_floats(start, np.unique(start.states, axis=0)) for start in starts)
     return settling(floats, max(start.states.shape[1] for start in starts), registers), floats
 
 
 def device_facts(kernel: Any) -> dict[str, str]:
-    """Return the device, and what a thread of the kernel takes."""
+    """Return the device, and the registers and local memory of a thread of the kernel."""
     (registers,) = kernel.get_regs_per_thread().values()
     (local,) = kernel.get_local_mem_per_thread().values()
     return {
@@ -289,6 +289,6 @@ def device_facts(kernel: Any) -> dict[str, str]:
 
 
 def _floats(start: Prepared, sets: States) -> int:
-    """Floats that a thread works with on the largest of some sets."""
+    """Return the number of floats that a thread needs for the largest of some sets."""
     _, numbers, begins = packed_sets(start.structure, start.loading, sets)
     return max(floats_of(numbers[at:], start.structure.size) for at in begins[:, 1])

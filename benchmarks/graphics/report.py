@@ -60,7 +60,7 @@ def write(figures: Mapping[str, Any], folder: Path) -> list[Path]:
 
 
 def _line(row: Mapping[str, Any]) -> str:
-    """Row of the table for a workload."""
+    """Return the row of the table for a workload."""
     return (
         f"| {row['title']} | {row['core']:.2f} | {row['device']:.3f} "
         f"| {row['core'] / row['device']:.0f} | {row['moved']:.3f} | {row['sets']} "
@@ -70,7 +70,7 @@ def _line(row: Mapping[str, Any]) -> str:
 
 
 def _drawn(rows: Sequence[Mapping[str, Any]]) -> Any:
-    """Draw the three times of every workload, on a logarithmic axis."""
+    """Draw the three times of every workload on a logarithmic axis."""
     alt = drawing.altair()
     values = [
         {"workload": row["title"], "where": where, "time": row[name]}

@@ -1,4 +1,4 @@
-"""The peers: other ways to the same equilibrium, each in its own file, all given the same data."""
+"""The peers: other solvers of the same equilibrium, one per file, all given the same data."""
 
 from __future__ import annotations
 

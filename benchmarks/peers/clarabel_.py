@@ -1,7 +1,7 @@
 """Clarabel, called directly: a new solver in every pass, or one that is updated.
 
-Best practice: presolve off (an update is refused after it), tolerances not below 1e-11, Newton's
-outer loop; Picard's as a variant.
+Best practice: presolve off (updates are refused after it), tolerances of at least 1e-11, and
+Newton's outer loop; Picard's is a variant.
 """
 
 from __future__ import annotations
@@ -95,5 +95,5 @@ class Clarabel:
 
 
 def make(tolerance: float) -> Clarabel:
-    """Return Clarabel, new in every pass."""
+    """Return Clarabel with a new solver in every pass."""
     return Clarabel(tolerance, update=False)

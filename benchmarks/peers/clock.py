@@ -1,4 +1,4 @@
-"""Time inside a peer's compiled calls: what is left of a peer without the Python around it."""
+"""Time inside a peer's compiled calls, without the Python code around them."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from typing import Any, TypeVar
 
 Returned = TypeVar("Returned")
 TRIALS = 501
-"""Empty calls by which the clock's own cost is known."""
+"""Number of empty calls from which the cost of reading the clock is found."""
 
 
 class Clock:
-    """Adds up time inside calls, and what solvers report of themselves.
+    """Sum of the time inside calls, and of the time that solvers report.
 
     Attributes
     ----------
     wall, cpu : int
-        Elapsed and processor time inside the calls, less what it costs to look at the clock [ns].
+        Elapsed and processor time inside the calls, less the cost of reading the clock [ns].
     reported : float
-        Time that the solver itself reports [s]; it may leave out updates of its data.
+        Time that the solver itself reports [s]; it may not include updates of its data.
     """
 
     def __init__(self) -> None:
@@ -34,7 +34,7 @@ class Clock:
         self.reset()
 
     def reset(self) -> None:
-        """Start again."""
+        """Reset all times to zero."""
         self.wall = self.cpu = 0
         self.reported = 0.0
 
@@ -48,5 +48,5 @@ class Clock:
         return found
 
     def report(self, seconds: Any) -> None:
-        """Add what a solver says of itself; what says nothing adds nothing."""
+        """Add the time that a solver reports, if it reports any."""
         self.reported += float(seconds or 0.0)

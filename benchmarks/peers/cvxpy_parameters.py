@@ -14,7 +14,7 @@ from loadshare.contact.radial import RadialLaw
 
 
 class CvxpyParameters:
-    """Disciplined parametrised programming; recompiled where a radial law changes its pieces."""
+    """Disciplined parametrised programming; recompiled when the pieces of a radial law change."""
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
@@ -30,7 +30,7 @@ class CvxpyParameters:
         self._x, y = cp.Variable(form.size), cp.Variable(count)
         self._load, self._gaps = cp.Parameter(form.size), cp.Parameter(count)
         self._root = cp.Parameter(count, nonneg=True)
-        # Only the faces of arcs turn; the rows of flanks and stops are constants.
+        # Only the faces of arcs change direction; the rows of flanks and stops are constants.
         fixed = np.setdiff1d(np.arange(count), form.arcs.rows)
         self._fixed, self._turning = fixed, form.arcs.rows
         self._faces = cp.Parameter((len(form.arcs.rows), form.size)) if count > len(fixed) else None
@@ -83,7 +83,7 @@ class CvxpyParameters:
 
 
 def _shape(laws: Sequence[RadialLaw]) -> list[tuple[tuple[float, bool], ...]]:
-    """What of radial laws is written into the problem."""
+    """Return the part of radial laws that is written into the problem as constants."""
     return [tuple((p.stiffness, bool(np.isfinite(p.length))) for p in law.pieces) for law in laws]
 
 

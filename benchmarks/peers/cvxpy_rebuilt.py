@@ -1,4 +1,4 @@
-"""CVXPY as most people use it: the problem written again in every pass, Clarabel underneath."""
+"""CVXPY as most people use it: the problem written again in every pass, solved by Clarabel."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class CvxpyRebuilt:
         self.tolerance = tolerance
 
     def prepare(self, form: Form) -> None:
-        """Nothing can be prepared."""
+        """Do nothing: nothing can be prepared."""
 
     def solve(self, form: Form) -> Claim:
         """See `Peer`."""
@@ -48,14 +48,15 @@ class CvxpyRebuilt:
 
 
 def radial(offset: Any, law: RadialLaw, parameters: list[Any] | None = None) -> tuple[Any, ...]:
-    """Energy of a radial law as an inf-convolution, its offset equation, and its discs.
+    """Return the energy of a radial law as an inf-convolution, its offset equation, and its discs.
 
     Parameters
     ----------
     offset : cvxpy expression, shape (2,)
     law : RadialLaw
     parameters : list, optional
-        Where forces and lengths of the pieces are kept as parameters, to be changed later.
+        List to which forces and lengths of the pieces are appended as parameters, to be changed
+        later.
     """
     import cvxpy as cp
 
@@ -83,7 +84,7 @@ def solve_with_clarabel(problem: Any, tolerance: float) -> None:
     Raises
     ------
     Failure
-        If CVXPY has no answer, or throws an inaccurate one away.
+        If CVXPY has no answer, or discards an inaccurate one.
     """
     import warnings
 
@@ -102,7 +103,7 @@ def solve_with_clarabel(problem: Any, tolerance: float) -> None:
 
 
 def square_root(matrix: Array) -> Array:
-    """L with L Lᵀ = H for a semidefinite H."""
+    """Return L with L Lᵀ = H for a semidefinite H."""
     values, vectors = np.linalg.eigh(matrix)
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 

@@ -1,6 +1,6 @@
-r"""DAQP: a dual active-set method, given the force form, which is positive definite.
+r"""DAQP: a dual active-set method, applied to the force form, which is positive definite.
 
-The primal form has a singular Hessian, for gears that only contacts hold. In the forces F of the
+The Hessian of the primal form is singular if only contacts hold a gear. In the forces F of the
 rows, with :math:`H^{+}` the pseudo-inverse and Z a basis of the null space of H,
 
 .. math:: \min_{F \ge 0} \tfrac12 F^T (B + A H^{+} A^T) F + (g - A H^{+} f)^T F
@@ -22,7 +22,7 @@ from benchmarks.peers.loop import Claim, Failure, NotForThis, settle
 from loadshare.contact.radial import RadialLaw
 
 EQUATION = 5
-"""DAQP's word for an equation."""
+"""DAQP's code for an equation."""
 
 
 class Daqp:
@@ -34,7 +34,7 @@ class Daqp:
         self._model: Any = None
 
     def prepare(self, form: Form) -> None:
-        """Factorise the springs and set the model up."""
+        """Factorise the stiffness matrix and set up the model."""
         import daqp
 
         if form.kind != "QP":
@@ -53,7 +53,7 @@ class Daqp:
         self._model = daqp.Model()
         upper, lower = self._limits(form)
         matrix = self._flexible + np.diag(form.linear + form.hertz)
-        # Rigid contacts that oppose each other leave the Hessian singular: proximal passes then.
+        # Opposed rigid contacts make the Hessian singular, which needs proximal passes.
         sizes = np.linalg.eigvalsh(matrix)
         singular = len(sizes) > 0 and sizes[0] < 1e-10 * sizes[-1]
         self._model.settings = {

@@ -1,12 +1,12 @@
-r"""DAQP on the reduced problem in its redundants: no equation is left, and few variables.
+r"""DAQP on the problem reduced to its redundants: no equations, and few variables.
 
 With :math:`F = F_0 + N z`, where :math:`Z^T A^T F_0 = Z^T f` and :math:`Z^T A^T N = 0`,
 
 .. math:: \min_z \tfrac12 z^T N^T M N z + N^T (M F_0 + g - A H^{+} f)^T z
           \quad \text{s.t.} \quad N z \ge -F_0 , \qquad M = B + A H^{+} A^T .
 
-It is the force method that ours uses, for a solver that finds the active set. The basis N is
-written again where the faces of arcs turn; that is not in the time of its calls.
+It is the force method of `loadshare`, but DAQP finds the active set. The basis N is computed again
+when the faces of arcs change direction; this is not part of the time of its calls.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class DaqpReduced:
         self._model: Any = None
 
     def prepare(self, form: Form) -> None:
-        """Factorise the springs and set the model up."""
+        """Factorise the stiffness matrix and set up the model."""
         import daqp
 
         if form.kind != "QP":
@@ -62,7 +62,7 @@ class DaqpReduced:
             raise Failure(f"DAQP: set-up ends with exit flag {flag}")
 
     def _reduce(self, rows: Array) -> None:
-        """Write the statics of rows."""
+        """Compute the statics of rows: a particular solution, and the basis of redundants."""
         self._spread = rows @ self._inverse
         self._flexible = self._spread @ rows.T
         self._ties = rows @ self._loose
@@ -97,7 +97,7 @@ class DaqpReduced:
         if flag < 1:
             raise Failure(f"DAQP: exit flag {flag}")
         forces = self._first + self._basis @ np.asarray(z)
-        # What is compressed neither too much nor too little, at the rows that carry.
+        # Coordinates without springs follow from compatibility at the rows that carry.
         carries = np.asarray(info["lam"]) == 0.0
         off = flexible @ forces + self._gaps
         loose = np.linalg.lstsq(self._ties[carries], off[carries], rcond=1e-12)[0]

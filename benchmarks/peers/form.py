@@ -1,8 +1,8 @@
-"""The common problem: what every peer is given, dimensionless and with rows of unit norm.
+"""The common problem that every peer is given, dimensionless and with rows of unit norm.
 
-It is the whole scene of one sample with the coordinates condensed that only springs touch: nothing
-else is left out and nothing is decided. Peers that need an outer loop share one (`loop`); what they
-return is turned back into an equilibrium of the train, and judged like any answer.
+It is the whole scene of one sample, except that coordinates that only springs touch are condensed:
+nothing else is left out and nothing is decided. Peers that need an outer loop share one (`loop`);
+their answer is turned back into an equilibrium of the train, and judged like any other.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ class Arcs:
     Attributes
     ----------
     rows : ndarray of int, shape (k,)
-        Their rows in the form.
+        Indices of their rows in the form.
     start : ndarray, shape (k, 3)
     relative : ndarray, shape (k, 3, n)
     allowed : ndarray, shape (k,)
     margin_at_rest : ndarray, shape (k,)
-        Free of cancellation.
+        Computed without cancellation.
     sagitta : ndarray, shape (k,)
-        Room that an arc leaves beyond its face at rest.
+        Space that the arc leaves free beyond its face at rest.
     """
 
     rows: NDArray[np.intp]
@@ -47,7 +47,7 @@ class Arcs:
     sagitta: Array
 
     def faces(self, x: Array) -> tuple[Array, Array]:
-        """Tangent faces at x: rows (k, n) before normalisation, and gaps (k,)."""
+        """Return the tangent faces at x: rows (k, n) before normalisation, and gaps (k,)."""
         moved = self.relative @ x
         d = self.start + moved
         here = np.sqrt(np.einsum("ki,ki->k", d, d))
@@ -61,7 +61,7 @@ class Arcs:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Graph:
-    """A radial element on q = P x − m; its law follows the torque where `follows` says so."""
+    """A radial element on q = P x − m; if `follows`, its law depends on the torque."""
 
     radial: GearRadial
     matrix: Array
@@ -71,7 +71,7 @@ class Graph:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Form:
-    """One sample as every peer sees it.
+    """One sample as every peer receives it.
 
     Attributes
     ----------
@@ -81,10 +81,10 @@ class Form:
     names : tuple of str
         Of the rows.
     rows : ndarray, shape (m, n)
-        Of unit norm; arcs by their faces at rest.
+        Of unit norm; an arc is represented by its face at rest.
     gaps : ndarray, shape (m,)
     linear, hertz : ndarray, shape (m,)
-        b and c; both zero for a rigid contact.
+        Coefficients b and c; both zero for a rigid contact.
     arcs : Arcs
     graphs : tuple of Graph
     driven : ndarray of bool, shape (m,)
@@ -112,7 +112,7 @@ class Form:
 
     @property
     def kind(self) -> str:
-        """Class of its programmes: "QP" or "SOCP"."""
+        """Class of its programmes, "QP" or "SOCP"."""
         return "SOCP" if self.graphs else "QP"
 
     @property
@@ -127,12 +127,12 @@ class Form:
         return bool(self.hertz.any() or len(self.arcs.rows) or follows)
 
     def forces_in_newton(self, forces: Array) -> dict[str, float]:
-        """Row forces [N] by name."""
+        """Return the row forces [N] by name."""
         values = forces * self.force / self.norms
         return {n: float(f) for n, f in zip(self.names, values, strict=True)}
 
     def laws(self, forces: Array) -> tuple[RadialLaw, ...]:
-        """GearRadial laws at the torques that row forces make."""
+        """Return the radial laws at the torques that row forces produce."""
         found: dict[str, float] = {}
         if any(g.follows for g in self.graphs):
             found = self.forces_in_newton(forces)
@@ -145,7 +145,7 @@ class Form:
         )
 
     def only(self, names: Collection[str]) -> Form:
-        """Return the same with some of the rows."""
+        """Return the same form with only the named rows."""
         kept = np.array([k for k, n in enumerate(self.names) if n in names], dtype=np.intp)
         arcs = np.isin(self.arcs.rows, kept)
         some = {
@@ -162,7 +162,7 @@ class Form:
         )
 
     def equilibrium(self, x: Array, forces: Array, pulls: Sequence[Array]) -> Equilibrium:
-        """Turn an answer into physical terms; forces below zero by round-off count as zero.
+        """Return an answer as an equilibrium in SI units; negative forces count as zero.
 
         Parameters
         ----------
@@ -190,7 +190,7 @@ class Form:
 
 
 def form_of(scene: Scene, like: Form | None = None) -> Form:
-    """Write a scene as the common problem, in its own units or those of another sample.
+    """Return a scene as the common problem, in its own units or those of another sample.
 
     Raises
     ------
@@ -207,7 +207,7 @@ def form_of(scene: Scene, like: Form | None = None) -> Form:
     written = [r.row(at_rest) if isinstance(r, ArcRow) else r for r in rows]
     vectors = np.array([r.vector for r in written]).reshape(len(rows), scene.size) @ expansion
     norms = np.linalg.norm(vectors, axis=1)
-    # What is condensed follows the others with a constant part, which moves the gaps.
+    # Condensed coordinates are a linear function of the others; its constant part shifts the gaps.
     shift = np.array([float(r.vector @ condensed.constant) for r in written])
     linear, hertz = np.zeros(len(rows)), np.zeros(len(rows))
     for e, (row, norm) in enumerate(zip(rows, norms, strict=True)):

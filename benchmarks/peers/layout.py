@@ -1,4 +1,4 @@
-"""The programme of a pass in standard conic form, with a pattern that stays for all samples.
+"""The programme of a pass in standard conic form, with the same pattern for all samples.
 
     min ½zᵀPz + qᵀz   s.t.  Az + s = b,  s in zero, nonnegative and second-order cones
 
@@ -22,14 +22,15 @@ if TYPE_CHECKING:
 
 
 class Layout:
-    """Where everything stands in the conic form of samples like this one.
+    """Positions of all variables and rows in the conic form of samples like this one.
 
     Parameters
     ----------
     form : Form
         Any sample of the workload.
     laws : sequence of RadialLaw
-        Its radial laws: the number of pieces, and which of them end, is part of the pattern.
+        Its radial laws: the number of pieces, and which of them are finite, are part of the
+        pattern.
     """
 
     def __init__(self, form: Form, laws: Sequence[RadialLaw]) -> None:
@@ -51,7 +52,8 @@ class Layout:
             for p, (owner, _) in enumerate(pieces):
                 if owner == j:
                     matrix[2 * j : 2 * j + 2, self._s(p)] = -np.eye(2)
-        # Faces of arcs turn with the iterate: every coordinate that moves one is in its pattern.
+        # Faces of arcs change with the iterate, so the pattern includes every coordinate that moves
+        # one.
         rows = slice(self.equal, self.equal + m)
         pattern[rows, :n] = form.rows != 0.0
         for row, relative in zip(form.arcs.rows, form.arcs.relative, strict=True):
@@ -83,7 +85,7 @@ class Layout:
         return self.first + 3 * piece + 2
 
     def matrix(self, rows: Array, compliance: Array) -> Array:
-        """A, dense."""
+        """Return A, dense."""
         matrix = self._matrix
         matrix[self.equal : self.equal + self.m, : self.n] = rows
         where = (self.equal + self.yields, self.n + np.arange(len(self.yields)))
@@ -91,24 +93,24 @@ class Layout:
         return matrix
 
     def values(self, rows: Array, compliance: Array) -> Array:
-        """Values of A in the order of its compressed columns."""
+        """Return the values of A in the order of its compressed columns."""
         return self.matrix(rows, compliance)[self._take]
 
     def sparse(self, values: Array) -> csc_matrix:
-        """A as compressed columns."""
+        """Return A in compressed columns."""
         from scipy.sparse import csc_matrix
 
         shape = self.pattern.shape
         return csc_matrix((values, self.indices, self.indptr), shape=shape)
 
     def bounds(self, form: Form, gaps: Array, laws: Sequence[RadialLaw]) -> Array:
-        """Right-hand sides b."""
+        """Return the right-hand sides b."""
         centres = [g.centre for g in form.graphs]
         lengths = [laws[j].pieces[k].length for j, k in self.ends]
         return np.concatenate([*centres, gaps, lengths, np.zeros(3 * self.discs)])
 
     def linear(self, form: Form, laws: Sequence[RadialLaw]) -> Array:
-        """Linear costs q."""
+        """Return the linear costs q."""
         costs = np.zeros(self.size)
         costs[: self.n] = -form.load
         for p, (j, k) in enumerate(self.pieces):
@@ -116,7 +118,7 @@ class Layout:
         return costs
 
     def quadratic(self, form: Form, laws: Sequence[RadialLaw]) -> Array:
-        """P, dense and whole."""
+        """Return P, dense and with both triangles."""
         diagonal = np.ones(self.size)
         for p, (j, k) in enumerate(self.pieces):
             diagonal[self._s(p)] = laws[j].pieces[k].stiffness
@@ -126,6 +128,6 @@ class Layout:
         return quadratic
 
     def claim(self, z: Array, dual: Array) -> Claim:
-        """Coordinates, row forces and pulls from a primal-dual answer."""
+        """Return coordinates, row forces and pulls from a primal-dual answer."""
         pulls = [dual[2 * j : 2 * j + 2] for j in range(self.equal // 2)]
         return Claim(z[: self.n], dual[self.equal : self.equal + self.m], pulls)

@@ -1,7 +1,7 @@
-"""The outer loop that peers share: laws, ring faces and friction bounds settle together.
+"""The outer loop that peers share: it repeats until laws, ring faces and friction bounds agree.
 
-Newton replaces every law by its tangent at the force that belongs to the last compression, Picard
-by its secant at the last force. It is the plain loop: no step control.
+Newton replaces every law by its tangent at the force of the last compression, Picard by its secant
+at the last force. It is the plain loop, without step control.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from loadshare.contact.radial import RadialLaw
 
 PASSES = 60
 SMALL, OPEN = 1e-18, 1e-6
-"""Smallest forces at which the law of a closed and of an open row is linearised, in loads."""
+"""Smallest forces, over the load, at which laws of all rows and of open rows are linearised."""
 
 
 class Failure(RuntimeError):  # noqa: N818 -- what a peer says of itself
-    """A peer gives no answer; the message is its own word for it."""
+    """A peer gives no answer; the message is its own."""
 
 
 class NotForThis(Failure):
@@ -30,7 +30,7 @@ class NotForThis(Failure):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Claim:
-    """What a peer claims to be the answer.
+    """The answer that a peer claims.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Claim:
     forces : ndarray, shape (m,)
     pulls : sequence of ndarray, shape (2,)
     passes : int
-        Of the outer loop.
+        Passes of the outer loop.
     """
 
     x: Array
@@ -48,7 +48,7 @@ class Claim:
 
 
 class Inner(Protocol):
-    """A solver of the programme of one pass: min ½xᵀHx − fᵀx + Σ ½ b F² + Σ W, rows ≤ gaps."""
+    """Solver of the programme of one pass: min ½xᵀHx − fᵀx + Σ ½ b F² + Σ W, rows ≤ gaps."""
 
     def __call__(
         self, form: Form, rows: Array, gaps: Array, compliance: Array, laws: Sequence[RadialLaw]
@@ -63,21 +63,21 @@ class Inner(Protocol):
 
 
 def settle(form: Form, inner: Inner, stop: float, method: str = "newton") -> Claim:
-    """Drive an inner solver until laws, faces and friction bounds are met.
+    """Call an inner solver until laws, faces and friction bounds agree.
 
     Parameters
     ----------
     form : Form
     inner : Inner
     stop : float
-        Largest misfit, in deflections and loads.
+        Largest misfit allowed, in deflections and loads.
     method : {"newton", "picard", "exact"}
         Tangents, secants, or laws that the inner solver takes as they are.
 
     Raises
     ------
     Failure
-        If the loop does not end, or the inner solver fails.
+        If the loop does not converge, or the inner solver fails.
     """
     forces = np.ones(len(form.gaps))
     x = np.zeros(form.size)
@@ -100,10 +100,10 @@ def settle(form: Form, inner: Inner, stop: float, method: str = "newton") -> Cla
 
 
 def faces(form: Form, x: Array, wide: bool = False) -> tuple[Array, Array]:
-    """Rows and gaps with the arcs replaced by their faces at x.
+    """Return rows and gaps with the arcs replaced by their faces at x.
 
-    Wide faces stand off by the sagitta: those at rest could wedge a float in that the arcs let
-    pass.
+    Wide faces are moved outwards by the sagitta: the faces at rest could wedge a float where the
+    arcs let it pass.
     """
     if not len(form.arcs.rows):
         return form.rows, form.gaps
@@ -116,7 +116,7 @@ def faces(form: Form, x: Array, wide: bool = False) -> tuple[Array, Array]:
 
 
 def linearised(form: Form, forces: Array, method: str) -> tuple[Array, Array]:
-    """Compliance and offset of every row at forces."""
+    """Return compliance and offset of every row at given forces."""
     if not form.hertz.any() or method == "exact":
         return form.linear, np.zeros(len(forces))
     root = np.cbrt(np.maximum(forces, SMALL))
@@ -126,7 +126,7 @@ def linearised(form: Form, forces: Array, method: str) -> tuple[Array, Array]:
 
 
 def force_of(linear: Array, hertz: Array, compression: Array) -> Array:
-    """Force of every law at a compression: the root of b y³ + c y² = δ, y = F^(1/3)."""
+    """Return the force of every law at a compression: the root of b y³ + c y² = δ, y = F^(1/3)."""
     delta = np.maximum(compression, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         y = np.fmin(np.sqrt(delta / hertz), np.cbrt(delta / linear))
@@ -141,12 +141,13 @@ def force_of(linear: Array, hertz: Array, compression: Array) -> Array:
 
 
 def next_forces(form: Form, claim: Claim, before: Array, method: str) -> Array:
-    """Forces at which the next pass linearises."""
+    """Return the forces at which the next pass linearises."""
     if method == "picard" or not form.hertz.any():
         return np.maximum(claim.forces, SMALL)
     approach = form.rows @ claim.x - form.gaps
     found = force_of(form.linear, form.hertz, approach)
-    # An open row's tangent is kept moderate: its compliance would spoil the whole programme.
+    # The tangent of an open row is taken at a moderate force: its compliance at a force near zero
+    # would spoil the conditioning of the whole programme.
     return np.maximum(np.where(approach > 0.0, found, np.maximum(0.1 * before, OPEN)), SMALL)
 
 
@@ -158,23 +159,23 @@ def misfit_of(
     gaps: Array,
     laws: Sequence[RadialLaw],
 ) -> float:
-    """Largest difference between what a pass used and what holds at its answer.
+    """Return the largest difference between what a pass assumed and what holds at its answer.
 
     Parameters
     ----------
     form : Form
     claim : Claim
     exact : bool
-        Whether the laws stood as they are, not tangents or secants in their place.
+        Whether the laws themselves were used instead of tangents or secants.
     rows, gaps : ndarray
-        With the faces that stood for the arcs.
+        With the faces that replaced the arcs.
     laws : sequence of RadialLaw
     """
     force = np.maximum(claim.forces, 0.0)
     worst = 0.0
     if form.hertz.any() and not exact:
-        # The trace of force that an interior point leaves on an open contact is no force, but a
-        # compressed contact that a tangent's offset lets go free is out of its law.
+        # The small force that an interior-point method leaves on an open contact does not count;
+        # but a compressed contact without force, because of its tangent's offset, violates its law.
         approach = form.rows @ claim.x - form.gaps
         yielded = form.linear * force + form.hertz * np.cbrt(force) ** 2
         curved = (approach > 0.0) & (form.hertz > 0.0)
@@ -192,7 +193,7 @@ def misfit_of(
 
 
 def _apart(one: RadialLaw, other: RadialLaw) -> float:
-    """Difference of two laws' friction bounds; infinite where they have other pieces."""
+    """Return the difference of two laws' friction bounds; infinite if their pieces differ."""
     if len(one.pieces) != len(other.pieces):
         return np.inf
     return abs(one.pieces[-1].force - other.pieces[-1].force)

@@ -1,4 +1,4 @@
-"""moreau: a batched conic solver; here one sample at a time or a whole batch in step."""
+"""moreau: a batched conic solver, for one sample at a time or a whole batch in step."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Moreau:
                     num_nonneg_cones=layout.below,
                     so_cone_dims=[3] * layout.discs,
                 ),
-                # Left to itself it takes an active-set method for QPs, which stays at 1e-4 here.
+                # By default it uses an active-set method for QPs, which stays at 1e-4 here.
                 settings=moreau.Settings(
                     solver="ipm", device="cpu", batch_size=count, ipm_settings=ipm
                 ),
@@ -88,7 +88,7 @@ class Moreau:
             return failure
 
     def solve_many(self, forms: Sequence[Form]) -> list[Claim | Failure]:
-        """Answer a batch, every sample in the same pass of its outer loop."""
+        """Answer a batch; all samples are in the same pass of the outer loop."""
         layout = self._layout
         assert layout is not None
         solver = self._solver(len(forms))
@@ -107,7 +107,7 @@ class Moreau:
                 layout = self._lay_out(forms[0], used[0][4])
                 solver = self._solver(1)
             if not all(layout.fits(u[4]) for u in used):
-                # Radial laws with different pieces make no batch.
+                # Radial laws with different pieces cannot share a batch.
                 return [self._alone(form) for form in forms]
             values = [layout.matrix(u[0], u[2])[self._places] for u in used]
             self.clock.call(solver.setup, [self._quadratic] * len(forms), values)

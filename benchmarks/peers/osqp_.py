@@ -24,7 +24,7 @@ class Osqp:
         self._layout: Layout | None = None
 
     def prepare(self, form: Form) -> None:
-        """Set up."""
+        """Set up the solver."""
         import osqp
         from scipy.sparse import csc_matrix
 

@@ -1,4 +1,4 @@
-"""What a peer is: set up once for a workload, then one answer a sample."""
+"""The interface of a peer: set up once for a workload, then called once per sample."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from benchmarks.peers.loop import Claim
 class Peer(Protocol):
     """A way to solve the common problem.
 
-    One that spends its time in compiled calls has an attribute `clock` besides, which knows how
-    much of it.
+    A peer that spends its time in compiled calls also has an attribute `clock`, which measures that
+    time.
     """
 
     def prepare(self, form: Form) -> None:
-        """Do once what can be done once for all samples like this one."""
+        """Do the work that is common to all samples like this one."""
 
     def solve(self, form: Form) -> Claim:
         """Answer a sample.
@@ -33,25 +33,25 @@ class Peer(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A peer in the list.
+    """A peer in the list of peers.
 
     Attributes
     ----------
     name : str
     package : str
-        What it needs, as imported.
+        Package that it needs, as imported.
     room : str
         Module with a function ``make(tolerance)``.
     tolerances : tuple of float
-        Those that are charted, loosest first; the last is its best practice.
+        Tolerances that are charted, loosest first; the last is best practice.
     kinds : frozenset of str
         "QP", "SOCP".
     note : str
         How it is used.
     slow : bool
-        Takes milliseconds: fewer samples.
+        Whether it takes milliseconds, so that it gets fewer samples.
     reduced : bool
-        Is given only those contacts that act in some answer of the workload.
+        Whether it is given only the contacts that act in some answer of the workload.
     """
 
     name: str

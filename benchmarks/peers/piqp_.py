@@ -1,4 +1,4 @@
-"""PIQP: proximal interior point, set up once and updated; dense where the problem is small."""
+"""PIQP: proximal interior point, set up once and updated; dense if the problem is small."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from benchmarks.peers.loop import Claim, Failure, NotForThis, settle
 from loadshare.contact.radial import RadialLaw
 
 DENSE = 120
-"""Variables up to which the dense solver is the faster one."""
+"""Number of variables up to which the dense solver is faster."""
 
 
 class Piqp:
@@ -28,7 +28,7 @@ class Piqp:
         self._dense = True
 
     def prepare(self, form: Form) -> None:
-        """Set up."""
+        """Set up the solver."""
         import piqp
         from scipy.sparse import csc_matrix
 

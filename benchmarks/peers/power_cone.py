@@ -23,7 +23,7 @@ class PowerCone:
         self.clock = Clock()
 
     def prepare(self, form: Form) -> None:
-        """Nothing is kept."""
+        """Do nothing: nothing is kept."""
 
     def solve(self, form: Form) -> Claim:
         """See `Peer`."""

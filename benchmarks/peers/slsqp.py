@@ -18,7 +18,7 @@ class Slsqp:
         self.tolerance = tolerance
 
     def prepare(self, form: Form) -> None:
-        """Nothing is kept."""
+        """Do nothing: nothing is kept."""
 
     def solve(self, form: Form) -> Claim:
         """See `Peer`."""

@@ -1,8 +1,8 @@
-"""The energy of displacements, smooth, with rigid limits as constraints: for general minimisers.
+"""The smooth energy of displacements, with rigid limits as constraints, for general minimisers.
 
     E(x) = ½xᵀHx − fᵀx + Σ U(a·x − g) + Σ W(|Px − m|)
 
-U and its derivative F(δ) are closed forms, so no outer loop is needed; rigid rows, arcs and round
+U and its derivative F(δ) have closed forms, so no outer loop is needed; rigid rows, arcs and round
 rings are constraints.
 """
 
@@ -30,14 +30,14 @@ class Smooth:
         self.discs = [j for j, law in enumerate(self.laws) if np.isfinite(law.reach)]
 
     def forces(self, x: Array) -> Array:
-        """Forces of all rows that yield."""
+        """Return the forces of all rows that yield."""
         form = self.form
         rows, gaps = faces(form, x)
         found = force_of(form.linear, form.hertz, rows @ x - gaps)
         return np.asarray(np.where(self.yields, found, 0.0))
 
     def energy(self, x: Array) -> float:
-        """E(x)."""
+        """Return E(x)."""
         form = self.form
         f = self.forces(x)
         total = 0.5 * x @ form.stiffness @ x - form.load @ x
@@ -48,7 +48,7 @@ class Smooth:
         return float(total)
 
     def gradient(self, x: Array) -> Array:
-        """∇E(x)."""
+        """Return ∇E(x)."""
         form = self.form
         rows, _ = faces(form, x)
         slope = form.stiffness @ x - form.load + rows.T @ self.forces(x)
@@ -57,7 +57,7 @@ class Smooth:
         return np.asarray(slope)
 
     def pulls(self, x: Array) -> list[Array]:
-        """Force of every graph on its rising and level pieces."""
+        """Return the force of every graph, at a vertical piece its lower end."""
         found = []
         for graph, law in zip(self.form.graphs, self.laws, strict=True):
             q = graph.matrix @ x - graph.centre
@@ -69,7 +69,7 @@ class Smooth:
         return found
 
     def room(self, x: Array) -> Array:
-        """What constraints leave: ≥ 0."""
+        """Return the slack of the constraints: ≥ 0 if they hold."""
         rows, gaps = faces(self.form, x)
         free = gaps[self.rigid] - rows[self.rigid] @ x
         offsets = [self.form.graphs[j].matrix @ x - self.form.graphs[j].centre for j in self.discs]
@@ -78,7 +78,7 @@ class Smooth:
         return np.concatenate([free, np.array(discs)])
 
     def room_slope(self, x: Array) -> Array:
-        """Jacobian of `room`."""
+        """Return the Jacobian of `room`."""
         rows, _ = faces(self.form, x)
         discs = [
             -2.0 * (g.matrix @ x - g.centre) @ g.matrix
@@ -92,7 +92,7 @@ class Smooth:
         return bool(len(self.rigid) or self.discs)
 
     def claim(self, x: Array) -> Claim:
-        """Answer at x; forces of rigid limits are fitted to what is out of balance."""
+        """Return the answer at x; forces of rigid limits are fitted to the unbalanced forces."""
         from scipy.optimize import nnls
 
         forces, pulls = self.forces(x), self.pulls(x)

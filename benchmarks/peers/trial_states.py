@@ -1,9 +1,9 @@
-"""The literature's way: displacements iterated with trial states of every contact and spline.
+"""The method of the literature: displacement iteration with trial states of contacts and splines.
 
 States are assumed (open or closed; stick, slip or stop), the linear equations of the displacements
 are solved with secant stiffnesses, all states are read off the result, and so on until nothing
-changes any more or the patience ends. There is no guard against cycles: that is how it is done. A
-rigid limit is given the stiffness `STIFF`, as the usual penalty.
+changes or a limit of trials is reached. There is no guard against cycles: this is how it is done. A
+rigid limit gets the stiffness `STIFF`, as the usual penalty.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ PATIENCE = 200
 
 
 class TrialStates:
-    """Displacement iteration; the tolerance is that of the last change of the displacements."""
+    """Displacement iteration; the tolerance applies to the last change of the displacements."""
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
 
     def prepare(self, form: Form) -> None:
-        """Nothing is kept."""
+        """Do nothing: nothing is kept."""
 
     def solve(self, form: Form) -> Claim:
         """See `Peer`."""
@@ -48,7 +48,8 @@ class TrialStates:
                 matrix += k * graph.matrix.T @ graph.matrix
                 right += graph.matrix.T @ (k * (graph.centre + centre) - force)
             try:
-                # Least squares: a float that nothing touches leaves the trial system singular.
+                # Least squares, because a float that nothing touches makes the trial system
+                # singular.
                 after = np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-13)[0])
             except np.linalg.LinAlgError as error:
                 raise Failure("trial states: the trial system has no solution") from error
@@ -68,14 +69,14 @@ class TrialStates:
 
 
 def _secants(form: Form, forces: Array) -> Array:
-    """Secant stiffness of every row; the penalty where it is rigid."""
+    """Return the secant stiffness of every row; the penalty if it is rigid."""
     force = np.where(forces > 0.0, forces, 1.0)
     compliance = form.linear + form.hertz / np.cbrt(force)
     return np.asarray(1.0 / np.maximum(compliance, 1.0 / STIFF))
 
 
 def _spring(law: RadialLaw, place: str, pull: Array) -> tuple[float, Array, Array]:
-    """Stiffness, its centre and a constant force that stand for a place on a graph."""
+    """Return the stiffness, its centre and the constant force of a piece of a graph."""
     size = float(np.linalg.norm(pull))
     along = pull / size if size > 0.0 else np.zeros(2)
     for k, piece in enumerate(law.pieces):
@@ -86,7 +87,7 @@ def _spring(law: RadialLaw, place: str, pull: Array) -> tuple[float, Array, Arra
 
 
 def _place(law: RadialLaw, offset: Array) -> str:
-    """Piece on which a radius lies; "wall" beyond a rigid end."""
+    """Return the piece in which a radius lies; "wall" beyond a rigid end."""
     radius = float(np.linalg.norm(offset))
     for k, piece in enumerate(law.pieces):
         if radius <= law.start(k + 1):
@@ -95,7 +96,7 @@ def _place(law: RadialLaw, offset: Array) -> str:
 
 
 def _pull(law: RadialLaw, place: str, offset: Array) -> Array:
-    """Force of a graph at an offset."""
+    """Return the force of a graph at an offset."""
     radius = float(np.linalg.norm(offset))
     if radius == 0.0:
         return np.zeros(2)

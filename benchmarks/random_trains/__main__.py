@@ -2,7 +2,7 @@
 
 Run with ``python -m benchmarks.random_trains --count 5000 --seed 1 [--processes 2]``, or with
 ``--stress`` for the problems of the stability map instead. It may be stopped at any time; the same
-command goes on where it was. Tables are over all trains of the seed that are on file.
+command continues it. Tables cover all trains of the seed that are on file.
 """
 
 from __future__ import annotations

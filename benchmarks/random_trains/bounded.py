@@ -1,4 +1,4 @@
-"""Whether claimed forces and places are as near to the 50-digit reference as is bounded."""
+"""Check that errors of forces and places against the 50-digit reference are within their bounds."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from loadshare.results.result import Position
 from loadshare.train import Train
 
 NONE = 1e-20
-"""Force, in loads, or place, in deflections, that is none: the last of the reference's digits."""
+"""Force, over the load, or place, over the deflection, that counts as zero: the last digits of the
+reference."""
 ROUNDING = 2.0**-52
-"""Of a place when it is written as a double, part of itself."""
+"""Relative rounding of a place that is written as a double."""
 
 
 def below_error(
     train: Train, found: Position, machine: Machine, settled: Settled
 ) -> tuple[int, dict[str, list[float]]]:
-    """Count bounds on forces and places, and name those below the true error.
+    """Return the number of bounds on forces and places, and those below the true error.
 
     Returns
     -------
@@ -42,7 +43,7 @@ def below_error(
 def _errors(
     train: Train, found: Position, machine: Machine, settled: Settled
 ) -> Iterator[tuple[str, Any, Any]]:
-    """Name, true error, and what of it is none: of flanks, rings, splines and displacements."""
+    """Yield name, true error and allowance for round-off: flanks, rings, splines, displacements."""
     of, claim, at = machine.arithmetic.mpf, found.equilibrium, settled.at
     unit, length = of(machine.force), of(machine.length)
     for name, force in {**claim.flank_force, **claim.ring_force}.items():

@@ -1,8 +1,8 @@
-"""Random trains: a structure, and on it whatever yields, holds, limits, misplaces and loads it.
+"""Random trains: a structure with random laws, supports, limits, errors and loads.
 
-Source: formulation, sections 1 to 7. Sizes are drawn where things are decided: clearances of
-nothing, of a deflection and far beyond; loads from a millionth of the rated one to ten times it;
-stiffnesses apart by up to nine decades; clearances that end exactly where friction does.
+Source: formulation, sections 1 to 7. Sizes are drawn where they change the answer: clearances of
+zero, of a deflection and far beyond; loads from a millionth of the rated load to ten times it;
+stiffnesses up to nine decades apart; clearances that end exactly where friction does.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from loadshare.case import Case
 from loadshare.errors import CaseError
 
 RATED = 1e4
-"""Force on a flank under the rated load, roughly [N]."""
+"""Approximate force on a flank under the rated load [N]."""
 FLANK = 3e8
-"""Stiffness of a flank along its line of action, roughly [N/m]."""
+"""Approximate stiffness of a flank along its line of action [N/m]."""
 DEFLECTION = RATED / FLANK
 """Compression of a flank under the rated load [m]."""
 BACKLASHES = (0.0, 1e-6, 2e-5, 5e-5, 1e-4, 3e-4)
-"""[m]; up to 0.3 mm."""
+"""Backlashes [m], up to 0.3 mm."""
 TRIES = 50
-"""Structures that are drawn until one fits; a bent chain may leave no room for its last gear."""
+"""Number of structures drawn until one fits; a bent chain may leave no room for its last gear."""
 
 
 def draw(seed: int, number: int, layouts: Mapping[str, Callable[[Dice], Layout]] = LAYOUTS) -> Case:
@@ -35,7 +35,7 @@ def draw(seed: int, number: int, layouts: Mapping[str, Callable[[Dice], Layout]]
     Parameters
     ----------
     seed, number : int
-        The train depends on nothing else but the layouts.
+        With the layouts, they alone determine the train.
     layouts : mapping of str to callable
         Structures to draw from.
     """
@@ -53,7 +53,7 @@ def draw(seed: int, number: int, layouts: Mapping[str, Callable[[Dice], Layout]]
 
 
 class _Drawing:
-    """One train while it is drawn; `data` is what its case file says."""
+    """One train while it is drawn; `data` is the content of its case file."""
 
     def __init__(self, dice: Dice, layout: Layout) -> None:
         self.dice, self.layout = dice, layout
@@ -77,7 +77,7 @@ class _Drawing:
             self._loosely_held()
 
     def _loosely_held(self) -> None:
-        """Put members of a set in bearings with clearance, of any law, and push them."""
+        """Put members of a set in bearings with clearance of any law, and apply forces to them."""
         dice, data = self.dice, self.data
         other = {**data.get("splines", {}), **data.get("rings", {})}
         held = dice.some(tuple(data["gears"]), dice.pick([0.0, 0.0, 0.2, 0.5]))
@@ -93,7 +93,7 @@ class _Drawing:
             data["operating"]["forces"] = {g: [f"{p!r} N" for p in f] for g, f in parts.items()}
 
     def _rolling(self) -> dict[str, Any]:
-        """A bearing of balls, of rollers, or as stiff as it is."""
+        """Return a ball bearing, a roller bearing, or a linear bearing."""
         dice = self.dice
         name, power = dice.pick([("ball_", 1.5), ("roller_", 10.0 / 9.0), ("", 1.0)])
         stiffness = RATED / DEFLECTION**power * dice.spread(1.0)
@@ -107,7 +107,7 @@ class _Drawing:
         return bearing
 
     def _spread(self) -> float:
-        """Factor on a stiffness: trains apart by nothing, by a decade, by six, by nine."""
+        """Return a factor on a stiffness; the range of a train is zero, a decade, six or nine."""
         if self.range > 1.0 and self.dice.chance(0.7):
             return self.dice.spread(0.3)
         return self.dice.spread(self.range)
@@ -126,7 +126,7 @@ class _Drawing:
             "positions": self.positions,
         }
         if dice.chance(0.1):
-            # Driven from its output: the coast flanks carry.
+            # The train is driven from its output, so the coast flanks carry.
             operating |= {
                 "torque": "0 N*m",
                 "external": {layout.input: f"{-torque!r} N*m"},
@@ -141,7 +141,7 @@ class _Drawing:
         return operating
 
     def _each(self, draw: Callable[[], str]) -> str | list[str]:
-        """A figure, or one per position."""
+        """Return one drawn value, or one per position."""
         if self.positions > 1 and self.dice.chance(0.5):
             return [draw() for _ in range(self.positions)]
         return draw()
@@ -168,7 +168,7 @@ class _Drawing:
         return radians(self.dice.between(0.0, widest))
 
     def _law(self, kind: str, radius: float) -> dict[str, Any]:
-        """How a mesh yields, at its driver."""
+        """Return a random law of a mesh at its driver."""
         dice, stiffness = self.dice, FLANK * radius**2 * self._spread()
         rated = RATED * radius
         if kind == "mixed":
@@ -210,7 +210,7 @@ class _Drawing:
         return {g: self._spline() for g in self.dice.some(tuple(self.layout.floats), part)}
 
     def _spline(self) -> dict[str, Any]:
-        """A clearance spline; stage ends coincide as often as not."""
+        """Return a clearance spline; often the ends of its stages coincide."""
         dice, stiffness = self.dice, 2e7 * self._spread()
         clearance = DEFLECTION * dice.pick([0.0, 0.1, 1.0, 3.0, 10.0])
         spline = {"bending_stiffness": f"{stiffness!r} N/m", "clearance": metres(clearance)}
@@ -272,7 +272,7 @@ class _Drawing:
         return circle
 
     def _supports(self) -> None:
-        """Bearings: rigid, elastic alike or not in two directions, or none."""
+        """Draw bearings: rigid, elastic (equal or different in two directions), or none."""
         dice, data = self.dice, self.data
         part = dice.pick([0.0, 0.2, 0.5, 1.0])
         for name, gear in data["gears"].items():
@@ -281,7 +281,7 @@ class _Drawing:
                 if dice.chance(0.3):
                     gear["support"] = self._bearing()
             elif name == "sun" or (self.layout.floats.get(name)):
-                # A float that only its meshes hold, if they do.
+                # A float may be held by its meshes only, or not at all.
                 kind = dice.pick(["rigid", "free", "elastic"])
                 gear["support"] = self._bearing() if kind == "elastic" else kind
             elif dice.chance(0.6 * part):
@@ -313,7 +313,7 @@ class _Drawing:
         return error
 
     def _count_teeth(self) -> None:
-        """Give the input gear teeth: they say how far gears turn over the mesh cycle."""
+        """Give the input gear teeth, which define how far gears turn over the mesh cycle."""
         if self.positions > 1:
             gears = self.data["gears"]
             toothed = (n for n in (self.layout.input, *gears) if "base_radius" in gears[n])

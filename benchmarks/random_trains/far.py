@@ -1,4 +1,4 @@
-"""Whether a reference moves too far for the geometry in which it was found."""
+"""Check whether a reference moves too far for the geometry in which it was found."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from loadshare.train.mesh import Mesh
 from loadshare.train.situations import situation_of
 
 FAR = 1e-2
-"""Displacement or compression, over the smallest base radius, from which on neither is small."""
+"""Displacement or compression, over the smallest base radius, above which it is no longer small."""
 NEGLECTED = 0.99
-"""Approach that linear geometry misses, over the deflection, from which on it tells nothing; what
-refuses from 1 on has an estimate of it."""
+"""Approach that linear geometry misses, over the deflection, from which on linear geometry is not
+valid. The library refuses from 1 on, by an estimate."""
 TURNED = 0.15
-"""Angle [rad] of a line of action from which on forces have other directions; what refuses from
-0.176 on has an estimate of it."""
+"""Angle [rad] by which a line of action turns from which on forces have other directions. The
+library refuses from 0.176 on, by an estimate."""
 LIGHTER = (0.5, 0.1)
-"""Shares of the load that are looked at where there is no reference."""
+"""Shares of the load that are tried if there is no reference."""
 SECONDS = 20.0
-"""Processor time that a reference of a lighter load may take [s]."""
+"""Processor time that a reference at a lighter load may take [s]."""
 
 
 def is_far(train: Train, index: int, exact: Reference) -> bool:
-    """Tell whether the displacements of a reference have no meaning.
+    """Return whether the displacements of a reference are too large to be meaningful.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def is_far(train: Train, index: int, exact: Reference) -> bool:
 
 
 def compressions(train: Train, index: int, exact: Reference) -> list[float]:
-    """Compression of every flank [m]."""
+    """Return the compression of every flank [m]."""
     at = train.flank_positions(index)
     return [
         mesh.law(at[name]).compression(max(exact.force[name], 0.0))
@@ -57,10 +57,11 @@ def compressions(train: Train, index: int, exact: Reference) -> list[float]:
 
 
 def is_far_before(train: Train, index: int) -> bool:
-    """Tell whether a part of the load displaces a train too far already.
+    """Return whether a part of the load already displaces a train too far.
 
-    Soft rings that give way let a gear roll along their arcs until nothing holds it any more: such
-    a train has no equilibrium under its load, nor a meaning of displacements long before.
+    Soft rings may let a gear roll along their arcs until nothing holds it. Such a train has no
+    equilibrium under its load, and its displacements are meaningless long before that load is
+    reached.
     """
     for share in LIGHTER:
         torque = tuple(share * t for t in train.input_torque)
@@ -76,7 +77,7 @@ def is_far_before(train: Train, index: int) -> bool:
 
 
 def neglected(train: Train, index: int, exact: Reference) -> float:
-    """Return the largest approach that is missed at a flank with a force, over the deflection.
+    """Return the largest approach that linear geometry misses at loaded flanks, in deflections.
 
     The deflection is the largest compression, gap taken up, or error. Face gears are left out.
     """
@@ -90,7 +91,7 @@ def neglected(train: Train, index: int, exact: Reference) -> float:
 
 
 def turned(train: Train, index: int, exact: Reference) -> float:
-    """Return the largest angle by which the line of action of a pressed flank turns [rad].
+    """Return the largest angle by which the line of action of a loaded flank turns [rad].
 
     Errors count like displacements. Face gears are left out.
     """
@@ -98,7 +99,7 @@ def turned(train: Train, index: int, exact: Reference) -> float:
 
 
 def _pressed(train: Train, exact: Reference) -> Iterator[tuple[Mesh, bool, float]]:
-    """Flanks with a force: mesh, whether it is the drive flank, force [N]."""
+    """Yield the flanks with a force: mesh, whether it is the drive flank, force [N]."""
     for mesh in train.meshes.values():
         for drive in mesh.flanks:
             force = exact.force[mesh.flank_name(drive)]
@@ -107,13 +108,13 @@ def _pressed(train: Train, exact: Reference) -> Iterator[tuple[Mesh, bool, float
 
 
 def _strings(train: Train, index: int, exact: Reference) -> Iterator[_String]:
-    """Strings between the base circles of pressed flanks."""
+    """Yield the strings between the base circles of loaded flanks."""
     here, still = situation_of(train, index), np.zeros(2)
     moved = {
         name: here.offset_of(name) + exact.displacement.get(name, still) @ gear.frame
         for name, gear in train.gears.items()
     }
-    # Seen from its carrier, whose turning moves a whole set alike.
+    # A planet's displacement counts from its carrier, which moves all planets of a set alike.
     moved |= {n: moved[n] + moved[g.carrier] for n, g in train.gears.items() if g.carrier}
     for mesh, drive, _ in _pressed(train, exact):
         first, second = train.gears[mesh.driver], train.gears[mesh.driven]
@@ -125,18 +126,18 @@ def _strings(train: Train, index: int, exact: Reference) -> Iterator[_String]:
 
 @dataclass(frozen=True)
 class _String:
-    """What becomes of the string between two base circles when their centres shift.
+    """Change of the string between two base circles when their centres shift.
 
-    The strings leave along the line of action, of length L and direction χ, and the derivative of
-    the approach is the direction of the line. So the approach grows by ΔL − R Δχ, with R the
-    distance of the centres across the line, which stays.
+    The string lies along the line of action and has length L and direction χ; the derivative of the
+    approach is the direction of the line. So the approach grows by ΔL − R Δχ, where R is the
+    distance of the centres perpendicular to the line, which does not change.
 
     Attributes
     ----------
     turned : float
         Δχ [rad].
     missed : float
-        Approach [m] by which the involutes miss the linear one.
+        Difference [m] between the approach of the involutes and the linear one.
     """
 
     turned: float
@@ -144,7 +145,7 @@ class _String:
 
     @classmethod
     def of(cls, way: Vector, shift: Vector, along: Vector, across: Vector) -> _String:
-        """Return it from the way between the centres and the line of action."""
+        """Return the change for a vector between the centres, its shift and the line of action."""
         length, offset = float(way @ along), float(way @ across)
         there = length + float(shift @ along), offset + float(shift @ across)
         squared = there[0] ** 2 + there[1] ** 2 - offset**2

@@ -33,50 +33,51 @@ AGREES = 1e-9
 """Largest error of a certified torque, over the largest torque of its position."""
 PLACED = 1e-6
 """Largest error of a determined place, over the deflection of a flank under the whole load or the
-largest displacement: what soft supports make of torques that are right."""
+largest displacement: with soft supports, correct torques may still give such errors."""
 OPEN = 1e-5
-"""Play, in deflections, from which on a place is open: ten times what the linear programmes that
-find it leave open."""
+"""Play, in deflections, from which on a place counts as open: ten times the tolerance of the linear
+programmes that find it."""
 BEYOND = "displacements are too large for the geometry"
-"""What a refusal says where small displacements are none."""
+"""Text of the refusal when displacements are not small."""
 NO_FORCE = 1e-40
-"""Force, in loads, that is none in 70 digits."""
+"""Force, over the load, that counts as zero in 70 digits."""
 NO_TORQUE = 1e-26
-"""Torque [N·m] that is none: what acts at less hangs on the last of the reference's 50 digits."""
+"""Torque [N·m] that counts as zero: below it, which elements act depends on the last of the
+reference's 50 digits."""
 SOLVING, REFERRING = 60.0, 60.0
 """Processor time that a solve and a reference may take [s]."""
 
 
 @dataclass
 class Finding:
-    """What became of one position.
+    """The result at one position.
 
     Attributes
     ----------
     position : int
     outcome : str
         "agrees", "wrong", "unchecked" (certified, without reference), "refused" (has an answer),
-        "too far" (refused, and its displacements have no meaning, be it under a part of the load),
-        "no answer" (refused, and known to have none), "open" (refused, neither is known),
+        "too far" (refused, and its displacements have no meaning, perhaps already at a part of the
+        load), "no answer" (refused, and known to have none), "open" (refused, neither is known),
         "crashed".
     told : str
-        Refusal, exception, or why there is no reference.
+        Text of the refusal or exception, or the reason why there is no reference.
     rung : str
     error : float or None
-        Of the worst torque, over the largest.
+        Error of the worst torque, over the largest torque.
     misplaced : dict of coordinate to float
-        Places that are given as determined and are not where they are given, error in deflections;
-        infinite where they are open.
+        Error of places that are wrongly given as determined, in deflections; infinite if they are
+        open.
     bound : list of [float, float]
         Claimed bound and true error of every torque, and of the worst of them [N·m].
     others : int
         Bounds on forces and places that were compared with true errors.
     below : dict of element or coordinate to [float, float]
-        Those of them that are below the true error: bound and error, [N] and [m].
+        The bounds among them that are below the true error: bound and error, [N] and [m].
     slack : float or None
-        Distance of the reference from another active set.
+        Distance of the reference from a change of its active set.
     reference : str
-        "found", or why not.
+        "found", or the reason why not.
     """
 
     position: int
@@ -93,7 +94,7 @@ class Finding:
 
 
 def judged(case: Case) -> dict[str, Any]:
-    """Solve a train and compare it; plain data, with the processor time of the solve [s]."""
+    """Solve a train and compare it; return plain data, with the processor time of the solve [s]."""
     findings, seconds, train = [], math.nan, None
     solved: dict[int, Position] = {}
     message, crashed = "", ""
@@ -136,7 +137,7 @@ def _message_of(message: str, index: int) -> str:
 def _compare(
     case: Case, train: Train, found: Position | None, message: str, finding: Finding
 ) -> None:
-    """Judge one position."""
+    """Judge one position; write the result into `finding`."""
     machine, settled = _settled(case, train, found, finding)
     if found is None:
         finding.told = message
@@ -163,7 +164,8 @@ def _compare(
     finding.misplaced = misplaced(train, found, exact, machine, settled)
     claimed = found.certificate.bound.torque
     finding.bound = [[claimed[n], error] for n, error in errors.items()]
-    # What was proved at first is over the largest torque of all flanks, coast flanks too.
+    # The bound proved first is relative to the largest torque of all flanks, including coast
+    # flanks.
     radii = {m.flank_name(d): m.first_radius for m in train.meshes.values() for d in m.flanks}
     driving = np.abs(situation_of(train, finding.position).torque).max(initial=0.0)
     every = [abs(f) * radii[flank] for flank, f in found.claim.flank_force.items()]
@@ -174,7 +176,7 @@ def _compare(
 def _settled(
     case: Case, train: Train, found: Position | None, finding: Finding
 ) -> tuple[Machine, Settled] | tuple[None, None]:
-    """The reference: from what was found, which saves time, or from nothing."""
+    """Return the reference, started from the answer, which saves time, or without a start."""
     hints = [None] if found is None else [ls.explain(case, finding.position).equilibrium, None]
     for hint in hints:
         try:
@@ -191,7 +193,7 @@ def _settled(
 
 
 def solvable(train: Train, index: int) -> bool:
-    """Tell whether forces balance the load and the limits leave a place, or it is not known."""
+    """Return whether forces balance the load and the limits leave a place; True if unknown."""
     try:
         return truth_of(train, index).solvable
     except (ValueError, RuntimeError):
@@ -199,7 +201,7 @@ def solvable(train: Train, index: int) -> bool:
 
 
 def _play_in_report(train: Train, spans: Mapping[str, float]) -> dict[str, float]:
-    """How far reported places may move: along `Gear.plane`, from spans along `Gear.frame`."""
+    """Return the play of reported places, along `Gear.plane`, from spans along `Gear.frame`."""
     found = dict(spans)
     for name, gear in train.gears.items():
         keys = [f"gear {name} {axis}" for axis in "xy"]
@@ -216,13 +218,13 @@ def _play_in_report(train: Train, spans: Mapping[str, float]) -> dict[str, float
 def misplaced(
     train: Train, found: Position, exact: Reference, machine: Machine, settled: Settled
 ) -> dict[str, float]:
-    """Places given as determined that are open, or elsewhere; error in deflections.
+    """Return places given as determined that are open, or elsewhere; error in deflections.
 
-    Elsewhere is what is off by more than `PLACED`, and by more than its own bound.
+    A place is elsewhere if it is off by more than `PLACED` and by more than its own bound.
     """
     named, bounds = set(found.undetermined), found.certificate.bound.place
     free = _play_in_report(train, play(machine, settled.at, NO_FORCE))
-    # What hangs on forces of round-off may be called either.
+    # A place that is held only by forces of the size of round-off may be reported either way.
     loose = _play_in_report(train, play(machine, settled.at, 1e-9))
     wrong = {
         name: math.inf

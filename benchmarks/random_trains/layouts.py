@@ -1,7 +1,7 @@
-"""Structures of random trains: which gears mesh, where they stand, which of them may float.
+"""Structures of random trains: which gears mesh, their positions, and which of them may float.
 
-Whatever is drawn fits: base radii, pressure angles and centre distances belong together, and all
-paths turn a gear alike.
+Every structure fits: base radii, pressure angles and centre distances are consistent, and all paths
+turn a gear in the same sense.
 """
 
 from __future__ import annotations
@@ -14,17 +14,18 @@ from typing import Any
 from benchmarks.random_trains.dice import Dice, metres
 
 COLLINEAR = 0.4
-"""Part of the split pinions that stand on the line of their idlers, where lines of action align."""
+"""Fraction of the split pinions that are on the line of their idlers, so that lines of action
+align."""
 
 
 @dataclass
 class Layout:
-    """A structure without anything that yields, holds or loads it.
+    """A structure without stiffnesses, supports or loads.
 
     Attributes
     ----------
     gears : dict
-        By name, as a case writes them.
+        By name, as they are written in a case.
     radius : dict of gear to float
         Base radius [m].
     meshes : dict of (driver, driven) to float
@@ -52,7 +53,7 @@ class Layout:
         self.radius[name] = radius
 
     def reversed(self) -> Layout:
-        """The same train, driven from its other end."""
+        """Return the same train, driven from its other end."""
         meshes = {(b, a): angle for (a, b), angle in self.meshes.items()}
         return Layout(
             self.gears, self.radius, meshes, self.shafts, self.output, self.input, self.floats
@@ -60,12 +61,12 @@ class Layout:
 
 
 def polar(distance: float, angle: float) -> complex:
-    """A place by distance [m] and angle [rad]."""
+    """Return a place from distance [m] and angle [rad]."""
     return complex(distance * math.cos(angle), distance * math.sin(angle))
 
 
 def angles(dice: Dice, count: int) -> list[float]:
-    """Directions of branches: even, even in pairs, or uneven."""
+    """Return directions of branches: even, even in pairs, or uneven."""
     first = dice.pick([0.0, dice.angle()])
     kind = dice.pick(["even", "even", "pairs", "uneven"])
     step = math.tau / count
@@ -79,12 +80,12 @@ def angles(dice: Dice, count: int) -> list[float]:
 
 
 def pressure(dice: Dice) -> float:
-    """A transverse working pressure angle [rad]."""
+    """Return a transverse working pressure angle [rad]."""
     return math.radians(dice.pick([20.0, 18.75, 25.0, dice.between(14.0, 28.0)]))
 
 
 def star(dice: Dice) -> Layout:
-    """Sun, planets whose axes stand still, and an internal gear."""
+    """Return a sun, planets on fixed axes, and an internal gear."""
     layout, count, angle = Layout(), dice.count(2, 6), pressure(dice)
     sun, planet = dice.between(0.03, 0.09), dice.between(0.02, 0.07)
     reach = (sun + planet) / math.cos(angle)
@@ -102,7 +103,7 @@ def star(dice: Dice) -> Layout:
 
 
 def stepped_star(dice: Dice) -> Layout:
-    """Sun, stepped planets (two gears on a shaft), and an internal or external output gear."""
+    """Return a sun, stepped planets (two gears on a shaft), and an internal or external output."""
     layout, count, angle = Layout(), dice.count(2, 5), pressure(dice)
     sun, wheel, pinion = (
         dice.between(0.04, 0.08),
@@ -129,7 +130,7 @@ def stepped_star(dice: Dice) -> Layout:
 
 
 def double_star(dice: Dice) -> Layout:
-    """Sun, inner and outer planets that mesh with one another, and an internal gear."""
+    """Return a sun, inner and outer planets that mesh with one another, and an internal gear."""
     layout, count, angle = Layout(), dice.count(2, 5), pressure(dice)
     sun, inner, outer = dice.between(0.04, 0.09), dice.between(0.02, 0.04), dice.between(0.02, 0.04)
     first, second = (sun + inner) / math.cos(angle), (inner + outer) / math.cos(angle)
@@ -152,7 +153,7 @@ def double_star(dice: Dice) -> Layout:
 
 
 def split_path(dice: Dice) -> Layout:
-    """A pinion drives two wheels, alike or not quite; their shafts' pinions drive one gear."""
+    """Return a pinion that drives two wheels, equal or nearly so, whose pinions drive one gear."""
     layout, one, two = Layout(), pressure(dice), pressure(dice)
     pinion, wheel = dice.between(0.02, 0.05), dice.between(0.06, 0.12)
     small, way = dice.between(0.02, 0.05), dice.between(0.4, 1.3)
@@ -176,9 +177,9 @@ def split_path(dice: Dice) -> Layout:
 
 
 def four_branch(dice: Dice) -> Layout:
-    """One to four pinions, each of which drives two idlers of the output gear.
+    """Return one to four pinions, each of which drives two idlers of the output gear.
 
-    The pinions are driven by face gears, by wheels of one pinion, or over shafts from one gear.
+    The pinions are driven by face gears, by wheels of one pinion, or through shafts from one gear.
     """
     layout, pairs = Layout(), dice.count(1, 4)
     angle, other = pressure(dice), pressure(dice)
@@ -189,7 +190,7 @@ def four_branch(dice: Dice) -> Layout:
     half = math.asin(near / circle)
     along = circle * math.cos(half)
     if not dice.chance(COLLINEAR):
-        # Idlers closer together: the pinion stands outside or inside their line.
+        # With idlers closer together, the pinion is outside or inside their line.
         half *= dice.pick([dice.between(0.6, 0.95), 1.0 - 10.0 ** dice.between(-6.0, -2.0)])
         out_of_line = math.sqrt(near**2 - (circle * math.sin(half)) ** 2)
         along = circle * math.cos(half) + dice.pick([-1.0, 1.0]) * out_of_line
@@ -210,7 +211,7 @@ def four_branch(dice: Dice) -> Layout:
 
 
 def _drive_pinions(layout: Layout, dice: Dice, ways: list[float]) -> None:
-    """Bring the torque to the pinions of a four-branch train."""
+    """Add the gears that drive the pinions of a four-branch train."""
     pinions = [f"q{k}" for k in range(1, len(ways) + 1)]
     kind = dice.pick(["face", "face", "star"])
     if len(ways) == 1:
@@ -244,7 +245,7 @@ def _drive_pinions(layout: Layout, dice: Dice, ways: list[float]) -> None:
 
 
 def idler_chains(dice: Dice) -> Layout:
-    """Two to four parallel chains of one to three idlers between two gears on one axis."""
+    """Return two to four parallel chains of one to three idlers between two gears on one axis."""
     layout, count, angle = Layout(), dice.count(2, 4), pressure(dice)
     middle, length = dice.between(0.05, 0.1), dice.pick([1, 2, 3])
     sizes = [dice.between(0.02, 0.06) for _ in range(length)]
@@ -279,4 +280,4 @@ LAYOUTS: dict[str, Callable[[Dice], Layout]] = {
     "four branches": four_branch,
     "idler chains": idler_chains,
 }
-"""Every structure, by name."""
+"""All structures by name."""

@@ -17,7 +17,7 @@ from benchmarks.random_trains.layouts import (
 
 
 def _carried(star: Callable[[Dice], Layout]) -> Callable[[Dice], Layout]:
-    """Return a star as a set: its planets on a carrier, any member held, driven and driving."""
+    """Return a star as a set: planets on a carrier; any member is held, driven or driving."""
 
     def drawn(dice: Dice) -> Layout:
         layout = star(dice)
@@ -34,7 +34,7 @@ def _carried(star: Callable[[Dice], Layout]) -> Callable[[Dice], Layout]:
             members.remove(getattr(layout, end))
         layout.gears[members[0]]["held"] = True
         if dice.chance(0.3):
-            # Held by a mount that yields.
+            # The member is held by an elastic mount.
             del layout.gears[members[0]]["held"]
             layout.gears["housing"] = {"type": "carrier", "centre": ["0 m", "0 m"], "held": True}
             layout.radius["housing"] = layout.radius[inner]
@@ -45,7 +45,7 @@ def _carried(star: Callable[[Dice], Layout]) -> Callable[[Dice], Layout]:
 
 
 def _split(star: Callable[[Dice], Layout]) -> Callable[[Dice], Layout]:
-    """Return a star as a set two of whose members a layshaft joins: a loop, none is held."""
+    """Return a star as a set in which a layshaft joins two members: a loop; no member is held."""
 
     def drawn(dice: Dice) -> Layout:
         layout = _carried(star)(dice)
@@ -62,7 +62,7 @@ def _split(star: Callable[[Dice], Layout]) -> Callable[[Dice], Layout]:
         layout.meshes |= {("g1", "l1"): angle, ("l2", "g2"): angle}
         joined = dice.pick([layout.input, layout.output])
         if dice.chance(0.7):
-            # Of sun and ring: only their senses may contradict those of the layshaft.
+            # A layshaft between sun and ring: only then may the senses contradict each other.
             if held == "carrier":
                 layout.output, held = held, layout.output
             joined = layout.output if layout.input == "carrier" else layout.input
@@ -78,10 +78,10 @@ PLANETARY: dict[str, Callable[[Dice], Layout]] = {
     "stepped planetary": _carried(stepped_star),
     "double planetary": _carried(double_star),
 }
-"""Every structure of a single set, by name."""
+"""All structures of a single set by name."""
 LOOPS: dict[str, Callable[[Dice], Layout]] = {
     "split planetary": _split(star),
     "split stepped planetary": _split(stepped_star),
     "split double planetary": _split(double_star),
 }
-"""Every structure with a loop."""
+"""All structures with a loop."""

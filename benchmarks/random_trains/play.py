@@ -1,8 +1,9 @@
-"""Which places of a reference equilibrium are open, and how far they may go.
+"""The places of a reference equilibrium that are open, and how far they may move.
 
-Apart from the reference's own null vectors, which say where one may begin to move: what has play
-but rests on a limit without pressing on it is open all the same, and what sits in a limit without
-play is not. Largest moves are linear programmes in doubles, on directions found in 50 digits.
+This is independent of the reference's own null vectors, which only give the directions in which a
+place may begin to move: a coordinate with play that rests on a limit without pressing on it is open
+all the same, and one in a limit without play is not. The largest moves are linear programmes in
+doubles, along directions found in 50 digits.
 """
 
 from __future__ import annotations
@@ -20,13 +21,13 @@ from benchmarks.reference.equations import Equations, Guess, offset
 from benchmarks.reference.machine import Machine
 
 FACETS = 32
-"""Sides of the polygon inside a disc, in which a gear may move freely."""
+"""Number of sides of the polygon that replaces a disc in which a gear may move freely."""
 PIVOT = 1e-14
-"""Pivot that counts as zero: what doubles leave of directions that should be opposite."""
+"""Pivot that counts as zero: the rounding of directions that should be opposite."""
 
 
 def play(machine: Machine, at: Guess, force: float) -> dict[str, float]:
-    """How far every coordinate may move without any force, in length units.
+    """Return how far every coordinate may move without any force, in length units.
 
     Parameters
     ----------
@@ -39,8 +40,8 @@ def play(machine: Machine, at: Guess, force: float) -> dict[str, float]:
     Returns
     -------
     dict of coordinate name to float
-        Way from one end to the other over which no force changes, of every coordinate that has one;
-        infinite where nothing limits it.
+        Distance from one end to the other over which no force changes, for every coordinate that
+        can move; infinite if nothing limits it.
     """
     pressed = {n: f for n, f in at.forces.items() if f > force}
     places = {n: _released(g, at, force) for n, g in machine.graphs.items()}
@@ -61,11 +62,11 @@ def play(machine: Machine, at: Guess, force: float) -> dict[str, float]:
 
 
 def _released(graph: Graph, at: Guess, force: float) -> str:
-    """Place of a graph, that between its pieces without force where it does not press."""
+    """Return the piece of a graph; if it does not press, the piece without force instead."""
     place = at.places[graph.name]
     size = float(sum(p * p for p in at.pulls[graph.name])) ** 0.5
     loose = place in ("wall", "stop") and not graph.torque_of and graph.bound == 0
-    # A power has no stiffness where it begins, and yet holds.
+    # A power law has no stiffness at its start, but still holds the gear.
     moves = graph.reach > 0 or graph.power != 1
     return "slip" if loose and moves and size <= force else place
 
@@ -77,7 +78,7 @@ def _limits(
     places: Mapping[str, str],
     moves: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Rows and bounds of what the moves may not do: close a contact, leave a disc."""
+    """Return rows and bounds that keep moves from closing a contact or leaving a disc."""
     rows, room = [], []
     for name, contact in machine.contacts.items():
         if name in pressed:
@@ -107,7 +108,7 @@ def _dense(gradient: Mapping[int, Any], size: int) -> NDArray[np.float64]:
 def _furthest(
     along: NDArray[np.float64], rows: NDArray[np.float64], room: NDArray[np.float64]
 ) -> float:
-    """How far a coordinate may go, from one end to the other."""
+    """Return how far a coordinate may move, from one end to the other."""
     from scipy.optimize import linprog
 
     ends = []

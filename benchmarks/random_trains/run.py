@@ -1,4 +1,4 @@
-"""Many random trains, or stress problems, over processes; what is done is kept."""
+"""Many random trains, or stress problems, in several processes; verdicts are kept."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from benchmarks.stress.problem import COUNT
 from loadshare.case import Case
 
 STRESS = -1
-"""In the place of a seed: the problems of the stability map, family after family."""
+"""Stands in for a seed: the problems of the stability map, family after family."""
 SETS = -2
-"""In the place of seed 0: planetary sets; those of seed n at n less."""
+"""Stands in for seed 0 of planetary sets; seed n is n less."""
 LOOPED = -1000
-"""In the place of seed 0: sets with a loop; those of seed n at n less."""
+"""Stands in for seed 0 of sets with a loop; seed n is n less."""
 PROBLEMS = len(FAMILIES) * COUNT
-"""Of the stability map."""
+"""Number of problems of the stability map."""
 FAILURES = ("wrong", "refused", "open", "crashed")
-"""Outcomes that are to be looked into."""
+"""Outcomes that need a closer look."""
 
 
 def run(
@@ -43,7 +43,7 @@ def run(
 
 
 def one(seed: int, number: int) -> dict[str, Any]:
-    """Judge one train; plain data."""
+    """Judge one train; return plain data."""
     return judged(case_of(seed, number))
 
 
@@ -59,13 +59,13 @@ def case_of(seed: int, number: int) -> Case:
 
 
 def _warm() -> None:
-    """Load the compiled kernel, as a process has it that has solved for a while."""
+    """Load the compiled kernel, so that times are those of a process that has solved before."""
     ls.solve(draw(0, 0), engine="compiled")
     judged(draw(0, 0))
 
 
 def failures(row: dict[str, Any]) -> list[str]:
-    """What is wrong with a train, one line per position at fault."""
+    """Return the faults of a train, one line each."""
     lines = []
     for p in row["positions"]:
         message = " ".join(p["told"].split())
@@ -83,7 +83,7 @@ def failures(row: dict[str, Any]) -> list[str]:
 
 
 def write_failures(rows: list[dict[str, Any]], folder: Path) -> int:
-    """Write the trains at fault as case files, each with what is wrong in its first lines."""
+    """Write the trains at fault as case files, with the faults in the first lines."""
     folder.mkdir(parents=True, exist_ok=True)
     count = 0
     for row in rows:

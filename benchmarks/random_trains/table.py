@@ -1,4 +1,4 @@
-"""What a run of random trains came to, as Markdown."""
+"""The results of a run of random trains, as Markdown."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MEANING = {
 
 
 def text(rows: list[dict[str, Any]]) -> str:
-    """Tables: outcomes, reasons, times, rungs, bounds."""
+    """Return tables of outcomes, reasons, times, rungs and bounds."""
     positions = [p for row in rows for p in row["positions"]]
     outcomes = Counter(p["outcome"] for p in positions)
     misplaced = [p for p in positions if p["misplaced"]]
@@ -65,7 +65,7 @@ def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> list[str]:
 
 
 def _reasons(outcome: str, positions: list[dict[str, Any]]) -> list[str]:
-    """Messages without their figures and names, the commonest first."""
+    """Return a table of messages without their figures and names, the most frequent first."""
     if not positions:
         return []
     key = "reference" if outcome == "unchecked" else "told"
@@ -91,11 +91,11 @@ def _times(rows: list[dict[str, Any]]) -> list[str]:
 
 
 def _bounds(pairs: list[list[float]]) -> list[str]:
-    """How the claimed bounds compare with true errors."""
+    """Return a table that compares the claimed bounds with true errors."""
     if not pairs:
         return []
     claimed, true = np.array(pairs).T
-    # The reference itself ends after some 50 digits.
+    # The reference itself has only some 50 digits.
     true = np.where(true < NO_TORQUE, 0.0, true)
     held = int((claimed >= true).sum())
     ratio = claimed[true > 0.0] / true[true > 0.0]

@@ -1,7 +1,7 @@
-"""What acts in a train, in any arithmetic: contacts, arcs, radial graphs.
+"""The elements of a train in any arithmetic: contacts, arcs, radial graphs.
 
-Everything is dimensionless: lengths over a length unit, forces over a force unit, both doubles, so
-that nothing is lost in 50 digits.
+Everything is dimensionless: lengths are divided by a length unit, forces by a force unit, both
+doubles, so that no digit is lost in 50-digit arithmetic.
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ Gradient = dict[int, Any]
 Curvature = dict[tuple[int, int], Any]
 
 ONSET = 1e-9
-"""Way beyond a reach, in lengths of the train, at which a wall that begins without slope begins."""
+"""Distance beyond the reach, in length units of the train, at which a wall without initial slope is
+evaluated instead."""
 
 
 @dataclass(frozen=True, slots=True)
 class Yield:
-    """Compression of a contact under a force, b f + c f^(2/3), or straight between points."""
+    """Compression of a contact under a force: b f + c f^(2/3), or linear between points."""
 
     arithmetic: Any
     b: Any
@@ -27,7 +28,7 @@ class Yield:
     points: tuple[tuple[Any, Any], ...] = ()
 
     def at(self, force: Any) -> tuple[Any, Any]:
-        """Compression and its slope; the slope at no force is that of a trace of force."""
+        """Return the compression and its slope; at zero force, the slope at a minute force."""
         if self.points:
             pairs = zip(self.points[:-1], self.points[1:], strict=True)
             (f0, d0), (f1, d1) = next(
@@ -42,7 +43,7 @@ class Yield:
 
 
 class Contact(Protocol):
-    """A unilateral contact: approach, positive when compressed, and a force that pushes."""
+    """A unilateral contact: its approach is positive in compression, and its force pushes."""
 
     @property
     def name(self) -> str:
@@ -50,10 +51,10 @@ class Contact(Protocol):
 
     @property
     def law(self) -> Yield:
-        """How it yields."""
+        """Law of its compression."""
 
     def approach(self, x: list[Any]) -> tuple[Any, Gradient, Curvature]:
-        """Approach at the coordinates, its gradient and its second derivatives."""
+        """Return the approach at the coordinates, its gradient and its second derivatives."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +101,7 @@ class ExactArc:
 
 @dataclass(frozen=True, slots=True)
 class Graph:
-    """A radial graph: a spline (stick, slip, stop) or a round ring, as places on it.
+    """A radial graph: a spline (stick, slip, stop) or a round ring, described by its places.
 
     Attributes
     ----------
@@ -109,19 +110,20 @@ class Graph:
         Coordinates of the gear's centre.
     centre : tuple
     stiffness : number or None
-        Slope where the graph rises; None for a rigid wall.
+        Slope of the rising pieces; None for a rigid wall.
     stick : number or None
         Radius up to which a spline sticks; None takes bound/stiffness. A ring's is 0.
     reach : number
         Radius at which the clearance is used up.
     bound : number
-        Friction bound where it is fixed.
+        Friction bound, if it is fixed.
     per_torque : number
-        Friction bound over the force that the spline transmits; 0 where the bound is fixed.
+        Friction bound over the force that the spline transmits; 0 if the bound is fixed.
     torque_of : dict of contact name to number
-        Transmitted force from contact forces.
+        Coefficients of the transmitted force in terms of contact forces.
     root : callable or None
-        What a way beyond the reach is multiplied with where the force grows with a power of it.
+        If the force grows with a power of the distance beyond the reach: function that returns the
+        factor, besides the stiffness, on that distance.
     power : number
         That power.
     """
@@ -140,7 +142,7 @@ class Graph:
     power: Any = 1
 
     def wall(self, radius: Any) -> tuple[Any, Any]:
-        """Force beyond the reach, without that of the level, and its slope."""
+        """Return the force beyond the reach, without that of the level piece, and its slope."""
         gap = radius - self.reach
         if self.root is None:
             return self.stiffness * gap, self.stiffness
@@ -149,14 +151,14 @@ class Graph:
         return slope * gap, self.power * slope
 
     def stick_end(self, bound: Any) -> Any:
-        """Radius where sticking ends."""
+        """Return the radius at which sticking ends."""
         continuous = bound / self.stiffness if self.stiffness is not None else bound * 0
         if self.stick is None:
             return continuous
         return min(self.stick, continuous)
 
     def place(self, radius: Any, force: Any, bound: Any) -> str:
-        """Place on the graph that is nearest to a radius and a force."""
+        """Return the place on the graph that is nearest to a radius and a force."""
         if (
             self.stick is None
             and self.stiffness is not None

@@ -1,4 +1,4 @@
-"""Sparse Gaussian elimination over any arithmetic, with free unknowns set apart."""
+"""Sparse Gaussian elimination in any arithmetic; free unknowns are returned as null vectors."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Any
 Sparse = list[dict[int, Any]]
 
 PIVOT = 0.1
-"""Part of a column's largest entry that a pivot must reach, so that sparsity may choose."""
+"""Fraction of a column's largest entry that a pivot must reach; it leaves room to choose for
+sparsity."""
 
 
 class Contradiction(ArithmeticError):  # noqa: N818 -- a finding, not a fault
@@ -16,7 +17,7 @@ class Contradiction(ArithmeticError):  # noqa: N818 -- a finding, not a fault
     Parameters
     ----------
     left : number
-        What the worst equation without unknowns is left with.
+        Right-hand side of the worst equation without unknowns.
     spans : list of list
         Null vectors of the matrix.
     """
@@ -34,13 +35,13 @@ def solve_sparse(
     Parameters
     ----------
     rows : list of dict
-        Rows of A by column; they are used up.
+        Rows of A by column; they are overwritten.
     right : list
         r.
     size : int
         Number of unknowns.
     nothing : number
-        Magnitude below which an entry that is left counts as zero.
+        Magnitude below which a remaining entry counts as zero.
 
     Returns
     -------
@@ -52,7 +53,7 @@ def solve_sparse(
     Raises
     ------
     Contradiction
-        If a row without unknowns has a right-hand side.
+        If a row without unknowns has a non-zero right-hand side.
     """
     columns: list[set[int]] = [set() for _ in range(size)]
     for i, row in enumerate(rows):

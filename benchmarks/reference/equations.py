@@ -1,4 +1,4 @@
-"""The equations of an active set: balances, contacts, ties, places on graphs, friction bounds."""
+"""The equations of an active set: balances, contacts, ties, pieces of graphs, friction bounds."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from benchmarks.reference.elimination import Sparse
 from benchmarks.reference.machine import Machine
 
 CURVED = frozenset({"step", "wall"})
-"""Places on which a graph's force is an unknown of its own."""
+"""Places at which the force of a graph is an unknown of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,9 +48,10 @@ class Equations:
     rows : list of dict
         Derivatives by unknown: coordinates, contact forces, tie torques, pulls, bounds.
     right : list
-        Residuals, negative.
+        Negative residuals.
     force_at, pull_at, bound_at : dict
-        Unknowns of contacts, graphs on a step or wall, and bounds that follow the torque.
+        Indices of the unknowns of contacts, of graphs on a step or wall, and of bounds that follow
+        the torque.
     tie_at : list of int
     count : int
     """
@@ -126,7 +127,7 @@ class Equations:
             self._equation(row, compression - approach)
 
     def _pull(self, graph: Graph) -> None:
-        """Add a graph to the balance, and its constraint where it stands on a step or wall."""
+        """Add a graph to the balance, and its constraint if it is on a step or wall."""
         at, name = self.at, graph.name
         place, bound, pull = at.places[name], at.bounds[name], at.pulls[name]
         q, radius = offset(self.machine, graph, at.x)
@@ -178,18 +179,18 @@ class Equations:
 
 
 def offset(machine: Machine, graph: Graph, x: list[Any]) -> tuple[list[Any], Any]:
-    """Offset of a graph's gear from its centre, and its size."""
+    """Return the offset of a graph's gear from its centre, and its size."""
     q = [x[i] - c for i, c in zip(graph.indices, graph.centre, strict=True)]
     return q, machine.arithmetic.sqrt(q[0] * q[0] + q[1] * q[1])
 
 
 def edge_of(graph: Graph, place: str, bound: Any) -> Any:
-    """Radius of a step or wall."""
+    """Return the radius of a step or wall."""
     return graph.reach if place == "wall" else graph.stick_end(bound)
 
 
 def pinned(graph: Graph, at: Guess) -> bool:
-    """Whether a graph stands on a step or wall at radius zero, where its force has no direction."""
+    """Whether a graph is on a step or wall at radius zero, where its force has no direction."""
     place = at.places[graph.name]
     return place in CURVED and not edge_of(graph, place, at.bounds[graph.name]) > 0
 
@@ -197,7 +198,7 @@ def pinned(graph: Graph, at: Guess) -> bool:
 def on_piece(
     graph: Graph, place: str, q: list[Any], radius: Any, bound: Any
 ) -> tuple[list[Any], list[list[Any]], list[Any]]:
-    """Force on a rising or level piece, its derivative by the offset, and by the bound."""
+    """Return the force on a rising or level piece and its derivatives by offset and bound."""
     zero = 0 * bound
     if place == "stick":
         k = graph.stiffness

@@ -1,4 +1,4 @@
-"""A train at one position as coordinates and elements in any arithmetic."""
+"""A train at one position, as coordinates and elements in any arithmetic."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 POWERS = {1.0: (1, 1), 1.5: (3, 2), 10.0 / 9.0: (10, 9)}
-"""Powers of walls, as fractions."""
+"""Exponents of walls, as fractions."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Machine:
-    """Everything that acts, dimensionless.
+    """All elements and loads, dimensionless.
 
     Attributes
     ----------
     size : int
         Number of coordinates: r_b φ of every gear but the output, p of every gear that moves.
     names : tuple of str
-        Of the coordinates.
+        Names of the coordinates.
     turns, moves : dict of gear to int
         First coordinate of the rotation and of the displacement.
     springs : list of (dict, number, number)
@@ -59,7 +59,7 @@ class Machine:
 def machine(
     train: Train, situation: Situations, arithmetic: Any, softening: float = 0.0
 ) -> Machine:
-    """Write a train at one position in an arithmetic; the train's doubles are taken exactly.
+    """Return a train at one position in an arithmetic; the train's doubles are taken as exact.
 
     Parameters
     ----------
@@ -67,8 +67,8 @@ def machine(
     situation : Situations
     arithmetic : mpmath context
     softening : float
-        Stiffness added to every coordinate and compliance added to every wall, dimensionless: a
-        train that is easier to settle, to look for an active set.
+        Dimensionless stiffness added to every coordinate and compliance added to every wall, which
+        make it easier to find an active set.
     """
     return _Writer(train, situation, arithmetic, softening).machine()
 
@@ -140,7 +140,7 @@ class _Writer:
         return rigid if math.isinf(stiffness) else self._law(PowerLaw(1.0 / stiffness))
 
     def _shift(self, gear: str, direction: np.ndarray, sign: int = 1) -> dict[int, Any]:
-        """Coefficients of direction · p_gear."""
+        """Return the coefficients of direction · p_gear."""
         if gear not in self.moves:
             return {}
         frame, first = self.train.gears[gear].frame, self.moves[gear]
@@ -170,7 +170,7 @@ class _Writer:
     def _shafts(self) -> tuple[list[tuple[dict[int, Any], Any, Any]], list[Any]]:
         springs, ties = [], []
         for shaft in self.train.shafts.values():
-            # In angles times the length unit: u/r_b is an angle over the length unit.
+            # The unit is angle times length unit: u/r_b is an angle over the length unit.
             wind = {
                 self.turns[g]: sign / self.of(self.train.gears[g].base_radius)
                 for g, sign in ((shaft.first, 1), (shaft.second, -1))
@@ -232,7 +232,7 @@ class _Writer:
         return found
 
     def _arc(self, ring: DrumRing, side: int, neighbour: str, wall: Yield) -> ExactArc:
-        """An arc whose nominal distance is that of the two centres, exactly."""
+        """Return an arc whose nominal distance is exactly that of the two centres."""
         gears = self.train.gears
         axis = [self.of(v) for v in gears[ring.gear].axis.tolist()]
         ends = zip(gears[ring.gear].centre.tolist(), gears[neighbour].centre.tolist(), strict=True)
@@ -303,7 +303,7 @@ class _Writer:
         return found
 
     def _root(self, power: float) -> Callable[[Any], Any]:
-        """x^(power − 1)."""
+        """Return the function x^(power − 1)."""
         sqrt, cbrt = self.arithmetic.sqrt, self.arithmetic.cbrt
         return sqrt if power == 1.5 else lambda x: cbrt(cbrt(x))
 
@@ -312,7 +312,7 @@ class _Writer:
         return linear if power == 1.0 else linear * self._root(power)(self.of(self.length))
 
     def _transmitted(self, gear: str) -> dict[str, Any]:
-        """Arms [m] of the contact forces whose sum is the torque that a gear's spline transmits."""
+        """Return the arms [m] of the contact forces whose moments are a spline's torque."""
         arms: dict[str, Any] = {}
         for name, to in self.train.approaches.items():
             if gear in to.turning:

@@ -1,4 +1,4 @@
-"""Newton's method on a fixed active set, and the exchange of what has the wrong sign."""
+"""Newton's method on a fixed active set, and the exchange of elements with wrong signs."""
 
 from __future__ import annotations
 
@@ -19,14 +19,17 @@ from benchmarks.reference.equations import (
 from benchmarks.reference.machine import Machine
 
 ROUNDING = 1e-9
-"""Imbalance along a free direction, in loads, that the rounding of a case's figures explains."""
+"""Imbalance along a free direction, over the load, that the rounding of a case's figures explains.
+"""
 NOWHERE = 1e10
-"""Displacement, in deflections under the load, that only the rounding of a direction explains."""
+"""Displacement, in deflections under the load, so large that only a rounded direction explains it.
+"""
 WANING = 1000
-"""Divisor of the force of a flank with a Hertz law that a step would let pull: its compliance is
-infinite without force, so it may only come near, and forty-five digits are far."""
+"""Divisor of the force of a flank with a Hertz law when a Newton step would make it negative. Its
+compliance is infinite at zero force, so the force may only approach zero; there are 45 digits to
+go."""
 STEPS = 60
-"""Newton steps on one active set."""
+"""Most Newton steps on one active set."""
 
 
 class NoReference(RuntimeError):  # noqa: N818 -- a finding, not a fault
@@ -51,7 +54,7 @@ def settle(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> Sett
     machine : Machine
     guess : Guess
     tolerance : number
-        Residual, and violation of a sign, that counts as none.
+        Residual, and violation of a sign, that counts as zero.
     nothing : number
         Pivot that counts as zero.
 
@@ -77,12 +80,12 @@ def settle(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> Sett
 
 
 def _newton(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> Settled:
-    """Newton's method; directions that the train's own rounding leaves free are held still.
+    """Apply Newton's method; directions that the train's own rounding leaves free are held fixed.
 
     A free pinion between two flanks is in balance only as far as their normals are opposite, and
-    doubles are opposite to 1e-12. Such a direction shows as a null vector of equations that
-    contradict one another, or as a place out of this world, where round-off would be in balance.
-    It then gets a tie where the guess stands, whose force is that rounding.
+    normals in doubles are opposite to 1e-12. Such a direction shows as a null vector of
+    contradictory equations, or as a huge displacement at which round-off would be in balance. It
+    then gets a tie at the position of the guess; the force of the tie is that rounding.
     """
     zero = machine.arithmetic.mpf(0)
     spans: list[list[Any]] = []
@@ -111,7 +114,7 @@ def _newton(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> Set
 
 
 def _released(machine: Machine, guess: Guess, settled: Settled, spans: list[list[Any]]) -> Settled:
-    """Take the ties of free directions away again, if they carry round-off only."""
+    """Remove the ties of free directions, provided that they carry round-off only."""
     if not spans:
         return settled
     count = len(guess.ties)
@@ -136,7 +139,7 @@ def _iterated(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> S
 
 
 def _step(equations: Equations, nothing: Any) -> tuple[Guess, tuple[tuple[Any, ...], ...]]:
-    """One Newton step, none along what the equations leave free."""
+    """Return the next guess of Newton's method; it does not move along null vectors."""
     machine, at = equations.machine, equations.at
     n = machine.size
     step, spans = solve_sparse(equations.rows, list(equations.right), equations.count, nothing)
@@ -176,7 +179,7 @@ def loose_directions(machine: Machine, at: Guess) -> list[list[Any]]:
 
 
 def _across(step: list[Any], spans: list[list[Any]], n: int) -> list[Any]:
-    """Return the part of a step of the coordinates that is square to null vectors."""
+    """Return the part of a step of the coordinates that is orthogonal to null vectors."""
     moving = [s[:n] for s in spans if any(s[:n])]
     if not moving:
         return step
@@ -189,12 +192,12 @@ def _across(step: list[Any], spans: list[list[Any]], n: int) -> list[Any]:
 
 
 def _along(pull: list[Any], q: list[Any], radius: Any) -> Any:
-    """Size of a pull along an offset; where there is no offset, along itself."""
+    """Return the component of a pull along an offset; zero without an offset."""
     return (pull[0] * q[0] + pull[1] * q[1]) / radius if radius else pull[0] * 0
 
 
 def _wrong(machine: Machine, at: Guess, tolerance: Any) -> list[tuple[str, Any]]:
-    """Contacts with the wrong sign, and graphs off their place with the place to go to."""
+    """Return contacts with the wrong sign, and graphs off their place with the place to move to."""
     found: list[tuple[str, Any]] = []
     for name, contact in machine.contacts.items():
         if name in at.forces:
@@ -234,7 +237,7 @@ def _admits(graph: Graph, place: str, radius: Any, size: Any, bound: Any, band: 
 
 
 def _next_place(graph: Graph, place: str, radius: Any, size: Any, bound: Any) -> str:
-    """Neighbouring place that a graph moves to."""
+    """Return the neighbouring place that a graph moves to."""
     end = graph.stick_end(bound)
     jumps = graph.stiffness is not None and bound > graph.stiffness * end
     last = "wall" if graph.stiffness is None else "stop"
@@ -274,7 +277,7 @@ def _exchanged(at: Guess, wrong: list[tuple[str, Any]], machine: Machine) -> Gue
 
 
 def _force_of(contact: Contact, overlap: Any) -> Any:
-    """Force from which Newton's method on a law begins: an upper bound of that of the overlap."""
+    """Return the start of Newton's method on a law: an upper bound of the force at the overlap."""
     law = contact.law
     if law.points or not law.c:
         return overlap * 0

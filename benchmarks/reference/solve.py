@@ -20,18 +20,18 @@ from loadshare.train.train import Train
 __all__ = ["NoReference", "Reference", "reference"]
 
 DIGITS = 70
-"""Digits of the arithmetic; twenty more than are claimed."""
+"""Digits of the arithmetic; twenty more than the reference claims."""
 TOLERANCE = "1e-45"
-"""Largest residual, in forces and lengths of the case."""
+"""Largest residual, in the force and length units of the case."""
 SOFTENINGS = (0.0, 1e-1, 1e-3, 1e-5, 1e-7)
-"""Softenings from which the search for an active set begins, each down to none."""
+"""Softenings at which the search for an active set starts; each is reduced to zero."""
 FREE = 1e-9
-"""Part of a null vector from which on a coordinate counts as undetermined."""
+"""Fraction of a null vector above which a coordinate counts as undetermined."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reference:
-    """An equilibrium in 50 digits, and its nearest doubles.
+    """An equilibrium in 50 digits, and the nearest doubles.
 
     Attributes
     ----------
@@ -40,22 +40,22 @@ class Reference:
     displacement : mapping of gear to ndarray, shape (2,)
         p [m] of every gear that moves, in its transverse frame.
     force : mapping of contact to float
-        [N], of flanks, arcs and stops; zero where open.
+        [N], of flanks, arcs and stops; zero if open.
     pull : mapping of element to ndarray, shape (2,)
         Force [N] of every spline and round ring on its gear.
     undetermined : frozenset of str
         Gears whose displacement the equilibrium does not determine.
     loose : frozenset of str
-        Gears, these included, whose displacement hangs on forces below 1e-9 of the load: where they
-        come to rest is decided by digits that no case file has.
+        These gears, and those whose displacement depends on forces below 1e-9 of the load: their
+        place is decided by digits that no case file has.
     residual : float
-        Largest residual of all equations, in forces and lengths of the case.
+        Largest residual of all equations, in the force and length units of the case.
     imbalance : float
-        What the rounding of the train's figures leaves out of balance along free directions, in
-        loads; zero without such directions.
+        Imbalance along free directions from the rounding of the train's figures, over the load;
+        zero without such directions.
     slack : float
-        Distance of the nearest sign from its change: smallest force of a closed contact, smallest
-        gap of an open one; near zero on the verge.
+        Distance to the nearest change of a sign: smallest force of a closed contact or smallest gap
+        of an open one; near zero on the verge.
     exact : mapping of mesh to str
         The torques in 50 digits.
     """
@@ -81,7 +81,7 @@ def reference(train: Train, index: int = 1, hint: Equilibrium | None = None) -> 
     index : int
         1-based position.
     hint : Equilibrium, optional
-        Where to look first. It saves time and cannot change the answer, whose equations and signs
+        Start of the search. It saves time and cannot change the answer, whose equations and signs
         are checked in 50 digits.
 
     Returns
@@ -99,7 +99,7 @@ def reference(train: Train, index: int = 1, hint: Equilibrium | None = None) -> 
 def settled_in_digits(
     train: Train, index: int = 1, hint: Equilibrium | None = None
 ) -> tuple[Machine, Settled]:
-    """Return the equations of a position in 70 digits, and where they are settled.
+    """Return the equations of a position in 70 digits, and their solution.
 
     Parameters, errors: as for `reference`.
     """
@@ -115,7 +115,7 @@ def settled_in_digits(
 
 
 def _found(train: Train, situation: Situations) -> Guess:
-    """Settle in double precision, over softened trains if it does not go directly."""
+    """Find the active set in double precision, over softened trains if that fails directly."""
     import mpmath
 
     last: NoReference | None = None
@@ -134,7 +134,7 @@ def _found(train: Train, situation: Situations) -> Guess:
 
 
 def _at_rest(coarse: Machine) -> Guess:
-    """Drive flanks closed under the whole load, everything else open and unmoved."""
+    """Return a start: drive flanks under the whole load, everything else open and unmoved."""
     unit, zero = coarse.arithmetic.mpf(1), coarse.arithmetic.mpf(0)
     bounds = {
         n: g.per_torque * sum(abs(a) for a in g.torque_of.values()) if g.torque_of else g.bound
@@ -167,7 +167,7 @@ def _raised(fine: Machine, found: Guess) -> Guess:
 
 
 def _hinted(fine: Machine, train: Train, hint: Equilibrium) -> Guess:
-    """Active set and unknowns of an answer in doubles."""
+    """Return the active set and unknowns of an answer in doubles."""
     of, zero = fine.arithmetic.mpf, fine.arithmetic.mpf(0)
     x = [zero] * fine.size
     for gear, i in fine.turns.items():
@@ -194,7 +194,7 @@ def _hinted(fine: Machine, train: Train, hint: Equilibrium) -> Guess:
 
 
 def _moving(fine: Machine, spans: Sequence[Sequence[Any]]) -> frozenset[str]:
-    """Gears that null vectors displace."""
+    """Return the gears that null vectors displace."""
     return frozenset(
         gear
         for gear, i in fine.moves.items()

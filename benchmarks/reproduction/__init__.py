@@ -1,1 +1,1 @@
-"""The seed paper's figures, computed: what is printed, what comes out, and why they part."""
+"""The seed paper's figures, computed: printed values, computed values, and why they differ."""

@@ -1,4 +1,4 @@
-"""Fig. 10: both kinds of errors; the directions of the eccentricities are fitted to it."""
+"""Fig. 10: both kinds of errors, with the directions of the eccentricities fitted to it."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from loadshare.results import Position, Result
 from loadshare.study.fit import Fit, fit
 
 LAST_DIGIT = 0.0005
-"""Half of the printed shares' last digit, taken as their standard deviation."""
+"""Half a unit in the last digit of the printed shares, taken as their standard deviation."""
 TURN = ("-360 deg", "720 deg")
 """Bounds that let every direction turn freely."""
 CONDITIONAL = ("4", "5", "10")
-"""Gears whose directions alone, the others held, the shares determine."""
+"""Gears whose directions alone are determined by the shares if the others are fixed."""
 TITLE = "Fig. 10: both errors on all gears, no floats"
 
 
 @dataclass(frozen=True)
 class BothErrors:
-    """The fit and what it gives.
+    """The fit and the equilibrium that it gives.
 
     Attributes
     ----------
     fitted : Fit
         Directions of all ten eccentricities, installation errors along x.
     conditional : Fit
-        Three of them with the others held: as many as the figures determine.
+        Three of them, with the others fixed: as many as the figures determine.
     case : Case
         With the fitted directions.
     position : Position
@@ -63,7 +63,7 @@ def both_errors(seed: Seed) -> BothErrors:
 
 
 def alternatives(seed: Seed) -> dict[str, Case]:
-    """Other directions that explain the same figure, to show what it leaves open."""
+    """Return other directions that explain the same figure, to show what it leaves open."""
     start = {
         f"errors.{gear}.{kind}.direction": "0 deg"
         for gear in GEARS
@@ -77,7 +77,7 @@ def alternatives(seed: Seed) -> dict[str, Case]:
 
 
 def errors_of(case: Case) -> dict[str, object]:
-    """The errors of a case, as changes of another one."""
+    """Return the errors of a case, as changes of another one."""
     return {"errors": case.to_dict()["errors"]}
 
 
@@ -97,7 +97,7 @@ def _measured() -> dict[str, Mapping[str, object]]:
 
 
 def share_entries(both: BothErrors) -> list[Entry]:
-    """The shares that are fitted."""
+    """Return the shares that are fitted."""
     at = both.position
     one = [
         Entry(f"Ω of {m}", value, at.share[m] or 0.0, 4, "fitted" if m == "1-2" else "predicted")
@@ -110,7 +110,7 @@ def share_entries(both: BothErrors) -> list[Entry]:
 
 
 def torque_entries(both: BothErrors) -> list[Entry]:
-    """The torques, which no balanced model can meet."""
+    """Return the torques, which no balanced model can meet."""
     everything = printed.TORQUES | printed.TORQUES_II
     return [
         Entry(f"T of {m} [N·m]", value, both.position.torque[m], 1)
@@ -121,7 +121,7 @@ def torque_entries(both: BothErrors) -> list[Entry]:
 def chapter(
     seed: Seed, both: BothErrors, others: Mapping[str, Case], cycle: Result | None
 ) -> Chapter:
-    """What the page says about Fig. 10."""
+    """Return the text on Fig. 10."""
     shares = share_entries(both)
     worst = max(abs(e.difference or 0.0) for e in shares if e.kind == "fitted")
     blocks = [
@@ -167,11 +167,11 @@ def torque_picture(
     seed : Seed
     cycle : Result
     name, title : str
-        Of the picture.
+        Name and title of the picture.
     levels : mapping of mesh to float
         Printed torques [N·m].
     note : str
-        What their dotted lines are.
+        Meaning of their dotted lines.
     """
     panels = []
     for stage, meshes in cycle.stages.items():
@@ -192,7 +192,7 @@ def torque_picture(
 
 
 def _level(cycle: Result, mesh: str, value: float) -> Level:
-    """A printed torque, with its words on the side away from the computed one."""
+    """Return a printed torque; its label is on the side away from the computed one."""
     return Level(value, mesh, below=cycle.positions[0].torque[mesh] > value)
 
 
@@ -290,5 +290,5 @@ def _over_the_cycle(cycle: Result) -> str:
 
 
 def _unevenness(at: Position, meshes: Sequence[str]) -> float:
-    """Largest distance of a mesh's torque from the stage's mean, over it."""
+    """Return the largest deviation of a mesh's torque from the stage's mean, relative to it."""
     return max(abs((at.share[m] or 0.0) - 1.0) for m in meshes)

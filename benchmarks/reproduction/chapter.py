@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Chapter:
-    """What the page says about one figure of the paper.
+    """The text of the page on one figure of the paper.
 
     Attributes
     ----------

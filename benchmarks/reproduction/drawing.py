@@ -1,4 +1,4 @@
-"""The page's pictures: computed curves, with what the paper prints marked on them."""
+"""The page's pictures: computed curves, with the printed values marked on them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SIDES: dict[str, dict[str, Any]] = {
     "left above": {"align": "right", "dx": -6, "dy": -9},
     "left below": {"align": "right", "dx": 4, "dy": 14},
 }
-"""Where text is placed relative to a mark."""
+"""Placement of text relative to a mark."""
 CROSS = "M-0.7,-0.7L0.7,0.7M-0.7,0.7L0.7,-0.7"
 
 
@@ -44,9 +44,9 @@ class Printed:
     ----------
     x, y : float
     text : str
-        Beside its mark.
+        Text beside its mark.
     side : str
-        Of the mark on which the text is placed: one of `SIDES`.
+        Side of the mark on which the text is placed: one of `SIDES`.
     """
 
     x: float
@@ -57,7 +57,7 @@ class Printed:
 
 @dataclass(frozen=True)
 class Level:
-    """A printed value that holds over all x, in the colour of a curve.
+    """A printed value that is constant over x, in the colour of a curve.
 
     Attributes
     ----------
@@ -65,9 +65,9 @@ class Level:
     name : str
         Of the curve.
     along : float
-        Where its words begin, from 0 (left) to 1.
+        Start of its label, from 0 (left) to 1.
     below : bool
-        Whether they are placed below it.
+        Whether the label is below it.
     """
 
     y: float
@@ -88,19 +88,19 @@ class Panel:
     curves : mapping of name to points (x, y)
     looks : mapping of name to Look
     named : str
-        What the names are: "gear", "mesh".
+        Title of the legend: "gear", "mesh".
     printed : sequence of Printed
     band : (low, high) or None
         Printed range of y, shaded.
     rules : sequence of (x, text)
-        Where something happens.
+        Vertical lines at events, with labels.
     levels : sequence of Level
     least : float
-        Least height of the y axis: what is smaller shall not look large.
+        Smallest range of the y axis, so that small differences do not look large.
     true_to_shape : bool
         Equal scales on both axes.
     ticks : sequence of float
-        Of the x axis, where round numbers would not do.
+        Of the x axis, if round numbers do not suit it.
     """
 
     title: str
@@ -124,9 +124,9 @@ def picture(name: str, title: str, subtitle: str, panels: Sequence[Panel]) -> Fi
     Parameters
     ----------
     name : str
-        Of the file.
+        Name of the file.
     title, subtitle : str
-        Heading, and what the marks mean.
+        Heading, and the meaning of the marks.
     panels : sequence of Panel
     """
     columns = 3 if len(panels) == 3 else 2
@@ -165,7 +165,7 @@ def _panel(panel: Panel, columns: int) -> Drawing:
 
 
 def _rows(panel: Panel) -> list[Row]:
-    """Points of all curves to seven digits of the largest: round-off shall not change the file."""
+    """Return the points of all curves, rounded so that round-off does not change the file."""
     points = [point for curve in panel.curves.values() for point in curve]
     of_x, of_y = (decimals(values, 7) for values in zip(*points, strict=True))
     return [
@@ -176,7 +176,7 @@ def _rows(panel: Panel) -> list[Row]:
 
 
 def _axes(panel: Panel, rows: Sequence[Row]) -> tuple[Channel, Channel]:
-    """Both axes, around the curves and what is printed."""
+    """Return both axes, around the curves and the printed values."""
     xs = [r["x"] for r in rows] + [p.x for p in panel.printed]
     ys = [r["y"] for r in rows] + [p.y for p in panel.printed]
     ys += [*(panel.band or ()), *(level.y for level in panel.levels)]
@@ -188,14 +188,14 @@ def _axes(panel: Panel, rows: Sequence[Row]) -> tuple[Channel, Channel]:
     else:
         domain = padded(min(ys), max(ys), panel.least)
         scales = [{"zero": False, "padding": 6}, {"domain": domain}]
-    # A count beside given ticks would thin them out.
+    # A tick count beside given ticks would thin them out.
     ticks = {"values": list(panel.ticks)} if panel.ticks else {"tickCount": 6}
     x = axis("x:Q", panel.x_title, scale=scales[0], **ticks, grid=panel.true_to_shape)
     return x, axis("y:Q", panel.y_title, scale=scales[1], tickCount=6)
 
 
 def _printed(printed: Sequence[Printed], x: Channel, y: Channel) -> list[Drawing]:
-    """Oblique crosses in ink, each with its words."""
+    """Draw oblique crosses in ink, each with its label."""
     if not printed:
         return []
     rows = [{"x": p.x, "y": p.y, "text": p.text, "side": p.side} for p in printed]

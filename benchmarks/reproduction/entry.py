@@ -17,7 +17,7 @@ class Entry:
     quantity : str
         With its unit.
     printed : float or None
-        None where the paper prints none.
+        None if the paper prints none.
     computed : float
     places : int
         Decimals shown.
@@ -33,12 +33,12 @@ class Entry:
 
     @property
     def difference(self) -> float | None:
-        """Computed less printed."""
+        """Computed minus printed value."""
         return None if self.printed is None else self.computed - self.printed
 
     @property
     def relative(self) -> float | None:
-        """The difference over the printed figure."""
+        """The difference divided by the printed figure."""
         return None if self.printed is None else self.computed / self.printed - 1.0
 
 
@@ -65,7 +65,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def signed(value: float | None, places: int) -> str:
-    """Return a value with its sign, a real minus, and no sign before a zero."""
+    """Return a value with its sign, a true minus sign, and no sign for zero."""
     if value is None:
         return NONE
     text = fixed(value, places)
@@ -75,7 +75,7 @@ def signed(value: float | None, places: int) -> str:
 
 
 def minus(text: str) -> str:
-    """Return a number with a real minus sign."""
+    """Return a number with a true minus sign."""
     return text.replace("-", "−")
 
 

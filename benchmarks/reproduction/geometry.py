@@ -1,7 +1,7 @@
-"""The geometry behind Figs. 13 and 14, fitted again: how surely the printed figures fix it.
+"""The geometry behind Figs. 13 and 14, fitted again: how well the printed figures determine it.
 
-`ls.fit` gives several keys the same value; pinion radius, idler angle and pressure angle move
-radii and centres by formulae, so the least squares are set up here.
+`ls.fit` gives several keys the same value; here pinion radius, idler angle and pressure angle
+change radii and centres by formulae, so the least squares are set up in this module.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ AMPLE = "50 um"
 
 @dataclass(frozen=True)
 class Geometry:
-    """A geometry and the figures that it gives.
+    """A geometry and the figures that follow from it.
 
     Attributes
     ----------
     weights : str
-        How the figures were weighed.
+        How the figures were weighted.
     values : tuple of float
         r_b4 [mm], ψ [°], α_t [°].
     figures : tuple of float
@@ -52,7 +52,7 @@ PRINTED = np.array([*printed.RIGID_RINGS.values(), *printed.THRESHOLDS.values()]
 
 
 def geometries(seed: Seed) -> list[Geometry]:
-    """The geometry of the case files, and fits with the figures weighed in other ways."""
+    """Return the geometry of the case files, and fits with other weightings of the figures."""
     from scipy.optimize import least_squares
 
     case = seed.case("limit_ring")
@@ -85,7 +85,7 @@ def _missed(values: Array, case: Case, weigh: Callable[[Array], Array]) -> Array
 
 
 def figures(case: Case, values: Array | tuple[float, ...]) -> Array:
-    """Shares without float and the clearances that free both pinions, for a geometry.
+    """Return, for a geometry, the shares without float and the clearances that free both pinions.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def figures(case: Case, values: Array | tuple[float, ...]) -> Array:
 
 
 def layout(radius: float, idler: float, pressure: float) -> dict[str, object]:
-    """Radii and centres of the seed's transmission (reconstruction, point 6).
+    """Return radii and centres of the seed's transmission (reconstruction, point 6).
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def layout(radius: float, idler: float, pressure: float) -> dict[str, object]:
             "angle": f"{angle!r} deg",
         }
         changes[f"gears.{gear}.base_radius"] = _mm(radius if gear in places else RATIO * radius)
-    # Face gears stand on the axes of their pinions, and pinion 1 between them.
+    # Face gears are on the axes of their pinions, and pinion 1 between them.
     x, y = distance * math.cos(math.radians(60.0)), distance * math.sin(math.radians(60.0))
     height = 40.0 / math.cos(math.radians(20.0))
     changes["gears.1.centre"] = [_mm(x), "0 mm", "0 mm"]
@@ -143,7 +143,7 @@ def layout(radius: float, idler: float, pressure: float) -> dict[str, object]:
 
 
 def rows(found: list[Geometry]) -> list[tuple[str, ...]]:
-    """Rows of the page's table."""
+    """Return the rows of the page's table."""
     return [
         (
             g.weights,

@@ -19,7 +19,7 @@ from loadshare.results import Result
 PARTS = tuple(0.2 * k for k in range(1, 9))
 """Loads of Table 2, over T_in."""
 TORQUES = tuple(round(printed.RATED * part, 9) for part in PARTS)
-"""The same [N·m]."""
+"""The same loads [N·m]."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class Load:
     one, two : float
         Ω I, and Ω II within the pairs; errors of Fig. 10, no floats.
     apart : float
-        Half of what the torques of meshes 7-10 and 6-10 are apart [N·m].
+        Half the difference between the torques of meshes 7-10 and 6-10 [N·m].
     reduced : float
-        Ω II with all errors reduced by the same part.
+        Ω II with all errors reduced by the same factor.
     floating : float
         Ω II in full float.
     """
@@ -56,7 +56,7 @@ class Loads:
     rows : tuple of Load
         The eight loads, and 283 N·m.
     scale : float
-        Part of all errors at which Ω II is the printed one at 283 N·m.
+        Factor on all errors with which Ω II at 283 N·m is the printed one.
     """
 
     rows: tuple[Load, ...]
@@ -64,7 +64,7 @@ class Loads:
 
     @property
     def light(self) -> Load:
-        """The one load for which coefficients are printed."""
+        """The only load for which coefficients are printed."""
         return next(row for row in self.rows if row.torque == printed.LIGHT)
 
 
@@ -103,7 +103,7 @@ def loads(seed: Seed, held: Case, floating: Case) -> Loads:
 
 
 def _scaled(case: Case, scale: float) -> Case:
-    """Return a case with all errors reduced to a part of their size."""
+    """Return a case with all errors multiplied by a factor."""
     amounts = {
         f"errors.{gear}.{kind}.amount": f"{scale * printed.ERROR!r} um"
         for gear in GEARS
@@ -123,7 +123,7 @@ def _solved(case: Case, torques: list[float]) -> Result:
 
 
 def chapter(found: Loads) -> Chapter:
-    """What the page says about Table 2 and Fig. 18."""
+    """Return the text on Table 2 and Fig. 18."""
     light = found.light
     entries = [
         Entry("theory, Ω II without floats", printed.LIGHT_THEORY, light.two, 3),
@@ -189,7 +189,7 @@ def chapter(found: Loads) -> Chapter:
 
 
 def _carried(omega: float) -> float:
-    """Coefficient at 283 N·m that follows from one at full load."""
+    """Return the coefficient at 283 N·m that follows from one at full load."""
     return 1 + (omega - 1) * printed.TORQUE / printed.LIGHT
 
 

@@ -1,4 +1,4 @@
-"""The page: all chapters as one Markdown file, the same text for the same figures."""
+"""The page: all chapters as one Markdown file; the same figures give the same text."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PICTURES = "reproduction"
 """Folder of the pictures, next to the page."""
 PACKAGES = ("numpy", "scipy", "clarabel", "altair", "vl-convert-python")
 VERSIONS = "Computed with"
-"""Begin of the one line that may differ from machine to machine."""
+"""Start of the one line that may differ between computers."""
 
 
 def page(chapters: Sequence[Chapter], used: Mapping[str, str]) -> str:
@@ -70,7 +70,7 @@ _INTRODUCTION = (
 
 
 def _link(title: str) -> str:
-    """Figure's name, linked to its chapter as Markdown names it."""
+    """Return a figure's name, linked to its chapter by the anchor that Markdown makes."""
     short = title.split(":")[0]
     kept = "".join(c for c in title.lower() if c.isalnum() or c in " -")
     return f"[{short}](#{'-'.join(kept.split())})"

@@ -1,4 +1,4 @@
-"""What the pictures of both floating pinions have in common."""
+"""The common parts of the pictures of both floating pinions."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Curve = Sequence[tuple[float, float]]
 
 
 def looks(seed: Seed) -> dict[str, Look]:
-    """Looks of the pinions by the names of their curves."""
+    """Return the looks of the pinions by the names of their curves."""
     return {f"pinion {p}": seed.palette.gear(p) for p in PINIONS}
 
 
 def named(curves: Mapping[str, Curve]) -> dict[str, Curve]:
-    """Curves of the pinions by their names in the legend."""
+    """Return the curves of the pinions by their names in the legend."""
     return {f"pinion {p}": curve for p, curve in curves.items()}
 
 
@@ -29,13 +29,13 @@ def clearance_panel(
     free: Mapping[str, float],
     printed: Sequence[Printed] = (),
 ) -> Panel:
-    """Ω II over a clearance, with rules where the pinions come free.
+    """Return Ω II over a clearance, with lines at the clearances that free the pinions.
 
     Parameters
     ----------
     seed : Seed
     of_both : str
-        What has the clearance: "rings", "splines".
+        The elements with the clearance: "rings" or "splines".
     clearances : sequence of float
         [µm]
     curves : mapping of pinion to coefficients at the clearances

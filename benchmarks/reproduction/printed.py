@@ -1,7 +1,7 @@
-"""What the seed paper prints: Figs. 7 to 14 and 18, Table 2 and the text next to them.
+"""The values that the seed paper prints: Figs. 7 to 14 and 18, Table 2 and the text about them.
 
-Nothing here is computed or assumed. The figures' curves, Table 2 itself and the error directions
-are not printed.
+Nothing here is computed or assumed. The paper does not print the figures' curves, Table 2 itself or
+the directions of the errors.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ ERROR = 50.0
 """Eccentricity and installation error [µm]."""
 
 STIFFNESS = {"1-2": (7.46e5, 9.27e5), "4-6": (3.77e6, 4.78e6), "6-10": (6.17e6, 6.68e6)}
-"""Fig. 7: range over the cycle of the meshes like this one [N·m/rad]."""
+"""Fig. 7: range over the cycle, for all meshes with the same teeth [N·m/rad]."""
 
 OMEGA_INSTALLATION = {"I": 1.0049, "II": 1.1602}
 """Fig. 8: largest Ω for an installation error of 50 µm."""
@@ -53,6 +53,6 @@ RATED = 1100.0
 LOADS = (0.2, 1.6)
 """Table 2: lowest and highest load over T_in."""
 LIGHT = 283.0
-"""Fig. 18: the one load for which coefficients are printed [N·m]."""
+"""Fig. 18: the only load for which coefficients are printed [N·m]."""
 LIGHT_THEORY, LIGHT_TEST = 1.078, 1.139
 """Fig. 18: coefficients at that load."""

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.reproduction` without the words: solve, draw, write."""
+"""The work of `python -m benchmarks.reproduction`: solve, draw, write."""
 
 from __future__ import annotations
 

@@ -34,12 +34,12 @@ CLEARANCES = tuple(0.5 * k for k in range(25))
 AMPLE = "200 um"
 KEYS = tuple(f"rings.{p}.float" for p in PINIONS)
 FITTED = ("4-6", "6-10")
-"""Meshes of which the stiffness is fitted, each with its like."""
+"""Meshes whose stiffness is fitted; each stands for all meshes with the same teeth."""
 
 
 @dataclass(frozen=True)
 class Variant:
-    """Fig. 13 with the error of gear 9 read in one way.
+    """Fig. 13 with one reading of the error of gear 9.
 
     Attributes
     ----------
@@ -69,14 +69,14 @@ class Rings:
     Attributes
     ----------
     as_printed, mirrored, exchanged : Variant
-        With ΔA_y9 = −0.1 mm, with +0.1 mm, and with −0.1 mm on gear 8 in its place.
+        With ΔA_y9 = −0.1 mm, with +0.1 mm, and with −0.1 mm on gear 8 instead.
     resting : Position
-        Rings as large as the printed balance points lie from the middle.
+        With ring clearances equal to the distances of the printed balance points from the centre.
     curves : mapping of pinion to coefficients at `CLEARANCES`
     paths : mapping of pinion to balance points [µm] at `CLEARANCES`
     events : tuple of Event
     stiffness : Fit
-        Of stage II to the two shares without float.
+        Stiffness of stage II, fitted to the two shares without float.
     geometries : tuple of Geometry
     """
 
@@ -149,7 +149,7 @@ def _stiffness(case: Case) -> Fit:
 
 
 def fig13_entries(found: Rings) -> list[Entry]:
-    """Figures of Fig. 13."""
+    """Return the figures of Fig. 13."""
     held, free = found.as_printed.held, found.as_printed.free
     entries = []
     for p in PINIONS:
@@ -164,7 +164,7 @@ def fig13_entries(found: Rings) -> list[Entry]:
 
 
 def fig14_entries(found: Rings) -> list[Entry]:
-    """Balance points on the rings."""
+    """Return the balance points on the rings."""
     return [
         Entry(f"balance point of pinion {p}, {axis} [µm]", value, own, 3, "fitted")
         for p in PINIONS
@@ -173,7 +173,7 @@ def fig14_entries(found: Rings) -> list[Entry]:
 
 
 def ring_chapter(seed: Seed, found: Rings) -> Chapter:
-    """What the page says about Fig. 13."""
+    """Return the text on Fig. 13."""
     entries = fig13_entries(found)
     worst = max(abs(e.relative or 0.0) for e in entries)
     past = {p: 100 * (pair_omega(found.as_printed.held, p) - 1) for p in PINIONS}
@@ -201,7 +201,7 @@ def ring_chapter(seed: Seed, found: Rings) -> Chapter:
 
 
 def point_chapter(seed: Seed, found: Rings) -> Chapter:
-    """What the page says about Fig. 14."""
+    """Return the text on Fig. 14."""
     entries = fig14_entries(found)
     worst = max(abs(e.relative or 0.0) for e in entries)
     rows = []
@@ -293,7 +293,7 @@ def _stiffness_text(found: Rings) -> str:
             f"K of {kind} and its like",
             " … ".join(f"{end / 1e6:.2f}" for end in printed.STIFFNESS[kind]),
             f"{sum(printed.STIFFNESS[kind]) / 2e6:.3f}",
-            # Two decimals: the third of what is not determined is round-off.
+            # Two decimals, because the third is round-off for values that are not determined.
             f"{u.value / 1e6:.2f}" + (" (bound)" if u.at_bound else ""),
             f"{u.deviation / 1e6:.2f}" if math.isfinite(u.deviation) else "not determined",
         )

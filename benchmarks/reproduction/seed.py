@@ -1,4 +1,4 @@
-"""The seed's cases, and what every chapter asks of them."""
+"""The cases of the seed paper, and the quantities that every chapter needs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Seed:
     Parameters
     ----------
     folder : pathlib.Path
-        Holds ``fgfbstts`` and, for Fig. 7, ``pairs``.
+        Contains ``fgfbstts`` and, for Fig. 7, ``pairs``.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -42,12 +42,12 @@ class Seed:
         self._pairs: dict[str, PairFile] = {}
 
     def case(self, name: str) -> Case:
-        """A case of the seed's transmission.
+        """Return a case of the seed's transmission.
 
         Raises
         ------
         LoadshareError
-            If the folder does not hold it.
+            If the folder does not contain it.
         """
         path = self.folder / "fgfbstts" / f"{name}.toml"
         if not path.is_file():
@@ -59,7 +59,7 @@ class Seed:
         return self._cases[name]
 
     def pair(self, name: str) -> PairFile | None:
-        """A pair of gears with its teeth; None if the folder does not hold it."""
+        """Return a pair of gears with its teeth; None if the folder does not contain it."""
         path = self.folder / "fgfbstts" / "pairs" / f"{name}.toml"
         if name not in self._pairs and path.is_file():
             from loadshare.tooth.pair.file import load_pair
@@ -69,40 +69,40 @@ class Seed:
 
     @property
     def used(self) -> dict[str, str]:
-        """Hash of the physical content of every file that was read so far, by its path."""
+        """Hash of the physical content of every file that was read so far, by path."""
         cases = {f"fgfbstts/{name}.toml": case.hash for name, case in self._cases.items()}
         pairs = {f"fgfbstts/pairs/{name}.toml": pair.hash for name, pair in self._pairs.items()}
         return dict(sorted((cases | pairs).items()))
 
     @cached_property
     def palette(self) -> Palette:
-        """Looks of the gears and meshes, as in every other picture of this train."""
+        """Return the looks of gears and meshes that all pictures of this train share."""
         case = self.case("base")
         ends = {name: (mesh.driver, mesh.driven) for name, mesh in case.meshes.items()}
         return Palette(list(case.gears), ends)
 
 
 def first(case: Case, changes: Mapping[str, Any] | None = None) -> Position:
-    """Certified equilibrium of position 1; every other is the same without marching."""
+    """Return the equilibrium of position 1; without marching, all positions are the same."""
     changed = case.replace(changes) if changes else case
     (position,) = solve(changed, positions=[1]).positions
     return position
 
 
 def pair_omega(position: Position, pinion: str) -> float:
-    """Largest Ω of a pinion's pair."""
+    """Return the largest Ω of a pinion's pair."""
     return max(position.pair_share[mesh] or 0.0 for mesh in PAIRS[pinion])
 
 
 def stage_omega(position: Position, stage: str) -> float:
-    """Ω of stage I, or of stage II within the pairs."""
+    """Return Ω of stage I, or of stage II within the pairs."""
     if stage == "I":
         return max(position.share[mesh] or 0.0 for mesh in DIVIDING)
     return max(pair_omega(position, pinion) for pinion in PINIONS)
 
 
 def push_on(case: Case, position: Position, pinion: str) -> float:
-    """Size of the force [N] that a pinion's meshes leave on its bearing.
+    """Return the size of the resultant force [N] of a pinion's meshes on its bearing.
 
     It is summed from the torques and the lines of action (formulation, section 2).
     """

@@ -1,4 +1,4 @@
-"""Figs. 8 and 9: one gear at a time with an installation error, or eccentric."""
+"""Figs. 8 and 9: one gear at a time with an installation error or an eccentricity."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from loadshare.job import solve
 from loadshare.report.figure import Figure
 
 STAGE_GEARS = {"I": ("1", "2", "3"), "II": ("6", "7", "8", "9", "10")}
-"""Gears that the paper treats, by the stage in which it looks at them."""
+"""Gears that the paper treats, by the stage in which it considers them."""
 AMOUNTS = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0)
 """Installation errors of Fig. 8 [µm]."""
 DIRECTIONS = tuple(5.0 * k for k in range(73))
-"""Directions that are tried [°]: a whole turn and its end, as a half turn changes the sign of the
-error, but the torque of a pinion changes with it."""
+"""Directions that are tried [°], over a whole turn with both ends. Half a turn is not enough: it
+reverses the error, but the torque of a pinion changes with it."""
 STEPS = 24
-"""Positions of a gear's revolution."""
+"""Positions per revolution of a gear."""
 TIE = 1e-9
 """Coefficients that differ by less are equal."""
 
@@ -40,8 +40,8 @@ class Installation:
     turned : mapping of stage to gear to coefficients
         For 50 µm at each of `DIRECTIONS`.
     matching : mapping of direction to gear to coefficient
-        Directions [°] in which gear 6 has the printed coefficient, and what the gears of stage II
-        have there.
+        Directions [°] in which gear 6 has the printed coefficient, and the coefficients of all
+        gears of stage II there.
     """
 
     curves: Mapping[str, Mapping[str, tuple[float, ...]]]
@@ -132,7 +132,7 @@ def eccentricity(seed: Seed) -> Eccentricity:
 
 
 def order(omega: Mapping[str, float]) -> list[list[str]]:
-    """Gears from the most to the least influence; those that tie are grouped."""
+    """Return the gears from the most to the least influence; those that tie are grouped."""
     groups: list[list[str]] = []
     for gear in sorted(omega, key=lambda g: -omega[g]):
         if groups and omega[groups[-1][0]] - omega[gear] < TIE:
@@ -143,14 +143,14 @@ def order(omega: Mapping[str, float]) -> list[list[str]]:
 
 
 def text(groups: Sequence[Sequence[str]]) -> str:
-    """Return an order in words: ``6 = 8 > 10 > 7 = 9``."""
+    """Return an order as text: ``6 = 8 > 10 > 7 = 9``."""
     return " > ".join(" = ".join(group) for group in groups)
 
 
 def largest_entries(
     paper: Mapping[str, float], one: Mapping[str, float], two: Mapping[str, float]
 ) -> list[Entry]:
-    """Largest coefficients of both stages next to the printed ones."""
+    """Return the largest coefficients of both stages next to the printed ones."""
     return [
         Entry("largest Ω I from gears 1 to 3", paper["I"], max(one.values()), 4),
         Entry("largest Ω II, within the pair", paper["II"], max(two.values()), 4),
@@ -158,7 +158,7 @@ def largest_entries(
 
 
 def installation_chapter(seed: Seed, found: Installation) -> Chapter:
-    """What the page says about Fig. 8."""
+    """Return the text on Fig. 8."""
     one, two = found.omega("I"), found.omega("II")
     far = [gear for gear in two if gear != "6"]
     entries = largest_entries(printed.OMEGA_INSTALLATION, one, two)
@@ -234,7 +234,7 @@ def _matching_directions(found: Installation) -> str:
 
 
 def eccentricity_chapter(seed: Seed, found: Eccentricity) -> Chapter:
-    """What the page says about Fig. 9."""
+    """Return the text on Fig. 9."""
     one, two = found.omega("I"), found.omega("II")
     entries = largest_entries(printed.OMEGA_ECCENTRICITY, one, two)
     rows = [
@@ -273,7 +273,7 @@ def eccentricity_chapter(seed: Seed, found: Eccentricity) -> Chapter:
 
 
 def _displaced(seed: Seed, gear: str, amount: float, direction: float) -> dict[str, float]:
-    """Ω I and the pairwise Ω II with a gear off its place by `amount` [µm] at `direction` [°]."""
+    """Return Ω I and the pairwise Ω II with a gear moved by `amount` [µm] at `direction` [°]."""
     error = {"amount": f"{amount!r} um", "direction": f"{direction!r} deg"}
     changes = {
         "errors": {gear: {"installation": error}},
@@ -309,7 +309,7 @@ def _installation_picture(seed: Seed, found: Installation) -> Figure:
 
 def _level(stage: str) -> Level:
     value = printed.OMEGA_ECCENTRICITY[stage]
-    # Where no curve crosses the words: over a valley of gear 1, left of the arches for gear 8.
+    # No curve crosses the labels there: over a valley of gear 1, left of the arches for gear 8.
     return Level(value, "1", along=0.6) if stage == "I" else Level(value, "8")
 
 

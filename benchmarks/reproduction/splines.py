@@ -55,15 +55,15 @@ class FullFloat:
     ring_push: Mapping[str, float]
 
     def float_of(self, gear: str) -> float:
-        """Float of a gear [µm]."""
+        """Return the float of a gear [µm]."""
         return 1e6 * math.hypot(*self.position.displacement[gear])
 
     def unrelieved(self, pinion: str) -> float:
-        """Float [µm] that the force would give if the float did not relieve it: F/K_w."""
+        """Return the float [µm] that the force would cause without this float: F/K_w."""
         return 1e6 * self.push[pinion] / printed.BENDING
 
     def unrelieved_in_rings(self, pinion: str) -> float:
-        """The same with the errors of Fig. 13."""
+        """Return the same with the errors of Fig. 13."""
         return 1e6 * self.ring_push[pinion] / printed.BENDING
 
 
@@ -119,7 +119,7 @@ def float_chapter(
     others: Mapping[str, FullFloat],
     cycle: Result | None,
 ) -> Chapter:
-    """What the page says about Fig. 11."""
+    """Return the text on Fig. 11."""
     at = found.position
     entries = [
         *(
@@ -171,7 +171,7 @@ def float_chapter(
 
 
 def clearance_chapter(seed: Seed, found: Clearance, full: FullFloat) -> Chapter:
-    """What the page says about Fig. 12."""
+    """Return the text on Fig. 12."""
     free = found.free
     first_free, last_free = sorted(free, key=lambda p: free[p])
     rows = [(f"{e.value:.3f}", e.gear or "", e.kind) for e in found.events]
@@ -233,12 +233,12 @@ def clearance_chapter(seed: Seed, found: Clearance, full: FullFloat) -> Chapter:
 
 
 def _freedom(clearance: float, needed: float) -> str:
-    """Whether a pinion floats fully in a clearance."""
+    """Return whether a pinion floats fully in a clearance, in words."""
     return "free" if clearance >= needed else "not free"
 
 
 def _printed_torques(cycle: Result) -> dict[str, float]:
-    """Torques [N·m] that belong to the printed coefficients: of stage II within the pairs."""
+    """Return the torques [N·m] of the printed coefficients: for stage II within the pairs."""
     torque = cycle.positions[0].torque
     return {
         mesh: omega * fmean(torque[m] for m in stage)
@@ -252,7 +252,7 @@ def _stages(at: Position) -> str:
 
 
 def share_of_push(found: FullFloat, both_omega: float, target: float) -> float:
-    """Ω of pinion 4's pair whose unrelieved float would be `target` [µm]: both are proportional."""
+    """Return Ω of pinion 4's pair for an unrelieved float of `target` [µm], proportional to it."""
     return 1 + (both_omega - 1) * target / found.unrelieved("4")
 
 

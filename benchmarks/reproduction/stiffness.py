@@ -26,7 +26,8 @@ ALIKE = {
 PARTS = (1.0, 0.95, 0.9)
 """Loads of the three printed curves, over the rated torque."""
 POSITIONS = 20
-"""Four times the paper's, so that a curve is seen; its five are every fourth of them."""
+"""Four times the paper's number, to resolve the curves; the paper's five are every fourth position.
+"""
 FIVE = slice(None, None, POSITIONS // 5)
 """The paper's positions."""
 TITLE = "Fig. 7: mesh stiffness over the mesh cycle"
@@ -42,9 +43,9 @@ class MeshStiffness:
     curves : tuple of tuple of float
         For each of `PARTS`, K at `POSITIONS` positions [N·m/rad at the driver].
     misfit : float
-        Largest miss of the law a + b T + c T^(2/3), over the elastic angle.
+        Largest misfit of the law a + b T + c T^(2/3), over the elastic angle.
     contact_ratio : float
-        Tooth pairs in contact on average, without load.
+        Mean number of tooth pairs in contact, without load.
     """
 
     mesh: str
@@ -59,7 +60,7 @@ class MeshStiffness:
 
     @property
     def high(self) -> float:
-        """Largest one."""
+        """Largest stiffness over the paper's positions and loads."""
         return max(max(curve[FIVE]) for curve in self.curves)
 
     @property
@@ -77,7 +78,7 @@ Stiffnesses = dict[str, MeshStiffness]
 
 
 def stiffnesses(seed: Seed, tell: Callable[[str], None]) -> Stiffnesses | None:
-    """Analyse the three pairs; None where the pair files are not there."""
+    """Analyse the three pairs; None if the pair files are missing."""
     pairs = {mesh: pair for mesh, name in PAIR_FILES.items() if (pair := seed.pair(name))}
     if len(pairs) < len(PAIR_FILES):
         return None
@@ -96,7 +97,7 @@ def stiffnesses(seed: Seed, tell: Callable[[str], None]) -> Stiffnesses | None:
 
 
 def over_cycle(case: Case, found: Stiffnesses) -> Result:
-    """Solve a case with these stiffnesses at the paper's five positions, alike meshes in phase."""
+    """Solve a case with these stiffnesses at the paper's five positions, equal meshes in phase."""
     changes = {
         f'meshes."{mesh}".stiffness': [f"{k!r} N*m/rad" for k in found[kind].five]
         for kind, meshes in ALIKE.items()
@@ -106,7 +107,7 @@ def over_cycle(case: Case, found: Stiffnesses) -> Result:
 
 
 def chapter(seed: Seed, found: Stiffnesses | None) -> Chapter:
-    """What the page says about Fig. 7."""
+    """Return the text on Fig. 7."""
     if found is None:
         missing = "The pair files `cases/fgfbstts/pairs/` are missing: not computed."
         return Chapter(TITLE, missing, "–", (missing,))

@@ -1,1 +1,1 @@
-"""Stability where methods fail: families of problems, from harmless to extreme, and their map."""
+"""Stability where methods fail: families of problems from harmless to extreme, and their map."""

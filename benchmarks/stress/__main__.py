@@ -59,7 +59,7 @@ def stress(
 
 
 def _explain(family: Family, number: int, case: Path | None) -> None:
-    """Tell what a problem is, what is known of it, and what ours makes of it."""
+    """Print a problem, what is known about it, and the answer of the library."""
     try:
         problem = family.problem(number)
     except IndexError as error:

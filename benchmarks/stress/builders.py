@@ -1,4 +1,4 @@
-"""How the families build a problem from the level of their knob and a random generator."""
+"""Functions that build a problem of a family from the level of its knob and a random generator."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Random = np.random.Generator
 
 
 def spread_stiffnesses(ratio: float, generator: Random) -> Workbench:
-    """Spread the stiffnesses of meshes and shafts over `ratio`, its two ends included."""
+    """Spread the stiffnesses of meshes and shafts over `ratio`, both ends included."""
     bench = any_structure(generator)
     held(bench, generator)
     exponents = generator.uniform(-0.5, 0.5, len(bench.meshes))
@@ -40,15 +40,16 @@ def spread_stiffnesses(ratio: float, generator: Random) -> Workbench:
     for mesh, exponent in zip(bench.meshes, exponents, strict=True):
         bench.stiffness(mesh, 2e6 * ratio**exponent)
     bench.shafts(lambda _: 5e5 * ratio ** generator.uniform(-0.5, 0.5))
-    # The softest mesh yields so much more that errors of its size would be no gear's any more.
+    # The softest mesh yields so much more that errors of the size of its deflection would not be
+    # realistic.
     bench.random_errors(0.3 * DEFLECTION * math.sqrt(ratio) / ratio**0.25, generator)
     return bench
 
 
 def lightly_loaded(part: float, generator: Random) -> Workbench:
-    """Load Hertz contacts by `part` of the rated torque, errors small or fixed.
+    """Load Hertz contacts with `part` of the rated torque; errors are small or fixed.
 
-    The tangent of T^(2/3) grows without bound as the load goes.
+    The tangent of T^(2/3) grows without bound as the load tends to zero.
     """
     bench = any_structure(generator)
     bench.hertz(chosen(generator, 0.1, 0.3, 0.9, 1.0))
@@ -61,9 +62,9 @@ def lightly_loaded(part: float, generator: Random) -> Workbench:
 
 
 def without_load(errors: float, generator: Random) -> Workbench:
-    """Leave a train without load; `errors` (in deflections) may jam it where backlash is small.
+    """Leave a train without load; `errors` (in deflections) may jam it if the backlash is small.
 
-    What moves is moved by preload alone, and most displacements are free.
+    Only preload causes displacements, and most displacements are free.
     """
     bench = dressed(generator)
     held(bench, generator)
@@ -94,7 +95,7 @@ def contacts_lost(part: float, generator: Random) -> Workbench:
 
 
 def without_play(errors: float, generator: Random) -> Workbench:
-    """Take all play away; `errors` (in deflections) then preload flanks and limits."""
+    """Remove all play; `errors` (in deflections) then preload flanks and limits."""
     bench = dressed(generator)
     for gear in floats_of(bench):
         wall = str(generator.choice(["rigid", "1e9 N/m"]))
@@ -132,13 +133,13 @@ def wide_play(clearance: float, generator: Random) -> Workbench:
 def rubbing_splines(friction: float, generator: Random) -> Workbench:
     """Put every float on a spline whose friction is `friction` times 1 kN, or follows the torque.
 
-    1 kN is about what errors of a deflection make of a branch's load.
+    1 kN is about the change of a branch's load under errors of one deflection.
     """
     bench = dressed(generator)
     for gear in floats_of(bench):
         clearance = DEFLECTION * chosen(generator, 0.1, 1.0, 10.0)
         if maybe(generator, 0.3):
-            # As large as case files allow.
+            # The friction coefficient is limited to the largest that case files allow.
             bench.spline_by_torque(gear, BENDING, clearance, min(0.1 * friction, 1e3), 0.1)
         else:
             bench.spline(gear, BENDING, clearance, 1e3 * friction)
@@ -158,12 +159,12 @@ def jumping_splines(part: float, generator: Random) -> Workbench:
 
 
 def nearly_parallel(apart: float, generator: Random) -> Workbench:
-    """Make contacts whose normals differ by the angle `apart`."""
+    """Build contacts whose normals differ by the angle `apart`."""
     return (_crowded if maybe(generator, 0.7) else _limited_twice)(apart, generator)
 
 
 def _crowded(apart: float, generator: Random) -> Workbench:
-    """Put planets of a star beside each other, two or three in one place up to `apart`."""
+    """Put planets of a star beside each other: two or three in one place except for `apart`."""
     planets = int(generator.integers(4, 7))
     bench = star(planets)
     for number in range(4, planets + 1):
@@ -198,7 +199,8 @@ def _limited_twice(apart: float, generator: Random) -> Workbench:
 def softly_supported(softness: float, generator: Random) -> Workbench:
     """Hold some gears by springs `softness` times softer than a bearing, the others rigidly.
 
-    What flanks do not hold in every direction gets a rigid round ring, or it would run far away.
+    A gear that flanks do not hold in every direction gets a rigid round ring, so that it stays
+    near.
     """
     bench = dressed(generator, "rigid", hertz=0.3)
     soft = SUPPORT / softness
@@ -214,9 +216,9 @@ def softly_supported(softness: float, generator: Random) -> Workbench:
 
 
 def unsupported(bend: float, generator: Random) -> Workbench:
-    """Leave floats unsupported; of two planets the second stands off the line by `bend` [rad].
+    """Leave floats unsupported; of two planets, the second is off the line by `bend` [rad].
 
-    Such a sun is pushed out sideways: nothing holds it unless a coast flank does.
+    Such a sun is pushed out sideways, and only a coast flank can hold it.
     """
     kind = generator.choice(["two planets", "more planets", "pinions", "everything"])
     if kind == "two planets":
@@ -277,7 +279,7 @@ def scaled(size: float, generator: Random) -> Workbench:
 
 
 def of_many_branches(branches: float, generator: Random) -> Workbench:
-    """Return a split-torque train of so many branches, every float held by something else."""
+    """Return a split-torque train of `branches` branches; every float is held by something else."""
     bench = split_torque(int(branches))
     maybe_hertz(bench, generator)
     held(bench, generator)

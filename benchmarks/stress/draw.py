@@ -1,4 +1,4 @@
-"""The map: methods across, families down, coloured by outcome with numbers."""
+"""The map: methods across, families down; outcomes as colours and numbers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COLOURS = {
     "crashed": "#1a1a1a",
     "not for it": "#f4f4f4",
 }
-"""Dark to light in grey as well: certified and refused differ most."""
+"""The order is also from dark to light in grey: certified and refused differ most."""
 
 
 def draw_map(cells: Sequence[Cell], folder: Path) -> list[Path]:

@@ -1,4 +1,4 @@
-"""Random trains for the families: a structure, and what holds its floats."""
+"""Random trains for the families: a structure, and supports for its floats."""
 
 from __future__ import annotations
 
@@ -23,48 +23,48 @@ def any_structure(generator: np.random.Generator, sun: str = "free") -> Workbenc
 
 
 def dressed(generator: np.random.Generator, sun: str = "free", hertz: float = 0.5) -> Workbench:
-    """Return `any_structure`, of which the part `hertz` has b + c laws."""
+    """Return `any_structure`; a fraction `hertz` of them has b + c laws."""
     bench = any_structure(generator, sun)
     maybe_hertz(bench, generator, hertz)
     return bench
 
 
 def maybe(generator: np.random.Generator, part: float = 0.5) -> bool:
-    """Tell whether something is there that `part` of the problems have."""
+    """Return True with probability `part`."""
     return bool(generator.random() < part)
 
 
 def chosen(generator: np.random.Generator, *values: float) -> float:
-    """Return one of some values."""
+    """Return one of several values at random."""
     return float(generator.choice(values))
 
 
 def maybe_hertz(bench: Workbench, generator: np.random.Generator, part: float = 0.5) -> None:
-    """Turn stiffnesses into b + c laws, or leave them."""
+    """Turn stiffnesses into b + c laws, with probability `part`."""
     if maybe(generator, part):
         bench.hertz()
 
 
 def maybe_backlash(bench: Workbench, generator: np.random.Generator) -> None:
-    """Give all meshes a backlash of a tenth of a deflection to three, or none."""
+    """Give all meshes a backlash of 0.1 to 3 deflections, or none."""
     if maybe(generator):
         bench.backlash(DEFLECTION * generator.uniform(0.1, 3.0))
 
 
 def floats_of(bench: Workbench) -> list[str]:
-    """Gears that may float: the sun, or the pinions."""
+    """Return the gears that may float: the sun, or the pinions."""
     return bench.named("sun") + bench.named("pinion")
 
 
 def held(bench: Workbench, generator: np.random.Generator, play: float = DEFLECTION) -> None:
-    """Hold every float by something: a bearing, a spline, a ring, or a spline in a ring.
+    """Hold every float by a bearing, a spline, a ring, or a spline in a ring.
 
     Parameters
     ----------
     bench : Workbench
     generator : numpy.random.Generator
     play : float
-        Size of clearances [m]; each is between a tenth of it and all of it.
+        Largest clearance [m]; each is between a tenth of it and all of it.
     """
     for gear in floats_of(bench):
         kind = generator.choice(["elastic", "spline", "ring", "spline in a ring"])
@@ -94,5 +94,5 @@ def ring(bench: Workbench, gear: str, generator: np.random.Generator, play: floa
 
 
 def spread(generator: np.random.Generator, decades: float) -> float:
-    """Return a random factor, log-uniform over this many decades to either side of 1."""
+    """Return a random factor, log-uniform over `decades` decades on either side of 1."""
     return float(10.0 ** generator.uniform(-decades, decades))

@@ -1,4 +1,4 @@
-"""The families of problems, in the order of the map: what is turned, and how far."""
+"""The families of problems, in the order of the map, each with its knob and the knob's levels."""
 
 from __future__ import annotations
 

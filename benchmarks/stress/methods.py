@@ -14,9 +14,9 @@ from loadshare.train.equilibrium import Equilibrium
 
 OURS = "ours"
 MAPPED = ("Clarabel, new", "power cone", "OSQP", "PIQP", "DAQP", "SLSQP", "trial states")
-"""Peers on the map, each at its tightest tolerance; the others differ from these in speed alone."""
+"""Peers on the map, each at its tightest tolerance; the others differ from these only in speed."""
 EVERY = {"SLSQP": 10, "power cone": 4}
-"""Slow peers are given every so many problems."""
+"""Slow peers are given only every n-th problem."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class _AsPeer:
     entry: Entry
 
     def __call__(self, problem: Problem, train: Train) -> Equilibrium:
-        """Answer a problem; a `Failure` is the peer's own word for it."""
+        """Answer a problem; a `Failure` carries the peer's own message."""
         form = form_of(assemble(train, 1))
         peer = self.entry.make(self.entry.tolerances[-1])
         peer.prepare(form)
@@ -33,12 +33,12 @@ class _AsPeer:
 
 
 def methods(peers: bool) -> dict[str, tuple[Method, int]]:
-    """Return the methods by name, each with how many problems it leaves out between two.
+    """Return the methods by name, each with n if it is given every n-th problem.
 
     Parameters
     ----------
     peers : bool
-        Ours alone, or with the peers that are installed.
+        Whether to include the peers that are installed.
     """
     found: dict[str, tuple[Method, int]] = {OURS: (ours, 1)}
     for name in MAPPED if peers else ():

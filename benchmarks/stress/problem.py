@@ -1,4 +1,4 @@
-"""A stress problem: a case, how far its knob is turned, and what is known about it beforehand."""
+"""A stress problem: a case, with the level of the knob that makes it hard."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from benchmarks.stress.workbench import Workbench
 from loadshare.case import Case
 
 COUNT = 200
-"""Problems of a family."""
+"""Number of problems of a family."""
 
 Build = Callable[[float, np.random.Generator], Workbench]
 
@@ -27,9 +27,9 @@ class Problem:
     number : int
         0-based.
     level : float
-        How far the knob is turned.
+        Level of the family's knob.
     case : Case
-        One position.
+        With one position.
     """
 
     family: str
@@ -50,11 +50,11 @@ class Family:
     Attributes
     ----------
     name : str
-        As on the command line.
+        Name on the command line.
     title : str
-        As in the picture.
+        Title in the picture.
     knob : str
-        What is turned.
+        The quantity that is varied.
     levels : tuple of float
         From harmless to extreme; the problems are spread evenly over them.
     build : callable

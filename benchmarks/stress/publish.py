@@ -1,4 +1,4 @@
-"""`python -m benchmarks.stress` without the words: run, save, draw, report."""
+"""The work of `python -m benchmarks.stress`: run, save, draw, report."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def stress(
         Where the evidence goes.
     families : sequence of str
     peers : bool
-        With peers, or ours alone.
+        Whether to include peers.
     quick, redraw : bool
         Every tenth problem; read the figures that are there instead of running.
     tell : callable

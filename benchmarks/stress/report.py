@@ -114,7 +114,7 @@ def _counts(cell: Cell) -> str:
 
 
 def _sentence(cells: Sequence[Cell]) -> str:
-    """Say how a method fails: where most often, and with which message."""
+    """Return a sentence on how a method fails: where most often, and with which message."""
     total = sum(c.total - c.counts["not for it"] for c in cells)
     missed = sum(c.missed for c in cells)
     wrong = sum(c.counts["wrong"] for c in cells)

@@ -1,4 +1,4 @@
-"""Run the map: every method on every family."""
+"""Run of the map: every method on every family."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from benchmarks.stress.verdict import Outcome, Verdict, judge
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A method on a family.
+    """The results of a method on a family.
 
     Attributes
     ----------
@@ -26,14 +26,14 @@ class Cell:
     unnamed : int
         Problems without an answer whose refusal names no element that lacks one.
     loose : int
-        Of the wrong ones, how many would pass at 1e-6.
+        Wrong answers that would pass at 1e-6.
     seconds : float
     slowest : float
         Longest time of a problem [s].
     sentences : tuple of str
-        How it failed, the commonest first.
+        Kinds of its failures, the most frequent first.
     failures : tuple of (int, str, str)
-        Number, outcome and message of what was not as it should be.
+        Number, outcome and message of each problem without the required outcome.
     """
 
     method: str
@@ -49,7 +49,7 @@ class Cell:
 
     @property
     def total(self) -> int:
-        """Problems given."""
+        """Number of problems given."""
         return sum(self.counts.values())
 
     def to_dict(self) -> dict[str, Any]:
@@ -69,25 +69,25 @@ def run(
     ----------
     families : iterable of str
     peers : bool
-        Ours alone, or with peers.
+        Whether to include peers.
     quick : bool
         Every tenth problem.
     tell : callable
-        Called with what is being done.
+        Called with the name of each step.
     """
     for name in families:
         for method, (answer, every) in methods(peers).items():
             tell(f"{FAMILIES[name].title}: {method}")
             stride = max(every, 10 if quick else 1)
             with warnings.catch_warnings():
-                # What a peer warns of is judged by its answer.
+                # A peer's warnings are ignored: its answer is judged.
                 warnings.simplefilter("error" if method == OURS else "ignore")
                 verdicts = [judge(p, answer) for p in FAMILIES[name].problems(stride)]
             yield cell_of(method, name, verdicts)
 
 
 def cell_of(method: str, family: str, verdicts: list[Verdict]) -> Cell:
-    """Count verdicts."""
+    """Count the verdicts of a method on a family."""
     counts = {o.value: 0 for o in Outcome}
     reasons: dict[str, int] = {}
     for verdict in verdicts:
@@ -117,7 +117,7 @@ def cell_of(method: str, family: str, verdicts: list[Verdict]) -> Cell:
 
 
 def _reason(verdict: Verdict) -> str:
-    """Kind of a failure, without its figures."""
+    """Return the kind of a failure, without its figures."""
     reason = verdict.reason.split(";")[0].split(" (")[0]
     if verdict.outcome is Outcome.WRONG:
         reason = reason.split(" at ")[0]

@@ -1,11 +1,11 @@
-"""What is known of a problem before any solver sees it: whether there is an equilibrium at all.
+"""What is known about a problem before any solver sees it: whether an equilibrium exists.
 
-The energy is convex, its curved parts grow faster than any linear one, so a minimum exists exactly
-when two linear programmes have an answer: forces that balance the load (no direction in which
-the train runs away) and displacements that all rigid limits admit. Both are written here from the
-train alone and solved by HiGHS, which no method on the map uses. The margin decides: an
-imbalance of round-off (below `NONE`) is none, one above `SOME` is real, and what lies between is
-no problem for a map.
+The energy is convex and its curved parts grow faster than any linear one, so a minimum exists
+exactly when two linear programmes have an answer: forces that balance the load (no direction in
+which the train runs away) and displacements that all rigid limits admit. Both are written here from
+the train alone and solved by HiGHS, which no method on the map uses. The margin decides: an
+imbalance of the size of round-off (below `NONE`) counts as zero, one above `SOME` is real, and a
+problem in between is not suitable for the map.
 """
 
 from __future__ import annotations
@@ -24,16 +24,17 @@ from loadshare.train.train import Train
 Array = NDArray[np.float64]
 
 NONE, SOME = 1e-12, 1e-5
-"""Imbalance over load, or overlap over clearance, that counts as none and as some."""
+"""Imbalance over load, or overlap over clearance: below `NONE` it counts as zero, above `SOME` as
+real."""
 ROUNDING = 1e-3
-"""Overlap over centre distance that `NONE` and `SOME` refer to where clearances are smaller."""
+"""Overlap over centre distance that `NONE` and `SOME` refer to if clearances are smaller."""
 FACETS = 64
-"""Sides of the polygon that stands for a rigid round ring."""
+"""Number of sides of the polygon that replaces a rigid round ring."""
 
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """What is known of a problem.
+    """What is known about a problem in advance.
 
     Attributes
     ----------
@@ -41,7 +42,7 @@ class Truth:
     elements : tuple of str
         For a problem without an answer: a refusal must name at least one of these.
     why : str
-        The figure that decided.
+        The figure that decides, in words.
     """
 
     solvable: bool
@@ -55,7 +56,7 @@ def truth_of(train: Train, index: int = 1) -> Truth:
     Raises
     ------
     ValueError
-        If it is a matter of round-off.
+        If round-off would decide.
     """
     train = train_at(train, index)
     situation = situation_of(train, index)
@@ -73,7 +74,7 @@ def truth_of(train: Train, index: int = 1) -> Truth:
 
 
 def _imbalance(train: Train, situation: Situations) -> tuple[float, tuple[str, ...]]:
-    """Smallest unbalanced part of the load, and the gears that it pushes away."""
+    """Return the smallest unbalanced fraction of the load, and the gears that it pushes away."""
     rows: dict[tuple[str, int], int] = {}
     for name, gear in train.gears.items():
         if name != train.output:
@@ -144,7 +145,7 @@ def _imbalance(train: Train, situation: Situations) -> tuple[float, tuple[str, .
 
 
 def _least_gap(matrix: Array, right: Array, lower: Array) -> tuple[float, Array]:
-    """Min ‖A z − r‖₁ over z ≥ lower, and the multipliers of the rows."""
+    """Return min ‖A z − r‖₁ over z ≥ lower, and the multipliers of the rows."""
     from scipy.optimize import linprog
 
     count, size = matrix.shape
@@ -164,7 +165,7 @@ def _least_gap(matrix: Array, right: Array, lower: Array) -> tuple[float, Array]
 
 
 def _overlap(train: Train, situation: Situations) -> tuple[float, tuple[str, ...]]:
-    """By how much the rigid limits exclude each other, and the rings that do."""
+    """Return by how much the rigid limits exclude each other, and the rings that do."""
     where = {n: 2 * k for k, n in enumerate(n for n, g in train.gears.items() if g.moves)}
     rows: list[Array] = []
     bounds: list[float] = []

@@ -1,4 +1,4 @@
-"""What becomes of a problem: certified, refused, wrong, crashed."""
+"""Verdict on a problem: certified, refused, wrong, crashed."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
 
 Method = Callable[[Problem, Train], Equilibrium]
-"""Answers a problem, or raises `Refused` or `Failure`; anything else is a crash."""
+"""Answers a problem, or raises `Refused` or `Failure`; any other exception counts as a crash."""
 
 
 class Outcome(Enum):
-    """What a method made of a problem."""
+    """Outcomes of a method on a problem."""
 
     CERTIFIED = "certified"
     REFUSED = "refused"
@@ -33,7 +33,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """One method on one problem.
+    """The verdict on one method for one problem.
 
     Attributes
     ----------
@@ -46,10 +46,10 @@ class Verdict:
     reason : str
         The refusal, the residual that failed, or the exception.
     named : bool
-        Of a problem without an answer: whether the refusal names an element that lacks one.
+        For a problem without an answer: whether the refusal names an element at fault.
     seconds : float
     worst : float
-        Largest scaled residual of a claimed answer; infinite where there is none.
+        Largest scaled residual of a claimed answer; infinite without one.
     """
 
     family: str
@@ -64,7 +64,7 @@ class Verdict:
 
     @property
     def as_it_should_be(self) -> bool:
-        """Whether what is solvable was certified, and the rest refused by name."""
+        """Whether a solvable problem was certified, or any other one refused by name."""
         if self.outcome is Outcome.UNFIT:
             return True
         if self.solvable:
@@ -73,10 +73,10 @@ class Verdict:
 
 
 def judge(problem: Problem, method: Method) -> Verdict:
-    """Give a problem to a method and judge what comes back.
+    """Give a problem to a method and judge its answer.
 
     An answer counts as certified only if the certificate, evaluated here, passes; a certified
-    answer to a problem that has none would be wrong all the same.
+    answer to a problem that has none would still be wrong.
     """
     train = build_train(problem.case)
     truth = truth_of(train)
@@ -106,7 +106,7 @@ def judge(problem: Problem, method: Method) -> Verdict:
 
 
 def _names(message: str, gear: str) -> bool:
-    """Tell whether a message names a gear, its ring or spline, or a mesh or shaft of it."""
+    """Return whether a message names a gear, its ring or spline, or a mesh or shaft of it."""
     return re.search(rf"\b(gear|ring|spline) {gear}\b|\b{gear}-\w|\w-{gear}\b", message) is not None
 
 
@@ -125,7 +125,7 @@ def _judged(train: Train, found: Equilibrium, truth: Truth) -> tuple[str, Outcom
 
 
 def ours(problem: Problem, train: Train) -> Equilibrium:
-    """Answer a problem as the library does."""
+    """Answer a problem with the library."""
     import loadshare as ls
 
     return ls.explain(problem.case, 1).equilibrium

@@ -1,9 +1,9 @@
-"""On the verge: gap and force of a contact both zero, or a spline just about to slip.
+"""Problems on the verge: gap and force of a contact both zero, or a spline just about to slip.
 
-Where that is follows from closed forms. A star with a fixed sun: the planet whose gap is what the
-others yield carries nothing and is not open. A sun on a spring between two opposite planets, one
-of them with the gap g: it moves by g/(2 + k c), c the compliance of a branch along the line
-of action, and a ring or a stick limit of that size is just reached.
+Closed forms give these points. In a star with a fixed sun, a planet whose gap equals the deflection
+of the others carries no load but is not open. A sun on a spring between two opposite planets, one
+of them with the gap g, moves by g/(2 + k c), where c is the compliance of a branch along the line
+of action; a ring or a stick limit of that size is just reached.
 """
 
 from __future__ import annotations
@@ -13,18 +13,18 @@ import numpy as np
 from benchmarks.stress.workbench import Workbench, star
 
 SUN, RING = 0.036 * 1.5, 0.084 * 1.5
-"""Pitch radii of the star's sun and ring over 1 [m]; only their ratios and cosines matter."""
+"""Pitch radii of the star's sun and ring [m]; only their ratios and cosines matter."""
 FIRST, SECOND = 1.4e6, 7.5e5
 """Stiffnesses of the star's meshes [N·m/rad] at their drivers."""
 RATIO = 24.0 / 36.0
-"""Planet over sun."""
+"""Ratio of planet to sun."""
 
 
 def branch_yield(torque: float, hertz: float) -> float:
-    """Angle of the sun [rad] under which one branch carries `torque` [N·m]."""
+    """Return the angle of the sun [rad] under which one branch carries `torque` [N·m]."""
     total = 0.0
     for stiffness, ratio in ((FIRST, 1.0), (SECOND, RATIO)):
-        # The planet's angle counts at the sun by the ratio of the radii, its torque as well.
+        # The planet's angle, like its torque, is referred to the sun by the ratio of the radii.
         carried, rated = torque * ratio, 1e-3 * stiffness
         curved = hertz * np.cbrt(rated) * np.cbrt(carried) ** 2
         total += ratio * ((1.0 - hertz) * carried + curved) / stiffness
@@ -32,7 +32,7 @@ def branch_yield(torque: float, hertz: float) -> float:
 
 
 def on_the_verge(off: float, generator: np.random.Generator) -> Workbench:
-    """Put a contact at a relative distance `off` from its verge, on either side of it."""
+    """Build a train with a contact at a relative distance `off` from its verge, on either side."""
     kind = generator.choice(["flank", "ring", "spline", "stop"])
     side = 1.0 + off * generator.choice([-1.0, 1.0])
     torque = 1000.0 * float(generator.uniform(0.1, 1.0))

@@ -1,4 +1,4 @@
-"""Without an answer: no path for the torque, or limits that contradict each other."""
+"""Problems without an answer: no path for the torque, or limits that contradict each other."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from benchmarks.stress.workbench import (
 
 
 def without_answer(excess: float, generator: np.random.Generator) -> Workbench:
-    """Return a train that must be refused; by `excess` it misses an answer."""
+    """Return a train that must be refused; it misses an equilibrium by `excess`."""
     kinds = (_squeezed, _one_sided, _unheld)
     kind = kinds[int(generator.integers(len(kinds)))]
     bench = kind(excess, generator)
@@ -26,7 +26,7 @@ def without_answer(excess: float, generator: np.random.Generator) -> Workbench:
 
 
 def _squeezed(excess: float, generator: np.random.Generator) -> Workbench:
-    """Neighbours of a drum stand closer than rings of the drawing allow."""
+    """Return a train whose drum has neighbours closer than rings made to the drawing allow."""
     bench = split_torque(2 * int(generator.integers(1, 5)))
     pinion = str(generator.choice(bench.named("pinion")))
     clearance = DEFLECTION * generator.uniform(0.1, 1.0)
@@ -40,7 +40,7 @@ def _squeezed(excess: float, generator: np.random.Generator) -> Workbench:
 
 
 def _one_sided(excess: float, generator: np.random.Generator) -> Workbench:
-    """All planets of a free sun stand on one side of it."""
+    """Return a star with a free sun that has all planets on one side."""
     planets = int(generator.integers(2, 5))
     bench = star(planets)
     for number in range(1, planets + 1):
@@ -49,7 +49,7 @@ def _one_sided(excess: float, generator: np.random.Generator) -> Workbench:
 
 
 def _unheld(excess: float, generator: np.random.Generator) -> Workbench:
-    """Idlers float freely between a pinion and a gear that both push them out."""
+    """Return a train with free idlers between a pinion and a gear that both push them out."""
     bench = split_torque(2 * int(generator.integers(1, 5)))
     for idler in bench.named("idler"):
         bench.support(idler, "free")

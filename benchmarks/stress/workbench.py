@@ -1,4 +1,4 @@
-"""A case on the workbench: shorthand for the changes that the families make, in SI numbers."""
+"""A case under construction: shorthand for the changes that the families make, in SI units."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Number = float | int
 
 
 def written(value: Number, unit: str) -> str:
-    """Return a value with its unit, every digit kept."""
+    """Return a value with its unit and all digits."""
     return f"{float(value)!r} {unit}"
 
 
@@ -25,7 +25,7 @@ class Workbench:
     Parameters
     ----------
     case : Case
-        Where to begin.
+        Case to start from.
     """
 
     def __init__(self, case: Case) -> None:
@@ -52,11 +52,11 @@ class Workbench:
 
     @property
     def rated(self) -> float:
-        """Input torque [N·m] as the case now has it."""
+        """Input torque [N·m] that the case has now."""
         return float(self.data["operating"]["torque"].split()[0])
 
     def named(self, start: str) -> list[str]:
-        """Gears whose name begins with `start`."""
+        """Return the gears whose names begin with `start`."""
         return [g for g in self.gears if g.startswith(start)]
 
     def torque(self, value: Number) -> None:
@@ -80,12 +80,12 @@ class Workbench:
         self._lawless(mesh)["law"] = {"b": written(b, unit), "c": written(c, f"{unit}^(2/3)")}
 
     def hertz(self, share: Number = 0.3, meshes: Iterable[str] = ()) -> None:
-        """Turn constant stiffnesses into b + c laws that yield as much under the rated torque.
+        """Turn constant stiffnesses into b + c laws with the same deflection at the rated torque.
 
         Parameters
         ----------
         share : float
-            Part of the yield that is Hertz contact.
+            Fraction of the deflection that is Hertz contact.
         meshes : iterable of str
             All by default.
         """
@@ -204,10 +204,10 @@ class Workbench:
         self.data["gears"][planet]["centre"]["angle"] = written(angle, "rad")
 
     def scale(self, size: Number, material: Number) -> None:
-        """Scale all lengths by `size`, and stiffness and load by the material as well.
+        """Scale all lengths by `size`, and stiffness and load also by `material`.
 
-        Stresses and angles stay as they were: torques and angular stiffnesses grow with the cube of
-        the size, forces with its square, linear stiffnesses with the size itself.
+        Stresses and angles do not change: torques and angular stiffnesses grow with the cube of the
+        size, forces with its square, linear stiffnesses with the size itself.
         """
         length = float(size)
         factors = {
@@ -234,17 +234,18 @@ class Workbench:
     def random_errors(
         self, amount: Number, generator: np.random.Generator, gears: Iterable[str] = ()
     ) -> None:
-        """Displace gears (all by default) by errors of half to all of `amount` [m], anywhere."""
+        """Displace gears (all by default) by half to all of `amount` [m], in random directions."""
         for gear in list(gears) or self.gears:
             size = amount * generator.uniform(0.5, 1.0)
             self.installation(gear, size, generator.uniform(0.0, 2.0 * np.pi))
 
 
 def split_torque(branches: int) -> Workbench:
-    """Begin with a split-torque train; its deflection is about 20 µm.
+    """Return a split-torque train; its deflection is about 20 µm.
 
-    The generator writes nanometres; here pinions stand on the line between their idlers, and face
-    gears square to each other, to the last digit, or free pinions would be out of balance by 1e-9.
+    The generator of cases writes nanometres. Here pinions are exactly on the line between their
+    idlers, and face gears exactly square to each other; otherwise free pinions would be out of
+    balance by 1e-9.
     """
     bench = Workbench(families.split_torque(branches))
     for gear, table in bench.data["gears"].items():
@@ -258,7 +259,7 @@ def split_torque(branches: int) -> Workbench:
 
 
 def star(planets: int, sun: str = "free") -> Workbench:
-    """Begin with a star, its gap removed; its deflection is about 7 µm."""
+    """Return a star without its gap; its deflection is about 7 µm."""
     bench = Workbench(families.star(planets))
     for mesh in bench.data["meshes"].values():
         mesh.pop("gap", None)
@@ -267,18 +268,18 @@ def star(planets: int, sun: str = "free") -> Workbench:
 
 
 def two_path() -> Workbench:
-    """Begin with a split-path box without clocking."""
+    """Return a split-path box without clocking."""
     return Workbench(families.two_path("0 rad"))
 
 
 def pair_of(pinion: str) -> tuple[str, str]:
-    """Idlers of a pinion of a split-torque train, as a drum's neighbours."""
+    """Return the idlers of a pinion of a split-torque train, which are a drum's neighbours."""
     number = pinion.removeprefix("pinion")
     return f"idler{number}b", f"idler{number}a"
 
 
 DEFLECTION = 20e-6
-"""What the generated trains yield under their rated load [m], roughly."""
+"""Approximate deflection of the generated trains under their rated load [m]."""
 SUPPORT = 5.5e8
 """Bearing stiffness of the seed [N/m]."""
 BENDING = 1.78e7
