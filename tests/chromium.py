@@ -1,4 +1,4 @@
-"""A headless Chromium, and what of a page can be judged without an eye."""
+"""A headless Chromium, and checks of a page that need no eye."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ FLAGS = (
     "--window-size=1280,1000",
 )
 FRACTION = 0.25
-"""Of the height of the letters, by which the boxes of two lines may run into each other: a box
-holds the room above and below the letters as well."""
+"""Fraction of the letter height by which the boxes of two lines may overlap: a box includes the
+space above and below the letters."""
 
 TEXTS = """
 const [picture, fraction] = arguments;
@@ -64,7 +64,7 @@ for (const text of root.querySelectorAll("text")) {
 }
 return bad;
 """
-"""What overlaps, is cut or is pale of the words in a picture."""
+"""Words in a picture that overlap, are cut off or are too pale."""
 
 CONTRAST = """
 function parts(colour) { return colour.match(/[\\d.]+/g).map(Number); }
@@ -143,14 +143,14 @@ const [width, done] = arguments, start = performance.now();
   if (over <= 0 || performance.now() - start > 2000) done(over); else requestAnimationFrame(look);
 })();
 """
-"""By how many pixels a page is too wide, once it has followed its screen."""
+"""Number of pixels by which a page is too wide, once it has adapted to its screen."""
 
 
 @contextmanager
 def chromium(profile: Path, offline: bool = True) -> Iterator[Any]:
-    """A browser without a network, or one that reaches a server of the test's own.
+    """Yield a browser without a network, or one that reaches a server of the test.
 
-    Where there is no browser the test is skipped, with CI set it fails.
+    Without a browser the test is skipped; if CI is set, it fails.
     """
     named = (shutil.which(n) for n in ("chromium", "chromium-browser", "google-chrome"))
     program, driver = next(filter(None, named), None), shutil.which("chromedriver")
@@ -174,14 +174,14 @@ def chromium(profile: Path, offline: bool = True) -> Iterator[Any]:
 
 
 def as_new(browser: Any, offline: bool = True) -> Any:
-    """A browser that has forgotten the screens, downloads and complaints of those before."""
+    """Return the browser without the screens, downloads and log entries of earlier tests."""
     browser.get("about:blank")
     browser.get_log("browser")
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
     browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "default"})
     if offline:
-        # Pages must do without a network; the browser has none either.
+        # Pages must work without a network, so the browser has none either.
         browser.set_network_conditions(offline=True, latency=0, throughput=0)
     else:
         browser.delete_network_conditions()
@@ -189,21 +189,21 @@ def as_new(browser: Any, offline: bool = True) -> Any:
 
 
 def visit(browser: Any, page: Path) -> None:
-    """Open a file, whole: the driver may return from a large one while it is still read."""
+    """Open a file completely: the driver may return from a large one while it is still loading."""
     browser.get(page.as_uri())
     complete = "return document.readyState === 'complete'"
     waiting(browser, 60).until(lambda b: b.execute_script(complete))
 
 
 def waiting(browser: Any, seconds: float) -> Any:
-    """What waits for a page so long at most, and looks often enough to lose no time itself."""
+    """Return a wait of at most `seconds` that polls a page often enough to lose no time itself."""
     from selenium.webdriver.support.ui import WebDriverWait
 
     return WebDriverWait(browser, seconds, 0.02)
 
 
 def steady(browser: Any, look: Callable[[Any], Any]) -> Any:
-    """Return what a look at the page finds; again if anything is drawn anew meanwhile."""
+    """Return what a look at the page finds; look again if anything is redrawn meanwhile."""
     from selenium.common.exceptions import StaleElementReferenceException
 
     for _ in range(20):
@@ -213,7 +213,7 @@ def steady(browser: Any, look: Callable[[Any], Any]) -> Any:
 
 
 def on_screen(browser: Any, width: int, height: int = 900, dark: bool = False) -> None:
-    """Give the browser a screen of so many pixels, light or dark."""
+    """Give the browser a screen of `width` by `height` pixels, light or dark."""
     size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
     scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
@@ -221,20 +221,20 @@ def on_screen(browser: Any, width: int, height: int = 900, dark: bool = False) -
 
 
 def too_wide(browser: Any, width: int) -> int:
-    """Pixels by which a page stays wider than its screen; a phone's zooms out as far as that."""
+    """Return the pixels by which a page is wider than its screen; a phone would zoom out."""
     return int(browser.execute_async_script(OVER, width))
 
 
 def badly_set(browser: Any, picture: Any) -> list[str]:
-    """What overlaps, is cut or is pale of the words in an SVG element.
+    """Return the words in an SVG element that overlap, are cut off or are too pale.
 
-    ``picture`` is the element, or its selector where the page may draw it again meanwhile.
+    ``picture`` is the element, or its selector if the page may redraw it meanwhile.
     """
     return list(browser.execute_script(TEXTS, picture, FRACTION))
 
 
 def badly_set_file(browser: Any, svg: str, folder: Path) -> list[str]:
-    """The same of an SVG file's text."""
+    """Return the same for the text of an SVG file."""
     page = folder / "picture.html"
     page.write_text(f'<!doctype html><meta charset="utf-8"><body>{svg}', encoding="utf-8")
     visit(browser, page)

@@ -1,4 +1,4 @@
-"""What holds for all tests."""
+"""Settings and fixtures of all tests."""
 
 import gc
 import json
@@ -20,14 +20,14 @@ from loadshare.job.engines import engine_named
 from loadshare.outside import OUTSIDE
 from loadshare.report import beside
 
-# Mesh laws that tests compute stay out of the user's cache.
+# Mesh laws that tests compute must not go to the user's cache.
 os.environ["LOADSHARE_CACHE"] = str(Path(__file__).parent.parent / ".pytest_cache" / "laws")
 
-# Tests write cases into folders of their own that inherit shipped ones.
+# Tests write cases into their own folders that inherit shipped ones.
 os.environ[OUTSIDE] = "1"
 
 KEPT = 50_000
-"""Objects after which cycles among them are looked for."""
+"""Number of new objects after which cyclic garbage is collected."""
 
 settings.register_profile("same", SAME)
 settings.load_profile("same")
@@ -35,7 +35,7 @@ settings.load_profile("same")
 
 def pytest_configure(config: pytest.Config) -> None:
     reproducible.QUICK = "not slow" in config.getoption("markexpr")
-    # Most of what is imported and collected stays; to look through it took a fifteenth of all time.
+    # Most of what is imported and collected stays alive; searching it took a fifteenth of all time.
     gc.set_threshold(KEPT)
 
 
@@ -45,16 +45,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Choose what is quick, and shuffle tests if a seed is given."""
+    """Choose the quick tests, and shuffle tests if a seed is given."""
     _choose_quick(items)
     _shuffle(config, items)
 
 
 def _choose_quick(items: list[pytest.Item]) -> None:
-    """Of the sets of parameters of a test leave so many as it says, and mark the others as slow.
+    """Keep the stated number of parameter sets of each test, and mark the others as slow.
 
-    Which ones hangs on their names alone, wherever the files lie: in their own order, those of one
-    engine might be left.
+    The choice depends on their names alone, wherever the files are: in the order of parameters,
+    only those of one engine might be kept.
     """
     here = str(Path(__file__).parents[1])
     alike: dict[str, list[pytest.Item]] = {}
@@ -69,7 +69,7 @@ def _choose_quick(items: list[pytest.Item]) -> None:
 
 
 def _shuffle(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Shuffle files, and tests within each: what a file shares stays so."""
+    """Shuffle files, and tests within each: tests of one file stay together."""
     seed = config.getoption("--shuffle")
     if seed is None:
         return
@@ -86,14 +86,14 @@ def _shuffle(config: pytest.Config, items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def chrome(tmp_path_factory) -> Iterator[Any]:
-    """The one browser of a worker; who uses it makes it as new first."""
+    """Yield the one browser of a worker; each test resets it first."""
     with chromium(tmp_path_factory.mktemp("profile")) as found:
         yield found
 
 
 @pytest.fixture(scope="session", autouse=True)
 def drawn_once() -> Iterator[Any]:
-    """A picture that was drawn is not drawn again: the same specification gives the same text."""
+    """Keep every picture that was drawn: the same specification gives the same text."""
     known: dict[str, Any] = {}
     begin = beside.begin
 
@@ -111,13 +111,13 @@ def drawn_once() -> Iterator[Any]:
 
 @pytest.fixture
 def drawn_anew(drawn_once: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """For tests of that: each picture is drawn."""
+    """Draw each picture again, for tests of drawing."""
     monkeypatch.setattr(beside, "begin", drawn_once)
 
 
 @pytest.fixture(autouse=True)
 def numpy_alone() -> Iterator[None]:
-    """Which kernel is at hand depends on what ran before: who asks for none here has NumPy's."""
+    """Use NumPy unless a test asks for a kernel: whether one is loaded depends on earlier tests."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hot, "engine_at_hand", engine_named)
         patch.setattr(engines, "loaded", lambda: False)

@@ -1,7 +1,7 @@
 """Examples that are the same in every run.
 
-Hypothesis draws now and then a number that it finds in the code of what has been imported, so that
-a run of a single file draws other examples than a run of all, and a failure is not met again.
+Hypothesis sometimes draws a number that it finds in the code of imported modules. A run of a single
+file would then draw other examples than a run of all, and a failure would not be reproduced.
 """
 
 from hypothesis import HealthCheck, settings
@@ -16,18 +16,19 @@ class Drawn(HypothesisProvider):
         return None
 
 
-# So nobody need read all that is imported for its numbers, which takes as long as many a test.
+# This also avoids reading all imported modules for their numbers, which takes as long as many
+# tests.
 providers._get_local_constants = lambda: providers._local_constants
 AVAILABLE_PROVIDERS["reproducible"] = f"{Drawn.__module__}.{Drawn.__name__}"
 SAME = settings(backend="reproducible", deadline=None, derandomize=True, database=None)
-"""Every test of a property has this profile."""
+"""Profile of every property test."""
 TRAINS = settings(SAME, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
-"""For what draws whole trains."""
+"""Profile for tests that draw whole trains."""
 
 QUICK = False
-"""Whether slow tests are left out; `conftest` finds it in the options of the run."""
+"""Whether slow tests are left out; `conftest` sets it from the options of the run."""
 
 
 def examples(quick: int, every: int) -> int:
-    """How many examples a property is tried on: every one where slow tests run."""
+    """Return the number of examples of a property test: `every` if slow tests run, else `quick`."""
     return quick if QUICK else every

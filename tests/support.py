@@ -1,6 +1,4 @@
-"""What several rooms of tests share: the shipped cases, variants of them, and how to solve one
-position.
-"""
+"""Helpers of several test packages: shipped cases, their variants, solutions of one position."""
 
 from collections.abc import Container, Iterable, Mapping
 from functools import cache
@@ -31,9 +29,9 @@ SHIPPED = tuple(
 
 
 def mostly_slow(values: Iterable[object], quick: Container[object]) -> list[object]:
-    """Parameters of a test, of which some run every time and the others with the slow ones.
+    """Return parameters of a test; some run every time, the others with the slow tests.
 
-    For tests that take seconds and find the same faults in many cases: `quick` holds one of each
+    For tests that take seconds and find the same faults in many cases: `quick` contains one of each
     kind of element.
     """
     slow = pytest.mark.slow
@@ -42,53 +40,51 @@ def mostly_slow(values: Iterable[object], quick: Container[object]) -> list[obje
 
 
 EVERY_SHIPPED = mostly_slow(SHIPPED, {*SHIPPED} - {"fgfbstts/from_geometry"})
-"""The same as parameters: laws from teeth take long to compute, and are laws like others then."""
+"""The same as parameters. Laws from teeth take long to compute, and are then ordinary laws."""
 BACKLASHES = ("1-2", "1-3", "4-6", "4-7", "5-8", "5-9", "6-10", "7-10", "8-10", "9-10")
 """Meshes of the seed's transmission."""
 
 
 @cache
 def shipped(name: str) -> ls.Case:
-    """A shipped case."""
+    """Return a shipped case."""
     return ls.load_case(CASES / f"{name}.toml")
 
 
 def loaded(case: ls.Case, torque: str) -> ls.Case:
-    """The case under another input torque."""
+    """Return the case under another input torque."""
     gone = {f"operating.{k}": None for k in ("power", "speed") if k in case.to_dict()["operating"]}
     return case.replace({**gone, "operating.torque": torque})
 
 
 def with_backlash(case: ls.Case, backlash: str) -> ls.Case:
-    """The seed's transmission with the same circumferential backlash on every mesh."""
+    """Return the seed's transmission with the same circumferential backlash on every mesh."""
     return case.replace({f'meshes."{m}".backlash': backlash for m in BACKLASHES})
 
 
 def round_ring(stiffness: str = "rigid") -> ls.Case:
-    """A star of five whose sun presses on a round limit ring that stands off centre."""
+    """Return a star of five whose sun presses on a round limit ring that is off centre."""
     ring = {"radius": "3 um", "offset": ["0.5 um", "-1 um"], "stiffness": stiffness}
     return families.star(5).replace({"rings": {"sun": ring}})
 
 
 def lost_contact() -> ls.Case:
-    """A star of four that carries so little that two of its planets lose contact."""
+    """Return a star of four with so little load that two of its planets lose contact."""
     return families.star(4).replace({"operating.torque": "100 N*m"})
 
 
 def coasting() -> ls.Case:
-    """The seed's transmission under light load and small backlash: coast flanks close against
-    the errors.
-    """
+    """Return the seed's transmission at light load, small backlash: errors close coast flanks."""
     return with_backlash(loaded(shipped("fgfbstts/both_errors"), "60 N*m"), "5 um")
 
 
 def answer(train: Train, index: int = 1, **options: object) -> tuple[Equilibrium, Record]:
-    """Equilibrium of one position, as the solver claims it."""
+    """Return the equilibrium of one position as the solver claims it."""
     return solve_scene(assemble(train, index), Options(**options))
 
 
 def certified(case: ls.Case, index: int = 1, **options: object) -> tuple[Equilibrium, Certificate]:
-    """Equilibrium of one position and its certificate, which must pass."""
+    """Return the equilibrium of one position and its certificate, which must pass."""
     train = build_train(case)
     found, _ = answer(train, index, **options)
     certificate = certify(train, found)
@@ -97,13 +93,13 @@ def certified(case: ls.Case, index: int = 1, **options: object) -> tuple[Equilib
 
 
 def bound_of(train: Train, answer: Equilibrium, rigorous: bool = False) -> Bound:
-    """How far a claim is from the exact equilibrium, at most."""
+    """Return the bound on the distance of a claim from the exact equilibrium."""
     (found,) = Claims.of(train, [answer], rigorous).bounds
     return found
 
 
 def driver_torques(case: ls.Case, index: int = 1, **options: object) -> dict[str, float]:
-    """Torque [N·m] on the driver of every mesh, drive flank less coast flank."""
+    """Return the torque [N·m] on the driver of every mesh, drive flank less coast flank."""
     train = build_train(case)
     found, _ = answer(train, index, **options)
     return {
@@ -113,20 +109,20 @@ def driver_torques(case: ls.Case, index: int = 1, **options: object) -> dict[str
 
 
 def furthest(one: Mapping[str, float], other: Mapping[str, float]) -> float:
-    """Largest difference of two sets of figures, over the largest figure."""
+    """Return the largest difference of two sets of figures, over the largest figure."""
     assert one.keys() == other.keys()
     size = max((abs(v) for v in one.values()), default=0.0) or 1.0
     return max((abs(one[k] - other[k]) for k in one), default=0.0) / size
 
 
 def turned(angle: float) -> np.ndarray:
-    """Rotation (3, 3) about z."""
+    """Return the rotation (3, 3) about z."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def coordinates(train: Train, found: Equilibrium) -> dict[str, float]:
-    """Every displacement of an answer [m] by name: x, y, and arc length at the base circle."""
+    """Return every displacement [m] of an answer by name: x, y, arc length at the base circle."""
     moved = {
         f"gear {n} {axis}": float(way @ found.displacement[n])
         for n, gear in train.gears.items()
@@ -139,7 +135,7 @@ def coordinates(train: Train, found: Equilibrium) -> dict[str, float]:
 
 
 def forces(found: Equilibrium) -> dict[str, float]:
-    """Every force of an answer [N] by name."""
+    """Return every force of an answer [N] by name."""
     reactions = {
         f"{name} {axis}": float(v)
         for name, force in found.radial_reaction.items()
@@ -149,8 +145,8 @@ def forces(found: Equilibrium) -> dict[str, float]:
 
 
 def disagreement(train: Train, one: Equilibrium, other: Equilibrium) -> tuple[float, float]:
-    """Largest differences of two answers: forces over the largest one, determined displacements
-    over the deflection of the case.
+    """Return the largest differences of two answers: forces over the largest force, determined
+    displacements over the deflection of the case.
     """
     free = {*one.undetermined, *other.undetermined}
     moved = [
@@ -162,7 +158,7 @@ def disagreement(train: Train, one: Equilibrium, other: Equilibrium) -> tuple[fl
 
 
 def potential(train: Train, found: Equilibrium) -> float:
-    """Potential energy of an answer [J], from its displacements alone."""
+    """Return the potential energy of an answer [J], from its displacements alone."""
     state = ClaimedState(train, found)
     energy = [-t * found.rotation[g] for g, t in state.situation.torques.items()]
     energy += [push.law.energy(push.approach) for push in state.pushes]

@@ -1,4 +1,4 @@
-"""No module imports another that comes to import it, not even inside a function."""
+"""No module imports another that imports it in turn, not even inside a function."""
 
 import grimp
 

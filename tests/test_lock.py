@@ -1,4 +1,4 @@
-"""One at a time in a folder: whoever comes second is told; a killed one is in nobody's way."""
+"""Only one command works in a folder at a time; a second is told so, a killed one blocks none."""
 
 import errno
 import os
@@ -27,7 +27,7 @@ with alone_in(Path(sys.argv[1])):
 
 @pytest.fixture
 def holder(tmp_path):
-    """Another process that works in the folder."""
+    """Start another process that works in the folder."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     words = [sys.executable, "-c", HOLDER, tmp_path]
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=environment) as process:

@@ -1,4 +1,4 @@
-"""What `python -m benchmarks.code_lines` counts."""
+"""The counts of `python -m benchmarks.code_lines`."""
 
 from importlib.util import find_spec
 from pathlib import Path

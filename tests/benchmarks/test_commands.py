@@ -1,4 +1,4 @@
-"""The commands of the benchmarks that publish: what they say, write and refuse."""
+"""The commands of the benchmarks that publish: their output, files and refusals."""
 
 import json
 
@@ -84,7 +84,7 @@ def test_the_map_of_one_family_is_written_and_drawn_again(run, tmp_path):
     (tmp_path / "stability.md").unlink()
     assert run("stress", "--redraw", "-o", str(tmp_path)).exit_code == 0
     assert (tmp_path / "stability.md").read_text() == before
-    # The page must open without a network: its scripts are in it.
+    # The page must open without a network, so it contains its scripts.
     assert "<script src=" not in (tmp_path / "stability.html").read_text()
 
 

@@ -1,4 +1,4 @@
-"""What random trains count as too far, against exact involutes."""
+"""Which random trains count as displaced too far, against exact involutes."""
 
 import pytest
 from tests.certify.test_validity import exact, pair
@@ -25,7 +25,7 @@ def test_missed_approach_is_that_of_exact_involutes(kind: str, torque: str) -> N
 
 @pytest.mark.parametrize(("number", "far"), [(681, True), (796, False)])
 def test_only_flanks_with_a_force_are_far(number: int, far: bool) -> None:
-    """Light loads: of one train a wedged planet is shifted, of the other one that is idle."""
+    """At light loads, a wedged planet is displaced far in one train, an idle one in the other."""
     train = build_train(draw(1, number))
     assert is_far(train, 1, reference(train, 1)) == far
 
@@ -36,7 +36,7 @@ def test_teeth_that_are_compressed_by_more_than_their_height_are_far() -> None:
 
 
 def test_errors_that_turn_the_line_of_action_are_far() -> None:
-    """Errors of 4 to 6 mm turn lines by more than 10 deg; the same train without them is near."""
+    """Errors of 4 to 6 mm turn lines of action by over 10°; without them, the train is not far."""
     case = FAMILIES["stiffness-ratio"].problem(197).case
     train = build_train(case)
     found = reference(train, 1)
@@ -47,6 +47,6 @@ def test_errors_that_turn_the_line_of_action_are_far() -> None:
 
 
 def test_part_of_the_load_may_be_too_much_already() -> None:
-    """Soft rings give way, and the input rolls along an arc; of another train nothing moves far."""
+    """Soft rings yield, and the input rolls along an arc; in the other train nothing moves far."""
     assert is_far_before(build_train(draw(1, 1292)), 1)
     assert not is_far_before(build_train(draw(1, 796)), 1)

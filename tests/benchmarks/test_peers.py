@@ -1,7 +1,7 @@
-"""Peers are given the right problem: those that can must find the certified answer.
+"""Peers get the right problem: those that can solve it must find the certified answer.
 
-Tolerances: an active-set method (DAQP) to 1e-9, an interior point at 1e-11 to 1e-6, which is its
-tolerance times the condition of these scenes.
+Tolerances: 1e-9 for an active-set method (DAQP); 1e-6 for an interior-point method at 1e-11, which
+is its tolerance times the condition number of these scenes.
 """
 
 import numpy as np
@@ -19,12 +19,12 @@ from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 
 EXACT, INTERIOR, BATCHED = 1e-9, 1e-5, 1e-2
-"""Certificates that an active-set method, an interior point, and the batched one reach."""
+"""Residuals that an active-set method, an interior-point method and the batched one reach."""
 FAST = [e for e in PEERS.values() if not e.slow and e.name != "trial states"]
 
 
 def b_and_c_with_errors() -> ls.Case:
-    """All elements but splines: rings, backlash, elastic bearings, b + c laws."""
+    """Return a case with rings, backlash, elastic bearings and b + c laws, but no splines."""
     case = shipped("fgfbstts/all_elements")
     return case.replace({"assumed": None, "splines": None})
 
@@ -54,7 +54,7 @@ def test_a_peer_finds_the_certified_answer(entry, name):
     claim = peer.solve(form)
     found = form.equilibrium(claim.x, claim.forces, claim.pulls)
     limit = {"DAQP": EXACT, "DAQP, reduced": EXACT, "moreau": BATCHED}.get(entry.name, INTERIOR)
-    # A peer's answer is in balance to its own tolerance; its torques are not proved so closely.
+    # A peer's answer is in balance to its own tolerance; its torques are not proved that closely.
     certificate = certify(train, found, min(limit, CERTIFY.largest))
     assert certificate.worst <= limit, certificate.residuals
 

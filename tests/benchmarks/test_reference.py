@@ -1,4 +1,4 @@
-"""The 50-digit reference: against closed forms, against the certificate, and in its own digits.
+"""The 50-digit reference against closed forms and the certificate, and its own digits.
 
 Source of the closed forms: reconstruction of the seed's case (no floats, rigid supports); the
 radial law of formulation, section 5.
@@ -19,7 +19,8 @@ from loadshare.certify import certify
 from loadshare.train import build_train
 
 ROUND_OFF = 1e-12
-"""Of our solver in double precision: some tens of unknowns, conditions up to 1e4."""
+"""Round-off of our solver in double precision: some tens of unknowns, condition numbers up to 1e4.
+"""
 DETERMINED = ("rigid_closed_form", "both_errors", "spline_clearance", "full_float", "limit_ring")
 
 
@@ -34,7 +35,7 @@ def test_branches_that_are_alike_share_to_the_last_of_50_digits():
     case = families.star(4, floating=False).replace({'meshes."sun-planet1".gap': None})
     found = reference(build_train(case))
     torques = {Decimal(found.exact[f"sun-planet{k}"]) for k in range(1, 5)}
-    # Planets stand on the axes, but cos 90° in doubles is 6e-17, not 0: so much they may differ.
+    # Planets are on the axes, but cos 90° in doubles is 6e-17, not 0; they may differ by as much.
     assert max(torques) - min(torques) < Decimal("1e-13")
     assert abs(sum(torques) / len(torques) - 250) < Decimal("1e-13")
 
@@ -93,7 +94,7 @@ def test_every_element_at_once_is_certified_from_the_reference_alone():
 
 
 def test_a_float_that_only_round_off_holds_is_called_loose():
-    """A pinion free between two idlers is in balance as far as their normals are opposite."""
+    """A free pinion between two idlers is in balance only as far as their normals are opposite."""
     case = shipped("fgfbstts/limit_ring")
     inside = case.replace({"rings.4.float": "1 mm", "rings.4.clearance": "1 mm"})
     for text, loose in ((case, {"1"}), (inside, {"1", "4"})):

@@ -1,6 +1,6 @@
-"""A seeded slice of the stress map: outcomes only, never a time.
+"""A sample of the stress map: outcomes only, never times.
 
-What is solvable is decided by two linear programmes (`stress.truth`), not by the solver under test.
+Two linear programmes (`stress.truth`) decide what is solvable, not the solver under test.
 """
 
 import pytest
@@ -72,13 +72,13 @@ def test_truth_knows_limits_that_contradict_each_other():
 @pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_every_problem_is_a_train(family):
-    """What case files allow may have become less."""
+    """Problems must be within the limits of case files, which may have become stricter."""
     for number in range(COUNT):
         build_train(FAMILIES[family].problem(number).case)
 
 
 def _claims(shift: float):
-    """A method that claims the right answer with every displacement off by a factor."""
+    """Return a method that claims the right answer with every rotation off by a factor."""
 
     def method(problem, train):
         found = ls.explain(problem.case, 1).equilibrium

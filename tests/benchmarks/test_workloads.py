@@ -1,4 +1,4 @@
-"""The workloads of the speed chart: every one can be built, and its samples have answers."""
+"""The workloads of the speed chart: each can be built, and its samples have answers."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 
 def test_samples_are_certified():
-    """In one test: as parameters they would be made by every worker."""
+    """All are in one test: as parameters, every worker would build them."""
     for workload in (*workloads(CASES, quick=True), *branches(quick=True)[:2]):
         found = ls.solve_many(workload.case, workload.some(20), positions=[1], engine="vectorised")
         assert found.certified.all(), workload.name

@@ -132,7 +132,7 @@ def test_replace_leaves_the_case_as_it_is(drive):
 
 
 def test_numbers_and_arrays_of_numpy_are_plain_data(drive):
-    """As are generators; whatever is given, the case holds what a file would."""
+    """So do generators: whatever is given, the case contains what a file would."""
     plain = {
         "operating.positions": 3,
         'meshes."a-b".backlash': "20 um",

@@ -1,4 +1,4 @@
-"""Copies of gears are the same as every one of them written out."""
+"""Copies of gears give the same case as when each of them is written out."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_copies_are_written_out() -> None:
 
 
 def test_directions_of_copies_are_those_of_the_case() -> None:
-    """Places are rotated about the pole; stiffer along x is stiffer along x for every copy."""
+    """Places are rotated about the pole; a support that is stiffer along x is so for every copy."""
     gears = copy.deepcopy(SET["gears"])
     gears["planet"]["support"] = ["1e9 N/m", "2e8 N/m"]
     bearings = {"planet": {"clearance": "5 um", "stiffness": "rigid", "offset": ["9 um", "0 um"]}}
@@ -114,7 +114,7 @@ def test_gears_on_one_pin_are_copied_together() -> None:
 
 
 def test_pairs_of_unequal_numbers_are_told_so() -> None:
-    """No copy is to be named where all of one gear cannot meet all of another."""
+    """No single copy is named if the copies of two gears cannot be paired."""
     data = changed()
     data["gears"]["outer"] = data["gears"]["planet"] | {"copies": 4}
     data["meshes"]["planet-outer"] = {"stiffness": "2e7 N*m/rad"}
@@ -126,7 +126,7 @@ def test_pairs_of_unequal_numbers_are_told_so() -> None:
 
 
 def test_a_gear_with_the_name_of_a_copy_is_told_apart_from_what_is_said_of_the_copy() -> None:
-    """It was laid over the copy: one branch was lost without a word."""
+    """Such a gear used to replace the copy, so that one branch was lost without a message."""
     data = changed()
     for own in (
         data["gears"]["sun"],

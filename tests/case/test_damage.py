@@ -37,7 +37,7 @@ GARBAGE = st.recursive(
 
 
 def places(data, above=()):
-    """Every place in nested data, list items as well."""
+    """Yield the path of every item in nested data, including list items."""
     items = data.items() if isinstance(data, dict) else enumerate(data)
     for step, value in items:
         yield (*above, step)

@@ -1,4 +1,4 @@
-"""Meshes through which torque would lead back to where it has come from."""
+"""Meshes through which torque would lead back to its origin."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from loadshare.errors import CaseError
 
 X = (90.0**2 + 150.0**2 - 130.0**2) / 300.0
 Y = math.sqrt(90.0**2 - X**2)
-"""Where an idler is [mm], 90 mm from gear 1 and 130 mm from gear 2."""
+"""Position of an idler [mm], 90 mm from gear 1 and 130 mm from gear 2."""
 
 
 def base(teeth: int) -> str:
-    """Base radius of a gear of module 4 mm."""
+    """Return the base radius of a gear of module 4 mm."""
     return f"{2.0 * teeth * math.cos(math.radians(20.0))!r} mm"
 
 
 def two_idlers(meshes: dict[str, str], **mesh: str) -> Case:
-    """Gear 1 of 20 teeth and gear 2 of 40 with an idler of 25 teeth on either side."""
+    """Return gear 1 of 20 teeth and gear 2 of 40, with an idler of 25 teeth on either side."""
     gears: dict[str, object] = {
         "1": {"base_radius": base(20), "centre": ["0 mm", "0 mm"]},
         "2": {"base_radius": base(40), "centre": ["150 mm", "0 mm"]},
@@ -39,14 +39,14 @@ def two_idlers(meshes: dict[str, str], **mesh: str) -> Case:
     )
 
 
-# Stiffnesses at the drivers; the same along the line of action whichever gear drives.
+# Stiffnesses at the drivers, equal along the line of action whichever gear drives.
 ALONG = {"1-a": "1e6 N*m/rad", "a-2": "1e6 N*m/rad"}
 RIGHT = {**ALONG, "1-b": "1e6 N*m/rad", "b-2": "1e6 N*m/rad"}
 BACK = {**ALONG, "b-1": "1.5625e6 N*m/rad", "2-b": "2.56e6 N*m/rad"}
 
 
 def test_a_branch_that_is_named_from_the_output_on_is_refused():
-    """With one flank for each mesh it would carry nothing, and the other branch everything."""
+    """With one flank per mesh it would carry nothing, and the other branch everything."""
     with pytest.raises(CaseError) as caught:
         two_idlers(BACK)
     lines = str(caught.value).splitlines()
@@ -66,7 +66,7 @@ def test_with_both_flanks_a_branch_carries_under_either_name():
 
 @pytest.mark.parametrize(("torque", "clocking"), [("100 N*m", "-1 mrad"), ("-100 N*m", "1 mrad")])
 def test_power_may_go_round_over_shafts(torque, clocking):
-    """A rig in which two pairs of gears brace one another by how their shaft is clocked."""
+    """In this test rig, two pairs of gears brace one another because their shaft is clocked."""
     wheel = {"module": "4 mm"}
     case = Case(
         operating={"input": "A", "output": "B", "torque": torque},
@@ -83,13 +83,13 @@ def test_power_may_go_round_over_shafts(torque, clocking):
         },
     )
     found = ls.solve(case).positions[0].torque
-    # The ratio of both pairs is 1 : 2, so that no torque but that of the clocking goes round.
+    # The ratio of both pairs is 1 : 2, so that only the torque from clocking circulates.
     assert abs(found["C-D"]) > 1.0
 
 
 @pytest.mark.parametrize("backlash", ["100 um", "0 um", None])
 def test_planets_of_a_gear_are_named_alike_where_there_is_backlash(backlash):
-    """It is behind the flank with which the gear named first drives: one planet carried nothing."""
+    """Backlash is behind the drive flank of the gear named first; a planet carried nothing."""
     case = shipped("planetary/four_planets")
     every = {"law": "iso", **({"backlash": backlash} if backlash else {})}
     mixed = {f"sun-planet{k}": every for k in (1, 3, 4)} | {"planet2-sun": every}
@@ -104,6 +104,6 @@ def test_planets_of_a_gear_are_named_alike_where_there_is_backlash(backlash):
             case.replace(changes)
         return
     torque = ls.solve(case.replace(changes)).positions[0].torque
-    # That of the gear named first; a planet has twice the teeth of the sun.
+    # The torque is that of the gear named first; a planet has twice the teeth of the sun.
     expected = [250.0, 250.0, 250.0, 500.0]
     assert [abs(torque[name]) for name in mixed] == pytest.approx(expected, rel=1e-9)

@@ -1,4 +1,4 @@
-"""Tolerances by class, against the numbers that the standard's formulas give."""
+"""Tolerances by class against numbers from the standard's formulas."""
 
 import math
 
@@ -14,7 +14,7 @@ def gear(**keys) -> Gear:
 
 
 def test_class_5_by_hand():
-    """d = 100 mm, m = 4 mm, b = 36 mm: round roots, worked out term by term."""
+    """d = 100 mm, m = 4 mm, b = 36 mm have exact roots; the terms are worked out one by one."""
     found = tolerances_of(gear(tolerance_class=5))
     expected = {
         "single_pitch": 0.1 + 1.6 + 5.0,

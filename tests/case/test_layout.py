@@ -53,7 +53,7 @@ def test_a_chain_of_gears_stands_by_its_teeth():
 @pytest.mark.parametrize("internal", [False, True])
 @pytest.mark.parametrize("helix", ["0 deg", "20 deg"])
 def test_shifted_teeth_meet_without_backlash(internal: bool, helix: str):
-    """`normal_backlash` measures tooth thickness at the working circles, on its own."""
+    """`normal_backlash` measures tooth thickness at the working circles independently."""
     other = {"helix_angle": helix if internal else f"-{helix}", "profile_shift": 0.4}
     kind = {"type": "internal"} if internal else {}
     case = chain(
@@ -67,7 +67,7 @@ def test_shifted_teeth_meet_without_backlash(internal: bool, helix: str):
 
 
 def test_planets_stand_by_their_mesh_with_the_sun():
-    """About the carrier or the origin."""
+    """This holds about the carrier or the origin."""
     derived = load_case(CASES / "planetary" / "four_planets.toml")
     given = derived.replace({f"gears.planet{k}.centre.distance": "135 mm" for k in range(1, 5)})
     for name, centre in given.centres().items():
@@ -103,7 +103,7 @@ def test_centre_distances_of_a_real_gearbox(name: str, pole: str, printed: float
     ],
 )
 def test_centre_distances_of_another(module, helix, teeth, shifts, printed):
-    """DTU 10 MW, Wang, Nejad and Moan 2020; shifts to four digits, so 1e-4 modules a gear."""
+    """DTU 10 MW, Wang, Nejad and Moan 2020; shifts have four digits, so 1e-4 modules per gear."""
     rack = {"module": f"{module} mm"}
     case = chain(
         a=gear(teeth[0], centre=["0 mm", "0 mm"], profile_shift=shifts[0])
@@ -117,7 +117,7 @@ def test_centre_distances_of_another(module, helix, teeth, shifts, printed):
 
 
 def test_external_meshes_decide_before_internal_ones():
-    """A sun with a positive shift pushes the planet out, and the ring has less play."""
+    """A sun with a positive shift moves the planet outwards, and the ring has less play."""
     given = load_case(CASES / "planetary" / "four_planets.toml")
     shifted = {"gears.sun.profile_shift": 0.02, "gears.ring.profile_shift": -0.1}
     case = given.replace(shifted)
@@ -174,7 +174,7 @@ def test_a_tip_must_not_reach_below_the_pinions_base_circle():
     """Closed form: r_a2² ≤ r_b2² + (a sin α)²; 12 and 60 teeth of module 4 mm at 144 mm."""
     angle = math.radians(20.0)
     most = 1e3 * math.hypot(0.12 * math.cos(angle), 0.144 * math.sin(angle))
-    pinion = gear(12, dedendum=2.0)  # a root that leaves room enough
+    pinion = gear(12, dedendum=2.0)  # a root that leaves enough room
     message = refusal(pair, pinion, gear(60), "144 mm")
     assert "the tip of gear b, at a radius of 124 mm, finds no room in gear a" in message
     assert f"at most {most:.6g} mm" in message
@@ -184,14 +184,14 @@ def test_a_tip_must_not_reach_below_the_pinions_base_circle():
             pair(pinion, wheel, "144 mm")
         else:
             assert "finds no room" in refusal(pair, pinion, wheel, "144 mm")
-    # What the message proposes is enough.
+    # The value proposed in the message is sufficient.
     proposed = message.partition('tip_alteration = "')[2].partition('"')[0]
     pair(pinion, gear(60, tip_alteration=proposed), "144 mm")
 
 
 @pytest.mark.parametrize("internal", [False, True])
 def test_a_tip_must_not_reach_the_root(internal: bool):
-    """An addendum of 1.2 on both stands against a dedendum of 1.15: 0.05 modules too high."""
+    """An addendum of 1.2 on both meets a dedendum of 1.15: 0.05 modules too high."""
     kind = {"type": "internal"} if internal else {}
     one, two = gear(40, addendum=1.2), gear(100, dedendum=1.15, **kind)
     distance = "120 mm" if internal else "280 mm"
@@ -202,10 +202,10 @@ def test_a_tip_must_not_reach_the_root(internal: bool):
 
 
 def meets(pinion: Tooth, ring: Tooth, distance: float) -> float:
-    """How deep a tip corner of the pinion comes into a ring's tooth as both turn [rad].
+    """Return how deep a tip corner of the pinion enters a ring's tooth as both turn [rad].
 
-    The ring stands still, and the pinion's centre goes round in it; centres apart along x. Both
-    have a tooth space and a tooth on the line of centres, where backlash is shared evenly.
+    The ring is fixed, and the pinion's centre moves around in it; the centres are apart along x.
+    Both have a tooth space and a tooth on the line of centres, with the backlash divided equally.
     """
     deepest = -math.inf
     corner = pinion.half_angle_at(math.acos(pinion.base_radius / pinion.tip))
@@ -217,14 +217,14 @@ def meets(pinion: Tooth, ring: Tooth, distance: float) -> float:
             continue
         pitch = 2.0 * math.pi / ring.teeth
         seen = math.atan2(y, x) - turn * pinion.teeth / ring.teeth
-        off = abs((seen % pitch) - pitch / 2.0)  # teeth of the ring stand between its spaces
+        off = abs((seen % pitch) - pitch / 2.0)  # teeth of the ring are between its spaces
         deepest = max(deepest, ring.half_angle_at(math.acos(ring.base_radius / radius)) - off)
     return deepest
 
 
 @pytest.mark.parametrize("more", range(5, 14))
 def test_tips_in_an_internal_gear_pass_as_their_paths_show(more: int):
-    """The path of the pinion's tip corner, followed into the ring's teeth."""
+    """The path of the pinion's tip corner is followed into the ring's teeth."""
     ring = {"type": "internal", "addendum": 0.8, "dedendum": 1.6}
     wide = pair(gear(30), gear(90, **ring), "120 mm").gears
     one, two = wide["a"].tooth, replace(wide["b"].tooth, teeth=30 + more)
@@ -239,7 +239,7 @@ def test_tips_in_an_internal_gear_pass_as_their_paths_show(more: int):
 
 @pytest.mark.parametrize("shift", [0.0, 0.011, 0.02, 0.033])
 def test_tips_pass_with_the_alteration_that_is_told(shift: float):
-    """A tip radius was told, of six figures: as often as not it was just too small."""
+    """The message used to give a tip radius of six digits, which was often just too small."""
     ring = {"type": "internal", "addendum": 0.8, "dedendum": 1.6, "profile_shift": shift}
     one, two = gear(30, dedendum=1.6, profile_shift=-shift), gear(37, **ring)
     message = refusal(pair, one, two, "14 mm")
@@ -262,7 +262,7 @@ def star(copies: int, **planet) -> Case:
 
 
 def test_as_many_planets_as_find_room():
-    """sin(π/n) > r_a/a: planets of 36 teeth about a sun of 18 are four at most."""
+    """sin(π/n) > r_a/a: at most four planets of 36 teeth fit around a sun of 18."""
     assert math.sin(math.pi / 4) > 38.0 / 54.0 > math.sin(math.pi / 5)
     star(4)
     message = refusal(star, 5)
@@ -277,7 +277,7 @@ def test_planets_at_one_place():
 
 
 def test_a_ring_that_is_not_called_internal():
-    """It stands where the sun does, and the planets would have to roll between two gears."""
+    """Its centre is that of the sun, so planets would have to roll between two external gears."""
     set_ = star(3)
     with pytest.raises(CaseError) as found:
         set_.replace({"gears.r.type": "external"})

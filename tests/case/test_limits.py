@@ -1,6 +1,6 @@
-"""What no case file may hold: names that are none, numbers that no machine has, endless files.
+"""What no case file may contain: invalid names, impossible numbers, endless files.
 
-Every one is a problem with its key, found in a moment; none is a traceback.
+Each is reported quickly as a problem with its key; none ends in a traceback.
 """
 
 import os
@@ -40,7 +40,7 @@ stiffness = "1e6 N*m/rad"
 
 
 def refusal_of(tmp_path, text: str) -> str:
-    """Problems of a case file."""
+    """Return the problems of a case file."""
     path = tmp_path / "case.toml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(ls.CaseError) as failure:
@@ -78,7 +78,7 @@ def test_names_and_counts(tmp_path, change, key):
     old, new = change
     message = refusal_of(tmp_path, PAIR.replace(old, new, 1) if old else PAIR + new)
     assert key in message
-    # What is no name is not reported a second time, as no gear.
+    # An invalid name is not reported a second time as a missing gear.
     assert not (key.endswith('""') and '"" is not a gear' in message)
 
 
@@ -135,7 +135,7 @@ def test_units_that_engineers_write(unit):
         "notes = " + "[" * 50 + "]" * 50,
         "x = " + "{a = " * 3000 + "1" + "}" * 3000,
         "[" + "a." * 5000 + "a]\n",
-        # Parsed, its memory grows with the square of its steps: 20 GB.
+        # When parsed, its memory would grow with the square of its steps: 20 GB.
         "a" + ".a" * 100_000 + " = 1",
         "x = {" + '\'a\' . "b\\"" .' * 50_000 + "c = 1}",
         'x = """\n\\""""\n' + "a." * 50_000 + "a = 1",
@@ -172,7 +172,7 @@ def test_nesting_in_python_and_on_the_command_line():
     circle["notes"] = circle
     with pytest.raises(ls.CaseError, match="nested too deeply"):
         ls.Case(circle)
-    assert read_changes(["notes=" + "[" * 50_000])  # a text, which no note is too long for
+    assert read_changes(["notes=" + "[" * 50_000])  # a text, for which no note is too long
 
 
 def test_a_number_of_thousands_of_digits(tmp_path):
@@ -237,7 +237,7 @@ GEAR = "[gears.g{0}]\ncentre = ['0 mm', '0 mm']\nbase_radius = '1 mm'\n"
 )
 @pytest.mark.quick(2)
 def test_problems_without_number_take_a_moment(tmp_path, text, wanted):
-    """Each of these took minutes: what is near to a name was looked for among all others."""
+    """Each of these used to take minutes, because similar names were searched among all others."""
     with limited(10.0):
         message = refusal_of(tmp_path, PAIR + text)
     assert wanted in message

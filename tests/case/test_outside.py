@@ -1,4 +1,4 @@
-"""Files that a case names lie in its own folder, unless its reader allows others."""
+"""Files that a case names must be in its own folder, unless its reader allows others."""
 
 import os
 from pathlib import Path
@@ -19,7 +19,7 @@ TELLS = "is outside the folder of the case"
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch) -> Path:
-    """A folder with a case to inherit above it, and nothing allowed by the surroundings."""
+    """Return a folder with a case to inherit in its parent; the environment allows nothing."""
     monkeypatch.delenv(OUTSIDE, raising=False)
     (tmp_path / "above.toml").write_text(BASE.read_text())
     (tmp_path / "case").mkdir()
@@ -55,7 +55,7 @@ def test_a_case_inherits_from_its_own_folder_only(folder, way):
 
 
 def test_what_is_inherited_stays_in_the_folder_of_the_requested_case(folder):
-    """A file further down may look up, as far as that folder."""
+    """A file further down may refer upwards, as far as that folder."""
     (folder / "deeper").mkdir()
     (folder / "base.toml").write_text(BASE.read_text())
     (folder / "deeper" / "middle.toml").write_text('extends = "../base.toml"\n')
@@ -82,7 +82,7 @@ def test_laws_and_teeth_come_from_its_own_folder_only(folder, key):
 
 
 def test_what_its_reader_names_may_lie_anywhere():
-    """A change of the reader's, and a case put together in Python: the file is read."""
+    """This includes a change by the reader and a case made in Python: the file is read."""
     changes = {'meshes."1-2".stiffness': None, 'meshes."1-2".geometry': str(PAIR)}
     changed = ls.load_case(BASE).replace(changes)
     for case in (changed, ls.Case(changed.to_dict())):

@@ -161,7 +161,7 @@ def test_values_that_are_none(kind, given, message):
     "more", [" # kN*m", "#", "?", "!", ":", "=", ";", ";kg", '""', " 'x'", "@s", " \\ /s", "$"]
 )
 def test_nothing_follows_a_unit(more):
-    """Not even what the reader of units passes over."""
+    """Not even characters that the unit parser ignores."""
     with pytest.raises(ValidationError) as caught:
         read(q.Torque, f"5 N*m{more}")
     message = f"{more.strip()} is no part of a unit, and nothing else follows a number"
@@ -193,7 +193,7 @@ def test_text_and_schema():
 
 
 def test_the_registry_is_a_small_one_of_its_own():
-    """Pint's own takes ten times as long to build, and takes a torque for a stiffness."""
+    """Pint's own takes ten times as long to build, and accepts a torque as a stiffness."""
     assert len(list(units.registry())) < 0.2 * len(list(pint.UnitRegistry()))
 
 
@@ -204,7 +204,7 @@ def test_importing_the_room_does_not_import_pint():
 
 @pytest.mark.parametrize("si", units.FACTORS)
 def test_common_units_are_known_without_the_registry_and_as_it_says(si):
-    """To the last digit, and of no other kind."""
+    """They agree to the last digit, and fit no other kind."""
     for unit, factor in units.FACTORS[si].items():
         given = units._parse(unit)
         assert float((given / units._parse(si)).to_base_units().magnitude) == factor

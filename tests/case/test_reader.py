@@ -57,7 +57,7 @@ def test_what_a_base_assumes_stays_assumed(tmp_path, drive_text):
 
 
 def test_what_is_removed_is_assumed_no_more(tmp_path, drive_text):
-    """Patterns that covered nothing else go with it; those that never covered a key are told."""
+    """Patterns that covered nothing else go with it; those that never matched are reported."""
     base = f'assumed = ["stages.*", "meshes.*", "stages.none"]\n{drive_text}'
     base = base.replace('assumed = ["gears.*.base_radius"]\n', "")
     own = 'extends = "base.toml"\nremove = ["stages"]\nassumed = ["gears.b"]\n'
@@ -200,7 +200,7 @@ def test_a_case_without_its_sections_lacks_them(tmp_path):
 
 
 def test_a_bad_value_does_not_hide_an_unknown_name_beside_it(tmp_path):
-    """The ring's clearance is wrong, and so is its neighbour; both are reported at once."""
+    """The ring's clearance is wrong, and so is its neighbour; both are reported together."""
     text = (ROOT / "cases/fgfbstts/limit_ring.toml").read_text(encoding="utf-8")
     base = ROOT / "cases/fgfbstts/base.toml"
     text = text.replace('"base.toml"', f'"{base}"').replace('["9", "8"]', '["9", "88"]')

@@ -1,4 +1,4 @@
-"""Stiffness of rolling bearings against published figures, Stribeck's sum and Hertz' contact."""
+"""Stiffness of rolling bearings against published figures, Stribeck's sum and Hertz contact."""
 
 import math
 
@@ -12,7 +12,7 @@ from loadshare.case.rolling import BALL, ROLLER, STRIBECK, bearing_coefficient
 
 
 def test_line_contact_as_published():
-    """Harris: 8.06e4 l^(8/9) N/mm^(10/9) for one of a roller's two contacts; to its digits."""
+    """Harris: 8.06e4 l^(8/9) N/mm^(10/9) for one of a roller's two contacts, to its digits."""
     two = 8.06e4 * 2.0**-ROLLER * 20.0 ** (8.0 / 9.0) * 1e3**ROLLER
     found = bearing_coefficient("roller", 14, 0.02, 0.02) * STRIBECK["roller"] / 14
     assert found == pytest.approx(two, rel=2e-3)
@@ -48,7 +48,7 @@ def test_elements_one_by_one(kind: str, exponent: float):
 
 
 def hertz(curvatures: tuple[float, float, float, float], force: float) -> float:
-    """Approach of two steel bodies in point contact [m], by Hertz, from their curvatures [1/m]."""
+    """Return the approach of two steel bodies in point contact [m], from curvatures [1/m]."""
     total = sum(curvatures)
     difference = (curvatures[0] - curvatures[1] + curvatures[2] - curvatures[3]) / total
 
@@ -59,13 +59,13 @@ def hertz(curvatures: tuple[float, float, float, float], force: float) -> float:
 
     ratio = brentq(unlike, 1.0 + 1e-9, 1e3)
     m = 1.0 - 1.0 / ratio**2
-    modulus = 207e9 / (1.0 - 0.3**2)  # of one body; two of them yield twice as much
+    modulus = 207e9 / (1.0 - 0.3**2)  # of one body; two bodies yield twice as much
     star = 2.0 * ellipk(m) / math.pi * (math.pi / (2.0 * ratio**2 * ellipe(m))) ** (1.0 / 3.0)
     return star * (1.5 * force * 2.0 / (total * modulus)) ** (2.0 / 3.0) * total / 2.0
 
 
 def test_balls_in_grooves_are_about_as_hertz_has_it():
-    """Grooves of 52 % of a ball's diameter, pitch circle of five of them: within 10 %."""
+    """Grooves of 52 % of a ball's diameter, a pitch circle of five diameters: within 10 %."""
     size, force = 12.7e-3, 1000.0
     slope = 1.0 / 5.0
     ball = 2.0 / size

@@ -30,7 +30,7 @@ def test_a_broken_rule_is_reported_word_for_word(drive: Case, rule):
 
 @pytest.fixture(scope="module")
 def broken(drive: Case) -> Callable[[int], Draft]:
-    """The draft that breaks a rule, made once for all checks."""
+    """Return the draft that breaks a rule, made once for all checks."""
 
     @cache
     def draft(number: int) -> Draft:
@@ -58,7 +58,7 @@ SEVERAL = [
     "file", mostly_slow(SEVERAL, {*SEVERAL} - {"fgfbstts/spline_clearance.toml"})
 )
 def test_a_changed_value_is_judged_as_in_a_case_that_is_new(file):
-    """Rules that a value does not concern are left out where one case is made from another."""
+    """When one case is made from another, rules that a value does not concern are skipped."""
     case = load_case(CASES / file)
     for path in [path for path in walk(case.to_dict()) if path[0] not in ABOUT]:
         number, _, unit = str(look_up(case.to_dict(), path)).partition(" ")

@@ -17,7 +17,7 @@ def validator():
 
 
 def test_every_shipped_case_fits_the_schema(case_files, validator):
-    """As it is written, with what it inherits left out, and as a whole."""
+    """This holds for the file as written, without what it inherits, and for the complete case."""
     assert case_files
     for path in case_files:
         validator.validate(tomllib.loads(path.read_text(encoding="utf-8")))
@@ -37,7 +37,7 @@ def test_every_shipped_case_fits_the_schema(case_files, validator):
     ],
 )
 def test_only_a_file_that_inherits_may_leave_out_keys(drive, validator, section, lacking):
-    """A file that extends another, or a single copy of an element that others are copies of."""
+    """Such a file extends another; also a single copy of an element may leave out keys."""
     case = drive.to_dict()
     given = {**case, section: {**case.get(section, {}), **lacking}}
     if section == "operating":
@@ -46,7 +46,7 @@ def test_only_a_file_that_inherits_may_leave_out_keys(drive, validator, section,
     assert not validator.is_valid(given)
     gear = {"centre": ["0 mm", "0 mm"], "copies": 3}
     assert validator.is_valid({**given, "gears": {**given["gears"], "z": gear}})
-    # What is in a list is given whole.
+    # An item of a list is given completely.
     study = {"kind": "tolerance", "groups": [{"correlation": 0.5}]}
     assert not validator.is_valid({"extends": "base.toml", "study": {"one": study}})
 

@@ -1,4 +1,4 @@
-"""A stage compares what branches take side by side."""
+"""A stage compares the parallel branches of a torque."""
 
 import pytest
 from tests.support import CASES
@@ -12,13 +12,13 @@ FOUR = CASES / "planetary" / "four_planets.toml"
     "meshes", [["sun-planet1", "planet1-ring"], ["planet2-ring", "sun-planet3", "sun-planet2"]]
 )
 def test_meshes_in_series_are_no_stage(meshes):
-    """The same branch twice: its torques differ by the sizes of the gears, not by sharing."""
+    """Meshes of the same branch differ by the sizes of the gears, not by sharing."""
     with pytest.raises(ls.CaseError, match=r"stages\.I\.meshes.*gear planet\d first in .* second"):
         ls.load_case(FOUR).replace({"stages.I.meshes": meshes})
 
 
 def test_meshes_with_their_common_gear_now_first_now_second_are_no_stage():
-    """The torque at a planet is another than that at the sun, and has another sign."""
+    """The torque at a planet differs from that at the sun, and has the opposite sign."""
     gear = {"module": "3 mm", "face_width": "20 mm"}
     centre = ["0 mm", "0 mm"]
     planets = {"teeth": 36, "copies": 3, "carrier": "carrier", "centre": {"angle": "0 deg"}}

@@ -10,7 +10,7 @@ from loadshare.train import build_train
 
 
 def test_a_matrix_may_differ_from_a_symmetric_one_in_its_last_digits(drive):
-    """Both entries off the diagonal count alike: which is the larger one is no matter."""
+    """Both entries off the diagonal count alike, whichever is larger."""
 
     def built(xy: str, yx: str):
         matrix = [["1e8 N/m", xy], [yx, "2e8 N/m"]]

@@ -1,4 +1,4 @@
-"""A case that is known does not change, and neither does its result."""
+"""A case cannot be changed, and neither can its result."""
 
 import copy
 import pickle
@@ -40,7 +40,7 @@ def test_tables_of_a_result_refuse_to_be_changed(case: ls.Case) -> None:
 
 
 def test_the_copy_that_pydantic_makes_is_none_with_changes(case: ls.Case) -> None:
-    # It had the hash of the case before: a file of its result was refused when it was read.
+    # It used to have the hash of the original case, so that a file of its result was refused.
     assert case.model_copy() == case.model_copy(deep=True) == case
     with pytest.raises(TypeError, match=r"Case\.replace"):
         case.model_copy(update={"title": 3})

@@ -1,8 +1,8 @@
-"""The certificate of one answer, element by element: what batched and compiled ones are held to.
+"""The certificate of one answer, element by element: a reference for the batched and compiled ones.
 
-It is written with scalars, mappings and the laws of the train in place of arrays (formulation,
-section 8), and shares with them the walk along rigid shafts only. Forces are vectors that act on
-centres, moments are force times base radius, and each contact is judged at the displaced position.
+It is written with scalars, mappings and the laws of the train instead of arrays (formulation,
+section 8); only the walk along rigid shafts is shared. Forces are vectors that act on centres,
+moments are force times base radius, and each contact is judged at the displaced position.
 """
 
 from __future__ import annotations
@@ -29,11 +29,13 @@ from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
 EPS = float(np.finfo(float).eps)
-"""Round-off of a length, relative to it."""
+"""Round-off of a length, relative to the length."""
 
 
 def turned(wedge: float, band: float, distance: float) -> float:
-    """Angle [rad] within which a band [m] leaves the direction between two arcs (`squeezes`)."""
+    """Return the angle [rad] within which a band [m] leaves the direction between two arcs
+    (`squeezes`).
+    """
     across = 2.0 * band / distance
     return across / (wedge + math.sqrt(wedge * wedge + across))
 
@@ -45,7 +47,7 @@ def approach(
     rotations: tuple[float, float],
     apart: Vector,
 ) -> float:
-    """Approach of a flank [m] from the rotations of both gears and their displacement apart."""
+    """Return the approach of a flank [m] from both gears' rotations and displacement apart."""
     on_driver, on_driven, normal = mesh.direction(drive)
     turned = on_driver * rotations[0] + on_driven * rotations[1]
     return turned + float(normal @ apart) - mesh.gap(position, drive)
@@ -53,7 +55,7 @@ def approach(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Push:
-    """A unilateral contact at the answer.
+    """A unilateral contact in the claimed answer.
 
     Attributes
     ----------
@@ -87,7 +89,7 @@ class Push:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pull:
-    """A radial element at the answer.
+    """A radial element in the claimed answer.
 
     Attributes
     ----------
@@ -120,15 +122,15 @@ class ClaimedState:
 
     @cached_property
     def situation(self) -> Situations:
-        """What the position brings."""
+        """The situation at the position."""
         return situation_of(self.train, self.answer.index)
 
     def moved(self, gear: str) -> Vector:
-        """Displacement p (3,) [m], of a planet that from its pin."""
+        """Return the displacement p (3,) [m], for a planet relative to its pin."""
         return np.asarray(self.answer.displacement[gear])
 
     def pin(self, gear: str) -> tuple[Vector, Vector]:
-        """How far a planet's pin has moved, and by how much of that its carrier turned (3,) [m]."""
+        """Return a planet's pin displacement, and its part from the carrier's rotation (3,) [m]."""
         planet = self.train.gears[gear]
         if planet.carrier is None:
             return np.zeros(3), np.zeros(3)
@@ -138,7 +140,7 @@ class ClaimedState:
         return self.moved(carrier.name) + turned, turned
 
     def error(self, gear: str) -> Vector:
-        """Centre offset (3,) [m], of a planet with that of its carrier."""
+        """Return the centre offset (3,) [m], for a planet with that of its carrier."""
         offset, carrier = self.situation.offset_of(gear), self.train.gears[gear].carrier
         return offset if carrier is None else offset + self.situation.offset_of(carrier)
 
@@ -206,21 +208,21 @@ class ClaimedState:
                 )
 
     def _arcs(self) -> Iterator[tuple[str, Arc, Vector]]:
-        """Every exclusion arc: its name, itself, and the relative displacement of its gears [m]."""
+        """Yield every exclusion arc: name, arc, and the relative displacement of its gears [m]."""
         for ring in self.train.drums:
             for side, neighbour in enumerate(ring.neighbours):
                 arc = self.situation.arc(ring, side)
                 yield ring.arc_name(neighbour), arc, self.moved(ring.gear) - self.moved(neighbour)
 
     def squeezes(self, band: float) -> dict[str, float]:
-        """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
+        """Return the force [N] across two rigid arcs of a ring that a squeeze leaves undetermined.
 
-        A centre in touch with both, up to a length, lies anywhere within y across them, where
-        ε y + y²/2a is that length and ε the angle of the wedge; the directions of the two forces
-        are known no better than y/a. The length is what the two arcs overlap or stand open; where
-        the narrowest place of the wedge, ε²a/8 past its mouth, overlaps by less than the band [m],
-        it is the band: through there a float would roll away that a large squeeze seems to hold.
-        Neighbours that give way follow the float instead.
+        A centre in touch with both arcs, up to a length, may be anywhere within y across them,
+        where ε y + y²/2a is that length and ε the angle of the wedge; so the directions of the two
+        forces are known only to y/a. The length is the overlap or opening of the two arcs. If the
+        narrowest place of the wedge, ε²a/8 past its mouth, overlaps by less than the band [m], the
+        length is the band: a float that a large squeeze seems to hold would roll away through that
+        place. Neighbours that give way follow the float instead.
         """
         forces = self.answer.ring_force
         found = {}
@@ -259,7 +261,7 @@ class ClaimedState:
         return tuple(found)
 
     def _slipping(self, spline: Spline, before: Vector) -> list[Pull]:
-        """Friction and clearance of a spline that remembers its slip."""
+        """Return friction and clearance of a spline that remembers its slip."""
         gear, torque = spline.gear, self.transmitted(spline.gear)
         slip = self.slip(spline)
         friction, stop = (
@@ -273,19 +275,19 @@ class ClaimedState:
         ]
 
     def slip(self, spline: Spline) -> Vector:
-        """Slip s (3,) [m] of a spline with memory: what the bending of its shaft leaves of p."""
+        """Return the slip s (3,) [m] of a spline with memory: p less the bending of its shaft."""
         return np.asarray(self.moved(spline.gear) - self.bending(spline))
 
     def bending(self, spline: Spline) -> Vector:
-        """Bending p − s (3,) [m] of a spline's shaft under its claimed force, with memory."""
+        """Return the bending p − s (3,) [m] of a shaft with memory at its claimed force."""
         names = (spline.name, spline.stop_name)
         force = sum(np.asarray(self.answer.radial_reaction[name]) for name in names)
         return np.asarray(-force / spline.bending_stiffness)
 
     def winds(self) -> Iterator[tuple[str, float, float]]:
-        """Every shaft with its wind-up φ_a − φ_b − clocking [rad] and its torque [N·m].
+        """Yield every shaft with its wind-up φ_a − φ_b − clocking [rad] and its torque [N·m].
 
-        The torque of a rigid shaft is nobody's claim: it is what balances the gears beyond it.
+        The torque of a rigid shaft is not claimed: it balances the gears beyond the shaft.
         """
         phi, claimed = self.answer.rotation, self.answer.shaft_torque
         for name, shaft in self.train.shafts.items():
@@ -298,7 +300,7 @@ class ClaimedState:
 
     @cached_property
     def rigid(self) -> RigidShafts:
-        """The rigid shafts, and what lies beyond each."""
+        """The rigid shafts, and the gears beyond each."""
         return rigid_shafts(self.train)
 
     def outside(self) -> Iterator[tuple[str, Vector, float]]:
@@ -314,7 +316,7 @@ class ClaimedState:
 
     @cached_property
     def moment(self) -> dict[str, float]:
-        """Moment [N·m] on every gear of the load, its flanks and elastic shafts."""
+        """Moment [N·m] of the load, the flanks and the elastic shafts on every gear."""
         train, answer = self.train, self.answer
         moment = {g: self.situation.torques[g] for g in train.gears}
         for mesh in train.meshes.values():
@@ -340,7 +342,7 @@ class ClaimedState:
         return moment
 
     def bearings(self) -> Iterator[tuple[str, Vector, Vector, Vector]]:
-        """Every gear that can be displaced: p [m], stiffness [N/m] and bearing force [N], (2,)."""
+        """Yield gears that can be displaced: p [m], stiffness [N/m] and bearing force [N], (2,)."""
         for name, gear in self.train.gears.items():
             if gear.support is not None:
                 moved = gear.frame @ self.moved(name)
@@ -348,12 +350,12 @@ class ClaimedState:
                 yield name, moved, gear.support, np.asarray(force)
 
     def transmitted(self, gear: str) -> float:
-        """Torque [N·m] that a gear takes over its shaft or spline."""
+        """Return the torque [N·m] that a gear transmits through its shaft or spline."""
         return self.train.transmitted(gear, self.answer.flank_force)
 
     @cached_property
     def finite(self) -> bool:
-        """Whether every claimed figure is a number."""
+        """Whether every claimed figure is finite."""
         a = self.answer
         figures = [*a.rotation.values(), *a.flank_force.values(), *a.ring_force.values()]
         figures += a.shaft_torque.values()
@@ -366,10 +368,10 @@ class ClaimedState:
 
     @cached_property
     def fault(self) -> str:
-        """Why the claim cannot be judged, else empty.
+        """Reason why the claim cannot be judged, else empty.
 
-        A figure is not a number, a spline has no law, or a gear stands beyond the neighbour on
-        whose ring its own rolls: there the arc's inequality holds, and no gear can be.
+        A figure is not a number, a spline has no law, or a gear is beyond the neighbour on whose
+        ring its own ring rolls: the arc's inequality holds there, but no gear can be there.
         """
         if not self.finite:
             return "a figure that is not a number"
@@ -385,7 +387,7 @@ class ClaimedState:
         """Load of the case [N]: largest flank force or external push; 1 N when nothing acts.
 
         Reactions of rigid limits do not count: any preload of two opposite stops would be in
-        balance and would hide what is not.
+        balance, and would hide an imbalance elsewhere.
         """
         gears = self.train.gears
         forces = [abs(f) for f in self.answer.flank_force.values()]
@@ -397,7 +399,7 @@ class ClaimedState:
     def length_scale(self) -> float:
         """Deflection of the case [m]: largest compression, gap taken up, or error; 1 µm when none.
 
-        Displacements do not count: a free one could be claimed as large as one likes.
+        Displacements do not count, because a free one could be claimed to be arbitrarily large.
         """
         closed = [p for p in self._flanks() if p.force > CERTIFY.band * self.force_scale]
         lengths = [p.law.compression(p.force) for p in closed]
@@ -424,11 +426,11 @@ class ClaimedState:
 
 
 ROUNDED = 16.0 * float(np.finfo(float).eps)
-"""Rounding of energies, relative to the sum of their sizes."""
+"""Rounding of energies, relative to the sum of their magnitudes."""
 
 
 def force_balance(state: ClaimedState) -> dict[str, float]:
-    """Unbalanced force [N] on gears that can be displaced."""
+    """Return the unbalanced force [N] on gears that can be displaced."""
     train = state.train
     total = {name: -force @ train.gears[name].frame for name, _, _, force in state.bearings()}
     for push in state.pushes:
@@ -446,7 +448,7 @@ def force_balance(state: ClaimedState) -> dict[str, float]:
 
 
 def moment_balance(state: ClaimedState) -> dict[str, float]:
-    """Unbalanced moment over base radius [N] on gears that turn as one, by one of them."""
+    """Return the unbalanced moment over base radius [N] on each group of gears that turn as one."""
     train = state.train
     unbalanced = {}
     for group in state.rigid.paths:
@@ -457,7 +459,7 @@ def moment_balance(state: ClaimedState) -> dict[str, float]:
 
 
 def penetration(state: ClaimedState) -> dict[str, float]:
-    """Overlap [m] of contacts that a force of the claimed size does not explain."""
+    """Return the overlap [m] of contacts beyond the compression under the claimed force."""
     overlaps = {}
     for push in state.pushes:
         overlap = push.approach - push.law.compression(max(push.force, 0.0))
@@ -468,7 +470,7 @@ def penetration(state: ClaimedState) -> dict[str, float]:
 
 
 def complementarity(state: ClaimedState) -> dict[str, float]:
-    """Work [J] of a force over an open gap, by contact."""
+    """Return the work [J] of a force over an open gap, by contact."""
     return {
         p.name: p.force * (p.law.compression(max(p.force, 0.0)) - p.approach)
         - abs(p.force) * state.resolution
@@ -477,11 +479,11 @@ def complementarity(state: ClaimedState) -> dict[str, float]:
 
 
 def deformation_law(state: ClaimedState, band: float) -> dict[str, float]:
-    """Misfit [m] of compressed contacts, shafts and bearings with their laws.
+    """Return the misfit [m] of compressed contacts, shafts and bearings with their laws.
 
     Parameters
     ----------
-    state : State
+    state : ClaimedState
     band : float
         Force [N] below which a contact counts as open; complementarity judges it then.
     """
@@ -508,11 +510,11 @@ def deformation_law(state: ClaimedState, band: float) -> dict[str, float]:
 
 
 def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
-    """Excess [N] of forces over what their contacts or graphs admit.
+    """Return the excess [N] of forces over those that their contacts or graphs admit.
 
     Parameters
     ----------
-    state : State
+    state : ClaimedState
     band : float
         Radius [m] within which a graph's corner admits its whole step.
     """
@@ -525,7 +527,7 @@ def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
         size = float(np.linalg.norm(pull.reaction))
         low, high = interval(pull.law, radius, band)
         along = size
-        # Within the band it has no direction; along its axis it never pulls.
+        # Within the band the force has no direction; along the gear's axis it never acts.
         frame = state.train.gears[pull.gear].frame
         lifting = float(np.linalg.norm(pull.reaction - frame.T @ (frame @ pull.reaction)))
         sideways = 0.0
@@ -539,9 +541,9 @@ def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
 
 
 def energy_gap(state: ClaimedState) -> dict[str, float]:
-    """Potential less complementary energy [J], beyond rounding: zero at an equilibrium.
+    """Return potential minus complementary energy [J], beyond rounding: zero at an equilibrium.
 
-    Bearings and rings may hold far more energy against one another than the load brings in.
+    Bearings and rings may store far more energy against one another than the load supplies.
     """
     primal, dual = [], []
     for gear, torque in state.situation.torques.items():
@@ -567,7 +569,7 @@ def energy_gap(state: ClaimedState) -> dict[str, float]:
         primal.append(energy)
         dual.append(-energy)
     for pull in state.pulls:
-        # What exceeds a graph's strength is for cone membership to judge.
+        # Cone membership judges a force that exceeds a graph's strength.
         size = min(float(np.linalg.norm(pull.reaction)), pull.law.strength)
         primal.append(pull.law.energy(float(np.linalg.norm(pull.offset))))
         dual += [-complementary(pull.law, size), float(pull.reaction @ pull.centre)]
@@ -581,7 +583,7 @@ def energy_gap(state: ClaimedState) -> dict[str, float]:
 
 
 def _unresolved(state: ClaimedState) -> float:
-    """Energy [J] of what rounding leaves of lengths: K s (|d| + s), as that of the certificate."""
+    """Return the energy [J] of the rounding of lengths: K s (|d| + s), as in the certificate."""
     step, found = state.resolution, 0.0
     for push in state.pushes:
         if push.approach > -step and isinstance(push.law, PowerLaw) and not push.law.is_rigid:
@@ -606,7 +608,7 @@ def _unresolved(state: ClaimedState) -> float:
 
 @dataclass(frozen=True)
 class Figures:
-    """A residual: the figures of all elements, in `unit`, and the scale of the case."""
+    """A residual: the figures of all elements in `unit`, and the scale of the case."""
 
     elements: dict[str, float]
     unit: str
@@ -614,7 +616,7 @@ class Figures:
 
     @property
     def worst(self) -> float:
-        """Largest figure, not below zero; not-a-number is the worst of all."""
+        """Largest figure, not below zero; infinite if any figure is not a number."""
         values = [*self.elements.values(), 0.0]
         return math.inf if any(map(math.isnan, values)) else max(values)
 
@@ -625,7 +627,7 @@ class Figures:
 
 
 def judged(train: Train, answer: Equilibrium) -> dict[str, Figures]:
-    """All residuals of a claim; infinite, with the reason for an element, where none is judged."""
+    """Return all residuals of a claim; infinite, with the reason, if it cannot be judged."""
     state = ClaimedState(train, answer)
     if state.fault:
         return {name: Figures({state.fault: math.inf}, unit, 1.0) for name, unit in UNITS.items()}
@@ -656,7 +658,7 @@ UNITS = {
 
 
 def _tangent(ring: RoundRing, radius: float) -> tuple[float, float]:
-    """Where the tangent of a ring's wall at a radius begins [m], and its slope [N/m]."""
+    """Return where the tangent of a ring's wall at a radius begins [m], and its slope [N/m]."""
     gap = max(radius - ring.radius, (ring.radius or 1.0) * EPS)
     force = ring.stiffness * gap**ring.power
     if ring.power == 1.0:
@@ -666,10 +668,10 @@ def _tangent(ring: RoundRing, radius: float) -> tuple[float, float]:
 
 
 def interval(law: RadialLaw, radius: float, band: float = 0.0) -> tuple[float, float]:
-    """Forces [N] that the graph admits within `band` [m] about `radius` [m].
+    """Return the forces [N] that the graph admits within `band` [m] about `radius` [m].
 
-    So an answer that stands on a corner up to round-off is judged by the whole step, and on a
-    steep piece by its place rather than by the force that round-off of the place makes of it.
+    So an answer on a corner, up to round-off, is judged by the whole step. On a steep piece, it is
+    judged by its place rather than by the force that round-off of the place would give.
     """
     low, high = math.inf, 0.0
     begin = 0.0
@@ -690,7 +692,7 @@ def interval(law: RadialLaw, radius: float, band: float = 0.0) -> tuple[float, f
 
 
 def complementary(law: RadialLaw, force: float) -> float:
-    """Conjugate energy sup_R (F R − W(R)) [J], exact for every piece."""
+    """Return the conjugate energy sup_R (F R − W(R)) [J], exact for every piece."""
     total = 0.0
     for piece in law.pieces:
         over = force - piece.force

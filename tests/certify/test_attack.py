@@ -1,8 +1,8 @@
-"""A slice of the attack on the certificate: tampered answers, judged by torques in 50 digits.
+"""A sample of the attack on the certificate: tampered answers, judged by torques in 50 digits.
 
 Source: formulation, section 8. The measurement, ``python -m benchmarks.attack``, makes ten
-thousand; here is the first of another seed, and what keeps the attack honest: its self-stress is
-balanced, every way is tried, and most answers that it makes are wrong.
+thousand; here are the first ones of another seed, and checks of the attack itself: its self-stress
+is balanced, every way is tried, and most of its answers are wrong.
 """
 
 import math
@@ -24,12 +24,12 @@ SEED = 7
 
 @pytest.fixture(scope="module")
 def some():
-    """The shipped trains, and those in which residuals say little."""
+    """Return the shipped trains, and those in which residuals say little about torques."""
     return list(islice(victims(SEED), 13))
 
 
 def test_forces_of_right_answers_are_in_balance(some):
-    """The attack's own balance, against answers that it had no part in."""
+    """The attack's own balance is compared with answers that it did not make."""
     for each in some:
         balance = Balance(each.train, each.answer)
         assert balance.unbalance() < 1e-13, each.case.name
@@ -90,7 +90,7 @@ def test_every_bound_holds_of_wrong_answers_too(found):
     "number", [43, *(pytest.param(n, marks=pytest.mark.slow) for n in (147, 153))]
 )
 def test_bounds_hold_of_light_flanks_too(number):
-    """Hertz contacts and tables yield otherwise at light forces."""
+    """Hertz contacts and tables have other compliances at light forces."""
     case = draw(3, number)
     light = victim(case, 1 + number % case.operating.positions)
     tried = ("contact dropped", "self-stress", "wrong flank")
@@ -103,7 +103,7 @@ def test_bounds_hold_of_light_flanks_too(number):
 
 @pytest.mark.parametrize(("seed", "number"), [(3, 0), pytest.param(5, 40, marks=pytest.mark.slow)])
 def test_a_contact_that_is_left_out_is_no_rounding(seed, number):
-    """What it carried is missing on gears that carry nothing else."""
+    """The force that it carried is missing on gears that carry nothing else."""
     case = draw(seed, number)
     whole = victim(case, 1 + number % case.operating.positions)
     tried = (one(whole, "contact dropped", np.random.default_rng(k)) for k in range(20))
@@ -117,7 +117,7 @@ def test_attacks_depend_on_their_seed_alone(found):
     assert [(a.train, a.way, a.passed) for a in again] == [
         (a.train, a.way, a.passed) for a in found[:8]
     ]
-    # The compiled kernel, once it is at hand, finds victims that differ by round-off.
+    # Once the compiled kernel is loaded, victims differ by round-off.
     assert [a.error for a in again] == pytest.approx([a.error for a in found[:8]], abs=1e-13)
 
 

@@ -1,4 +1,4 @@
-"""The bound on torques: it holds, it is tight, and what is balanced but wrong does not pass."""
+"""The bound on torques: it holds, it is tight, and balanced but wrong answers do not pass."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -62,7 +62,7 @@ def test_power_two_thirds(force: float) -> None:
 
 
 def problems() -> list[tuple[str, int]]:
-    """A few problems of every family of the stability map that have one answer."""
+    """Return some problems of every family of the stability map that have a unique answer."""
     return [(name, k) for name in FAMILIES if name not in ("impossible", "no-load") for k in (0, 1)]
 
 
@@ -99,15 +99,17 @@ def test_bound_holds_against_fifty_digits(family: str, number: int) -> None:
 @pytest.mark.parametrize(
     ("family", "number"),
     [
-        # Parallel lines of action, except for rounding, leave a float's balance to idle flanks.
+        # Lines of action that are parallel except for rounding leave the balance of a float to idle
+        # flanks.
         ("free-pinion", 33),
         ("light-load", 40),
-        # Friction of 1e-9 N is put aside, and is no zero.
+        # A friction of 1e-9 N is negligible, but not zero.
         ("friction", 93),
         ("friction", 97),
-        # Opposed contacts without clearance: either may carry what rounding leaves.
+        # Opposed contacts without clearance: either may carry the forces that rounding leaves.
         ("zero-clearance", 12),
-        # Supports of 5e-4 N/m press idle planets by 4e-9 N against both gears: rounding of loads.
+        # Supports of 5e-4 N/m press idle planets by 4e-9 N against both gears, which is rounding of
+        # loads.
         ("soft-supports", 187),
         ("soft-supports", 188),
     ],
@@ -122,7 +124,7 @@ def test_bounds_hold_of_what_all_but_idles(family: str, number: int) -> None:
 
 
 def stiff_split() -> tuple[object, Equilibrium]:
-    """A soft mesh in series with two branches a million times as stiff, and their equilibrium."""
+    """Return a soft mesh in series with two branches 1e6 times as stiff, and the equilibrium."""
     base = ls.load_case("cases/branches/split_torque_2.toml")
     data = base.to_dict()
     for mesh in data["meshes"].values():
@@ -196,7 +198,7 @@ def test_not_a_number_is_bounded_by_nothing() -> None:
 
 
 def test_statics_are_those_of_singular_values() -> None:
-    """Of rows of any rank, with no rows, and of rows that are all zero."""
+    """For rows of any rank, for no rows, and for rows that are all zero."""
     rng = np.random.default_rng(4)
     for count, n, rank in ((9, 6, 6), (9, 6, 4), (5, 8, 5), (5, 8, 2), (4, 4, 0), (0, 3, 0)):
         directions = rng.normal(size=(count, rank)) @ rng.normal(size=(rank, n))
@@ -210,7 +212,7 @@ def test_statics_are_those_of_singular_values() -> None:
 
 
 def test_what_ends_a_free_move_takes_more_than_the_load_along_it() -> None:
-    """A stop at one end of a lever that turns freely: the forces balance about its pivot."""
+    """With a stop at one end of a lever that turns freely, the forces balance about its pivot."""
     long, short = 0.96, 0.28
     move = np.array([[long], [short]])
     at_end, at_start = np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]])
@@ -219,7 +221,7 @@ def test_what_ends_a_free_move_takes_more_than_the_load_along_it() -> None:
     assert force_at_end(move, np.concatenate([at_end, at_start]), nothing) == pytest.approx(
         1.0 / short
     )
-    # A ring takes its force in any direction; what a move does not close takes none.
+    # A ring may take its force in any direction; one that the move does not close takes none.
     assert force_at_end(move, np.empty((0, 2)), np.eye(2)[None]) == pytest.approx(1.0)
     assert force_at_end(np.array([[1.0], [0.0]]), at_start, nothing) == 1.0
     assert force_at_end(move[:, :0], at_start, nothing) == 1.0
@@ -227,9 +229,10 @@ def test_what_ends_a_free_move_takes_more_than_the_load_along_it() -> None:
 
 @pytest.mark.parametrize("torque", [1e-5, 1e-6, 1e-8])
 def test_a_force_beside_a_light_torque_leaves_it_proved(torque: float) -> None:
-    """A bearing takes 500 N of a planet that carries nothing; the other takes all of the torque.
+    """A bearing takes 500 N from a planet that carries nothing; the other takes all of the torque.
 
-    That planet may turn freely, and the rounding of what its bearing takes does no work on that.
+    That planet may turn freely, and the rounding of its bearing force does no work on this
+    rotation.
     """
     case = ls.Case(
         {

@@ -1,8 +1,8 @@
-"""The bound of large batches: what it says holds, and compiled it says what its source says.
+"""The bound of large batches: it holds, and its compiled and its uncompiled source give the same.
 
-Its source is run twice, compiled and as it is written; both sum up the same products in another
-order. That it holds is seen from claims that are wrong by a known amount: the right claim lies as
-far from the exact equilibrium as its own bound says, at most.
+Its source is run twice, compiled and as written; both sum up the same products in another order.
+Claims that are wrong by a known amount show that the bound holds: the right claim is off the exact
+equilibrium by at most its own bound.
 """
 
 import importlib
@@ -31,7 +31,7 @@ from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
-# In a bearing without clearance a planet that carries nothing is where round-off has it.
+# In a bearing without clearance, round-off decides the place of a planet that carries nothing.
 WAYS = test_many.WAYS | {"idle ball bearing": lambda: rolling(idle=True)}
 NAMES = (
     "fgfbstts/limit_ring",
@@ -57,19 +57,20 @@ LIKE_OTHERS = {
     "two_path/clocking_error",
     "round ring",
 }
-"""Of these, what shows nothing that the others do not."""
+"""Those of these names that show nothing that the others do not."""
 COUNT = 400
 SAME = 1e-6
-"""Two sums of the same misfits, where these are rounding themselves: relative to the bound."""
+"""Tolerance between two sums of the same misfits that are rounding themselves, relative to the
+bound."""
 
 
 def relative_bounds(columns: Columns, here: Situations, claim: Equilibria) -> np.ndarray:
-    """Bounds as compiled code has them."""
+    """Return the bounds of compiled code."""
     return judged(columns, here, claim).relative
 
 
 def disturbed(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria:
-    """Claims that are off by 1e-14 to 1e-5 of the case, in all figures or some."""
+    """Return claims that are off by 1e-14 to 1e-5 of the case, in all figures or some."""
     rng = np.random.default_rng(seed)
     rows = np.arange(COUNT) % len(found.rotation)
     wrong = taken(found, rows)
@@ -88,7 +89,7 @@ def disturbed(found: Equilibria, scales: dict[str, float], seed: int) -> Equilib
 
 
 def errors(columns: Columns, here: Situations, one: Equilibria, other: Equilibria) -> np.ndarray:
-    """Largest distance of a torque, over the largest torque of the first."""
+    """Return the largest difference of a torque, over the largest torque of the first."""
     apart = np.abs(one.flank_force - other.flank_force) * columns.arms
     largest = (np.abs(one.flank_force) * columns.arms).max(axis=1)
     return apart.max(axis=1) / np.maximum(largest, np.abs(here.torque).max(axis=1))
@@ -96,7 +97,7 @@ def errors(columns: Columns, here: Situations, one: Equilibria, other: Equilibri
 
 @pytest.fixture(scope="module")
 def plain():
-    """The kernel as it is written."""
+    """Use the kernel as uncompiled Python."""
     with pytest.MonkeyPatch.context() as patch:
         rooms = kernel.__name__, numbering.__name__
         for name in [m for m in sys.modules if m.startswith(rooms)]:
@@ -125,7 +126,7 @@ def test_bounds_hold_and_are_those_of_the_source(name, plain, monkeypatch):
     assert (exact <= 1e-11).all()
     assert (errors(columns, here, wrong, right) <= off + 2.0 * exact).all()
     assert (off <= 1e-9).any()
-    # One row of claims that is full, and one that is not: the source alone is slow.
+    # One full row of claims and one that is not: only a few, because uncompiled code is slow.
     few = np.arange(BOUND.abreast + 6)
     some = here.take(few) if here.count > 1 else here
     with np.errstate(all="ignore"):
@@ -139,7 +140,7 @@ def test_bounds_hold_and_are_those_of_the_source(name, plain, monkeypatch):
 
 
 def test_a_slip_off_its_place_is_not_proved_right():
-    """A spline that is claimed to slip with next to no force."""
+    """A spline is claimed to slip with almost no force."""
     train = build_train(shipped("fgfbstts/spline_clearance"))
     columns = Columns(train)
     situations, found = claims(train, [1])
@@ -188,7 +189,7 @@ def test_nothing_is_proved_where_a_situation_is_not_a_number(field):
 
 
 def test_large_batches_are_bounded_as_small_ones():
-    """A thousand claims and more, of which some cannot be right: the others are bounded alike."""
+    """Of more than a thousand claims, some cannot be right: the others are bounded alike."""
     train = build_train(shipped("fgfbstts/all_elements"))
     columns = Columns(train)
     situations, found = claims(train, [1])
@@ -203,11 +204,11 @@ def test_large_batches_are_bounded_as_small_ones():
 
 
 IDLING = (212, 278, 555, 721)
-"""Samples of the workload `law` with a Hertz flank that carries some 1e-12 of the load."""
+"""Samples of the workload `law` with a Hertz flank that carries about 1e-12 of the load."""
 
 
 def idling(number: int) -> tuple[Train, Situations, Equilibria, int]:
-    """One of them as the hot path answers it, and the flank."""
+    """Return one of them as the hot path answers it, and the flank."""
     (law,) = (w for w in workloads(Path("cases"), False) if w.name == "law")
     train = build_train(next(islice(law.cases(number + 1), number, None)))
     machine = Machine(train)
@@ -219,7 +220,7 @@ def idling(number: int) -> tuple[Train, Situations, Equilibria, int]:
 
 
 def true_errors(train: Train, found: Equilibria, largest: float) -> np.ndarray:
-    """Largest error of a mesh's torque in 50 digits, over the largest torque."""
+    """Return the largest error of a mesh's torque in 50 digits, over the largest torque."""
     truth = reference(train, 1, found.one(0, 1))
     worst = []
     for row in range(len(found.rotation)):
@@ -243,9 +244,9 @@ def true_errors(train: Train, found: Equilibria, largest: float) -> np.ndarray:
 
 @pytest.mark.parametrize("number", mostly_slow(IDLING, (278,)))
 def test_an_idling_hertz_flank_is_bounded(number):
-    """It is endlessly soft, whatever little it is claimed to carry; others show it all the same.
+    """It is infinitely soft, however small its claimed force; other flanks still show the error.
 
-    Its tangent, and the secant to no force, are many times those of its neighbours.
+    Its tangent, and the secant to zero force, are many times those of its neighbours.
     """
     train, situations, found, flank = idling(number)
     columns = Columns(train)
@@ -266,9 +267,9 @@ def test_an_idling_hertz_flank_is_bounded(number):
 
 
 def test_a_stop_that_is_touched_carries_nothing():
-    """A gear is out of balance by what its stop should pull: it is the flanks that bear it.
+    """A gear is out of balance by a force that its stop would have to pull: the flanks carry it.
 
-    What opens moves by any length, so that a stop without force is no support for what is left.
+    A contact that opens may move by any length, so a stop without force cannot support the rest.
     """
     train, situations, found, _ = idling(34)
     columns = Columns(train)
@@ -284,7 +285,7 @@ def test_a_stop_that_is_touched_carries_nothing():
 
 @pytest.mark.parametrize("name", ["tables", "fgfbstts/all_elements"])
 def test_compiled_bounds_of_right_claims_are_those_of_single_ones(name):
-    """Both hold, and neither is a multiple of what the claim deserves."""
+    """Both hold, and neither is a large multiple of the true bound of the claim."""
     train = build_train(WAYS[name]())
     columns = Columns(train)
     situations, found = claims(train, positions(train)[:2])
@@ -299,7 +300,7 @@ def test_compiled_bounds_of_right_claims_are_those_of_single_ones(name):
 
 @pytest.mark.parametrize("where", [-1e-7, 0.0, 1e-7])
 def test_a_corner_of_a_table_within_reach(where):
-    """Laws on both sides of it are allowed for."""
+    """The laws on both sides of the corner are allowed for."""
     train = build_train(WAYS["tables"]())
     columns = Columns(train)
     situations, found = claims(train, [1])

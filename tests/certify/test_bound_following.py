@@ -1,4 +1,4 @@
-"""The bound where friction follows the torque over a spline: it sees what cancels, and it holds."""
+"""The bound if friction follows a spline's torque: it accounts for cancellation, and holds."""
 
 import math
 from dataclasses import replace
@@ -17,9 +17,9 @@ from loadshare.train.equilibrium import Equilibrium
 
 
 def two_idlers(friction: float, torque: str = "1000 N*m", backlash: str | None = None) -> Train:
-    """A torque split over two idlers, one of which floats on a spline with friction.
+    """Return a torque split over two idlers, one of which floats on a spline with friction.
 
-    With backlash, the one that floats has such gaps that it carries nothing.
+    With backlash, the floating idler has such gaps that it carries nothing.
     """
     far = math.hypot(0.24, 0.15)
     angle = f"{math.acos(0.22 / far)!r} rad"
@@ -39,7 +39,7 @@ def two_idlers(friction: float, torque: str = "1000 N*m", backlash: str | None =
 
 
 def two_shafts(friction: float, torque: str = "1000 N*m") -> Train:
-    """A torque split over two shafts, on one of which a gear floats on a spline with friction."""
+    """Return a torque split over two shafts; on one, a gear floats on a spline with friction."""
     far = math.hypot(0.24, 0.15)
     angle = f"{math.acos(0.22 / far)!r} rad"
     gears = {"in": {"centre": ["0 m", "0 m"], "base_radius": "0.1 m"}}
@@ -133,7 +133,7 @@ def test_bound_on_friction_covers_what_follows(friction: float) -> None:
 def test_room_of_a_slip_that_is_remembered_shrinks_with_the_torque(
     friction: float, slip: tuple[float, ...], off: float
 ) -> None:
-    """With memory, against an answer that is itself known to its bound."""
+    """With memory, against an answer that is itself known to within its bound."""
     _assert_bounds_hold(friction, slip, off)
 
 
@@ -141,7 +141,7 @@ def test_room_of_a_slip_that_is_remembered_shrinks_with_the_torque(
 @pytest.mark.parametrize("off", [-1e-7, -1e-9, 1e-9, 1e-7])
 @pytest.mark.quick(5)
 def test_room_that_the_torque_all_but_closes(more: float, off: float) -> None:
-    """Friction needs all of the clearance, next to all, or a little more than all."""
+    """Friction needs all of the clearance, almost all, or slightly more than all."""
     held = solved(two_shafts(0.3))
     spline = two_shafts(1.0).splines["a"]
     needed = spline.bending_stiffness * spline.clearance
@@ -151,7 +151,7 @@ def test_room_that_the_torque_all_but_closes(more: float, off: float) -> None:
 
 
 def _assert_bounds_hold(friction: float, slip: tuple[float, ...], off: float) -> None:
-    """Assert that the bound of an answer for another load covers how far it is off."""
+    """Assert that the bound of an answer for another load covers its error."""
     before = {"a": np.array(slip)}
     train = two_shafts(friction).remembering(before)
     other = two_shafts(friction, f"{1000.0 * (1.0 + off)!r} N*m").remembering(before)

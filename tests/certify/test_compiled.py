@@ -1,7 +1,7 @@
-"""The compiled certificate gives the verdicts of NumPy's, whatever claim is wrong and by how much.
+"""The compiled certificate gives the verdicts of NumPy's, for errors of any kind and size.
 
 Source: formulation, sections 8 and 16. It adds up forces along coordinates, NumPy's body by body;
-both take the same scales. The tests of `test_many` compare it with the single one as well.
+both use the same scales. The tests of `test_many` also compare it with the single one.
 """
 
 from dataclasses import fields, replace
@@ -33,7 +33,7 @@ from loadshare.train import build_train
 from loadshare.train.situations import Situations
 
 SIZES = (1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3)
-"""Of what is added to every figure of a claim, in loads and deflections of the case."""
+"""Sizes of what is added to every figure of a claim, over load and deflection of the case."""
 
 
 @pytest.mark.parametrize("name", mostly_slow(WAYS, QUICK))
@@ -53,14 +53,14 @@ def test_one_wrong_claim(name):
             figures += size * scales[claim] * rng.normal(size=figures.shape)
     many = alike(train, situations, altered)
     refused = dict(zip(wrong, ~many.passed.reshape(-1, len(SIZES)), strict=True))
-    # Rigid shafts and bearings carry what they must: nobody reads what is claimed for them.
+    # Rigid shafts and bearings carry what balance requires: claims about them are not read.
     for claim in set(wrong) - {"shaft_torque", "support_force"}:
         assert refused[claim][-1], claim
 
 
 @pytest.mark.parametrize("name", ["fgfbstts/all_elements", "elastic round ring", "tables"])
 def test_one_row_holds_for_all_answers(name):
-    """Situations that do not vary give what they give when written out."""
+    """Situations that do not vary give the same as when they are written out."""
     train = build_train(WAYS[name]())
     situations, found = claims(train, [1])
     answers = taken(found, np.zeros(5, dtype=int))
@@ -76,7 +76,7 @@ def test_one_row_holds_for_all_answers(name):
 
 
 def test_a_set_of_several_parts():
-    """NumPy judges it part by part."""
+    """NumPy judges it in parts."""
     train = build_train(shipped("fgfbstts/all_elements"))
     situations, found = claims(train, [1])
     answers = taken(found, np.zeros(5000, dtype=int))
@@ -128,7 +128,7 @@ def test_no_answer_passes_where_a_situation_is_not_a_number(field, place):
 
 
 def test_arrays_of_any_kind_are_judged_by_the_same_code():
-    """Strided, transposed, read-only or single precision: nothing is compiled once more."""
+    """Strided, transposed, read-only or single precision arrays cause no new compilation."""
     train = build_train(shipped("fgfbstts/all_elements"))
     situations, found = claims(train, [1])
     answers = taken(found, np.zeros(4, dtype=int))
@@ -184,7 +184,9 @@ def test_a_contact_that_pulls():
 
 @pytest.mark.parametrize("stiffness", ["200 N*m/rad", "2 N*m/rad", "0.2 N*m/rad", "0.02 N*m/rad"])
 def test_what_turns_by_a_thousand_turns_passes_once_more_by_itself(stiffness, monkeypatch):
-    """Round-off of rotations is no misfit of a law: what a batch passes is read again."""
+    """Round-off of rotations is no misfit of a law: answers that pass in a batch are judged again
+    alone.
+    """
     monkeypatch.setattr(hot, "engine_at_hand", lambda name, count: compiled.settle)
     shafts = {f'shafts."wheel{k}-pinion{k}".stiffness': stiffness for k in (1, 2)}
     case = shipped("two_path/from_teeth").replace(shafts)

@@ -1,9 +1,7 @@
-"""The certificate gives the figures of its oracle, on right and wrong answers: of one answer and of
-many; compiled, the same verdicts.
-
-Source: formulation, section 8. The oracle takes the train's laws and goes element by element, so
-that they differ by round-off: 1e-9 of a figure, or 1e-12 of the case where a figure is the small
-difference of large ones.
+"""The certificate has the figures of its oracle, for right and wrong answers, for one and for many;
+compiled, it gives the same verdicts. Source: formulation, section 8. The oracle uses the train's
+laws and goes element by element, so they differ by round-off: 1e-9 of a figure, or 1e-12 of the
+case if a figure is the small difference of large ones.
 """
 
 from dataclasses import fields, replace
@@ -43,7 +41,7 @@ CLAIMS = tuple(f.name for f in fields(Equilibria) if f.name != "names")
 
 
 def tabled() -> ls.Case:
-    """A star of three whose tables have different numbers of points."""
+    """Return a star of three whose tables have different numbers of points."""
     data = families.star(3).to_dict()
     tables = (
         {
@@ -59,20 +57,20 @@ def tabled() -> ls.Case:
 
 
 def never_slipping() -> ls.Case:
-    """A spline whose clearance closes before friction, which follows the torque, is overcome."""
+    """Return a spline whose clearance closes before the torque-dependent friction is overcome."""
     return shipped("fgfbstts/all_elements").replace(
         {"splines.5.friction": 0.3, "splines.5.clearance": "1 um"}
     )
 
 
 def clocked() -> ls.Case:
-    """A split-path box with both shafts rigid, one of them clocked."""
+    """Return a split-path box with two rigid shafts, one of them clocked."""
     rigid = {f"shafts.wheel{p}-pinion{p}.stiffness": "rigid" for p in "AB"}
     return families.two_path("1.2 mrad").replace({**rigid, "assumed": []})
 
 
 def rolling(idle: bool = False) -> ls.Case:
-    """A star of four on balls, of which a planet may carry nothing."""
+    """Return a star of four on ball bearings; one planet may carry nothing."""
     bearing = {"clearance": "5 um", "ball_stiffness": "6e10 N/m^1.5"}
     aside = {"installation": {"amount": "4 um", "direction": "90 deg"}}
     case = families.star(4).replace(
@@ -91,7 +89,7 @@ def rolling(idle: bool = False) -> ls.Case:
 
 
 def idler_on_a_spline() -> ls.Case:
-    """A planet on a spline over which no torque passes, so that its friction is round-off."""
+    """Return a planet on a spline that transmits no torque, so that its friction is round-off."""
     spline = {
         "bending_stiffness": "1e9 N/m",
         "clearance": "50 um",
@@ -133,11 +131,11 @@ QUICK = (
     "tables",
     "spline that never slips",
 )
-"""One of each kind of element, each of which takes a second or two."""
+"""One of each kind of element; each takes a second or two."""
 
 
 def claims(train: Train, indices: list[int]) -> tuple[Situations, Equilibria]:
-    """The equilibria of some positions, by the back-end, as arrays."""
+    """Return the equilibria of some positions, by the back-end, as arrays."""
     found = Equilibria.empty(train, len(indices))
     for row, index in enumerate(indices):
         found.put(row, answer(train, index)[0])
@@ -145,12 +143,12 @@ def claims(train: Train, indices: list[int]) -> tuple[Situations, Equilibria]:
 
 
 def taken(found: Equilibria, rows: np.ndarray) -> Equilibria:
-    """Some of the answers, as copies."""
+    """Return some of the answers as copies."""
     return replace(found, **{name: getattr(found, name)[rows].copy() for name in CLAIMS})
 
 
 def damaged(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria:
-    """Every answer with one to three of its figures scaled, turned round, dropped or shifted."""
+    """Return every answer with one to three of its figures scaled, reversed, dropped or shifted."""
     rng = np.random.default_rng(seed)
     wrong = taken(found, np.arange(len(found.rotation)))
     some = [name for name in CLAIMS if getattr(found, name)[0].size]
@@ -166,7 +164,7 @@ def damaged(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibri
 
 
 def scales_of(train: Train, load: float, deflection: float) -> dict[str, float]:
-    """What a damage of a claim is measured by: [rad], [m], [N], [N·m]."""
+    """Return the scales of damage to a claim: [rad], [m], [N], [N·m]."""
     radius = min(g.base_radius for g in train.gears.values())
     return {
         "rotation": deflection / radius,
@@ -180,8 +178,8 @@ def scales_of(train: Train, load: float, deflection: float) -> dict[str, float]:
 
 
 def alike(train: Train, situations: Situations, found: Equilibria) -> Verdicts:
-    """Verdicts of NumPy; the compiled ones must be the same except the energy gap, which follows
-    from the others.
+    """Return NumPy's verdicts; the compiled ones must be the same except for the energy gap, which
+    follows from the others.
     """
     judge = Judge(train)
     many, compiled = (judge.judge(situations, found, compiled=way) for way in (False, True))
@@ -197,13 +195,13 @@ def alike(train: Train, situations: Situations, found: Equilibria) -> Verdicts:
 
 
 def residuals(train: Train, situations: Situations, found: Equilibria) -> np.ndarray:
-    """All scaled residuals, shape (S, 7)."""
+    """Return all scaled residuals, shape (S, 7)."""
     with np.errstate(all="ignore"):
         return scaled_residuals(ClaimedState(mechanics_of(train), situations, found))
 
 
 def agree(train: Train, indices: list[int], situations: Situations, found: Equilibria) -> None:
-    """Certificates of one and of many have the oracle's figures; the same answers pass."""
+    """Check that certificates of one and of many have the oracle's figures and verdicts."""
     many, figures = alike(train, situations, found), residuals(train, situations, found)
     np.testing.assert_array_equal(many.worst, figures.max(axis=1))
     for row, index in enumerate(indices):
@@ -218,7 +216,7 @@ def agree(train: Train, indices: list[int], situations: Situations, found: Equil
 
 
 def agrees(residual: Residual, expected: oracle.Figures) -> None:
-    """A single residual has the oracle's figure, and names an element that shows it."""
+    """Check that a single residual has the oracle's figure, and names an element that shows it."""
     assert residual.unit == expected.unit
     scale = expected.scale
     near = {"rel": RELATIVE, "abs": ABSOLUTE * scale}
@@ -252,7 +250,7 @@ def test_right_answers(name):
 @pytest.mark.parametrize("name", mostly_slow(WAYS, QUICK))
 @pytest.mark.quick(2)
 def test_wrong_answers(name):
-    """Thirty answers, each damaged in one to three places; most are refused, all alike."""
+    """Thirty answers have damage in one to three places; most are refused, all in the same way."""
     train = build_train(WAYS[name]())
     first = positions(train)
     situations, found = claims(train, first)
@@ -293,9 +291,7 @@ def test_answers_of_random_trains(family):
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 def test_a_figure_that_is_not_a_number(bad):
-    """Whatever claim it is in: every residual is infinite, and the samples next to it are not
-    touched.
-    """
+    """In any claim, it makes every residual infinite, and does not affect other samples."""
     train = build_train(shipped("fgfbstts/all_elements"))
     situations, found = claims(train, [1])
     names = [name for name in CLAIMS if getattr(found, name)[0].size]
@@ -310,7 +306,7 @@ def test_a_figure_that_is_not_a_number(bad):
 
 
 def test_a_spline_whose_law_drops():
-    """S1 is given and F_m follows the torque: where the flanks carry little, the law would drop.
+    """S1 is fixed and F_m follows the torque, so the law would drop if the flanks carried little.
     Such a claim is judged and refused, as by the single certificate.
     """
     case = shipped("fgfbstts/all_elements").replace({"splines.5.stick_limit": "0.5 um"})
@@ -351,8 +347,8 @@ def test_a_gear_beyond_its_neighbour():
 
 
 def test_a_squeeze_between_opposed_arcs():
-    """Both arcs of one ring push at once, of either ring: what the squeeze leaves open is the
-    largest force out of its cone.
+    """Both arcs of one ring push at once, for either ring: the force that the squeeze leaves
+    undetermined is the largest excess over a cone.
     """
     train = build_train(shipped("fgfbstts/limit_ring"))
     situations, found = claims(train, [1])
@@ -375,7 +371,9 @@ def test_a_squeeze_between_opposed_arcs():
 
 
 def test_a_wrong_shaft_torque_is_caught():
-    """A claimed torque frees the balance from the digits of the rotations; the law ties it down."""
+    """With a claimed torque, the balance does not depend on the digits of the rotations; the law
+    still ties it to them.
+    """
     train = build_train(shipped("fgfbstts/all_elements"))
     situations, found = claims(train, [1])
     elastic = [k for k, s in enumerate(train.shafts.values()) if np.isfinite(s.stiffness)]
@@ -408,7 +406,8 @@ def test_a_wrong_support_force_is_caught():
         gear = list(train.gears.values())[k]
         failing = certify(train, wrong.one(row, 1)).failing
         assert failing["force_balance"].where.endswith(gear.name)
-        # A bearing that is not there carries nothing; an elastic one what its displacement says.
+        # A bearing that does not exist carries nothing; an elastic one carries its displacement
+        # times stiffness.
         law = "deformation_law" if gear.support[0] > 0.0 else "cone_membership"
         assert law in failing
         shown = dict(zip(RESIDUALS, figures[row] > CERTIFY.tolerance, strict=True))
@@ -418,9 +417,9 @@ def test_a_wrong_support_force_is_caught():
 
 @pytest.mark.parametrize("ratio", [1e12, 1e15])
 def test_a_stiff_shaft_is_certified_by_its_claimed_torque(ratio):
-    """The wind-up of a shaft that is 1e12 times as stiff as a mesh drowns in the digits of the
-    rotations, and a torque that follows from them is far out of balance. The claimed one is exact,
-    and the shaft as good as rigid.
+    """The wind-up of a shaft that is 1e12 times as stiff as a mesh is lost in the digits of the
+    rotations, and a torque that follows from them is far out of balance. The claimed torque is
+    exact, and the shaft is nearly rigid.
     """
     case = shipped("fgfbstts/both_errors")
     (shaft, *_) = case.shafts

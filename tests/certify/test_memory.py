@@ -1,5 +1,4 @@
-"""The certificate of marches, whose splines remember their slip: figures of the oracle, many
-answers at once.
+"""The certificate of marches, whose splines remember their slip, against the oracle.
 
 Source: formulation, sections 5 and 8.
 """
@@ -31,7 +30,7 @@ MARCHES = {
 
 @cache
 def second_step(name: str) -> tuple[Train, Equilibrium]:
-    """The second step of a march, which starts from a slip, and its train."""
+    """Return the second step of a march, which starts from a slip, and its train."""
     case, changes = MARCHES[name]
     train = build_train(shipped(case).replace(changes))
     first = train.remembering({g: np.zeros(3) for g in train.splines})
@@ -42,7 +41,7 @@ def second_step(name: str) -> tuple[Train, Equilibrium]:
 
 @pytest.mark.parametrize("name", mostly_slow(MARCHES, ("slips",)))
 def test_steps_of_a_march(name):
-    """The right answer, and sixteen with one to three figures damaged."""
+    """The right answer, and sixteen with one to three damaged figures."""
     train, found = second_step(name)
     situations, claimed = situation_of(train, 2), Equilibria.of(train, found)
     agree(train, [2], situations, claimed)
@@ -60,7 +59,7 @@ def test_steps_of_a_march(name):
 
 
 def test_a_law_that_jumps_is_refused():
-    """Friction with memory has no step where it starts to slip."""
+    """Friction with memory has no step at the onset of slip."""
     train, found = second_step("slips")
     jumping = build_train(
         shipped("fgfbstts/full_float").replace({**TURN, "splines.4.stick_limit": "1 um"})

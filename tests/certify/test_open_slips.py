@@ -1,8 +1,8 @@
-"""Friction that is used up exactly: forces are bounded, wherever the gear has slipped to.
+"""Friction that is exactly used up: forces are bounded, however far the gear has slipped.
 
 The pinion of one path is pushed with T/r_b, and friction holds up to τ T/radius: at radius = τ r_b
-both are the same under any load. With a radius a little smaller the pinion sticks, with a larger
-one it slips as far as its clearance. Source: formulation, section 5.
+they are equal under any load. With a slightly smaller radius the pinion sticks, with a larger one
+it slips as far as its clearance. Source: formulation, section 5.
 """
 
 from dataclasses import replace
@@ -24,7 +24,7 @@ FRICTION, BESIDE = 0.1, 1e-6
 
 
 def two_path(gap: float = 30.0, torque: float = 10.0, **spline: object) -> ls.Case:
-    """Two paths, of which B is behind; the pinion of A floats in a spline."""
+    """Return two paths with a gap in B; the pinion of A floats in a spline."""
     late = {'meshes."in-wheelB".gap': f"{gap} mrad", "operating.torque": f"{torque!r} N*m"}
     given = {"bending_stiffness": "2e7 N/m", "clearance": "0.2 mm", "friction": FRICTION, **spline}
     floating = {"gears.pinionA.support": "free", "splines": {"pinionA": given}}
@@ -32,18 +32,18 @@ def two_path(gap: float = 30.0, torque: float = 10.0, **spline: object) -> ls.Ca
 
 
 def used_up(more: float = 1.0, **given: object) -> ls.Case:
-    """Friction that is as large as the force, or by some part different."""
+    """Return a case in which friction equals the force, or differs from it by some fraction."""
     radius = build_train(families.two_path("0 mrad")).gears["pinionA"].base_radius
     return two_path(radius=f"{FRICTION * radius * more!r} m", **given)
 
 
 def held_with(force: float, **given: object) -> ls.Case:
-    """The same with friction that is given."""
+    """Return the same with a fixed friction."""
     return two_path(normal_force=f"{force / FRICTION!r} N", **given)
 
 
 def covered(claimed: ls.Case, *others: ls.Case) -> None:
-    """Other answers lie within the bounds of a claim."""
+    """Check that other answers are within the bounds of a claim."""
     here = ls.solve(claimed).positions[0]
     bound = here.certificate.bound
     for case in others:
@@ -72,7 +72,7 @@ def test_both_ends_of_a_slip_lie_within_the_bound(torque, stiffness):
 
 @pytest.mark.parametrize("stick", ["0 um", "20 um"])
 def test_a_force_that_steps_up_to_friction(stick):
-    """What stands beyond S1 is an equilibrium wherever the force begins to step."""
+    """Any place beyond S1 is an equilibrium, wherever the force begins to step."""
     train = build_train(used_up())
     machine = Machine(train)
     answer = machine.answer(machine.situations([1]), 1e-9, vectorised.settle).equilibria.one(0, 1)
@@ -89,7 +89,7 @@ def test_friction_that_is_given():
 @pytest.mark.parametrize("gap", [10.0, 26.0])
 @pytest.mark.quick(1)
 def test_a_slip_that_lets_another_path_carry_is_not_bounded(gap):
-    """From 27 mrad on B stays behind, however far the pinion of A slips; below, it may carry."""
+    """From 27 mrad on B carries nothing, however far the pinion of A slips; below, it may carry."""
     assert ls.solve(used_up(1.0 + 1e-6, gap=26.0)).positions[0].torque["in-wheelB"] > 1.0
     with pytest.raises(ls.Refused, match="not proved at all"):
         ls.solve(used_up(gap=gap))
@@ -98,7 +98,7 @@ def test_a_slip_that_lets_another_path_carry_is_not_bounded(gap):
 
 @pytest.mark.parametrize(("gap", "proved"), [(10.0, False), (26.0, False), (27.5, True)])
 def test_a_slip_that_pushes_what_is_loose(gap, proved):
-    """B stands 1 nm from the output; a slip of A turns the input, which closes that gap, too."""
+    """B is 1 nm from the output; a slip of A turns the input, which closes that gap too."""
     case = used_up(1.0 - 1e-12, gap=gap)
     machine = Machine(build_train(case))
     stuck = machine.answer(machine.situations([1]), 1e-9, vectorised.settle).equilibria.one(0, 1)

@@ -1,9 +1,10 @@
-"""Every prescribed displacement does work, and the energies of the certificate count it.
+"""Every prescribed displacement does work, and the energies of the certificate include it.
 
 Source: formulation, section 8. Clocking, gaps, backlash, errors, clearances, ring offsets and slips
-of the position before are displacements that a case prescribes: a force F that acts over one of
-size d adds F d to the complementary energy. Each is worked out here from forces and case alone; it
-is more than a ten-thousandth of the case's work, so a certificate that left it out would refuse.
+of the previous position are displacements that a case prescribes: a force F over a prescribed
+displacement d adds F d to the complementary energy. Each work is computed here from forces and case
+alone; it is more than a ten-thousandth of the case's work, so a certificate that left it out would
+refuse.
 """
 
 from collections.abc import Callable
@@ -22,13 +23,14 @@ from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
 
 LEAST = 1e-4
-"""Work of a prescribed displacement, over load times deflection, that could not be overlooked."""
+"""Smallest work of a prescribed displacement, over load times deflection, that cannot be
+overlooked."""
 
 Work = Callable[[Train, Equilibrium], float]
 
 
 def clocked(stiffness: str, turned: bool = False) -> ls.Case:
-    """A split-path box with a clocked shaft, named from either end."""
+    """Return a split-path box with a clocked shaft, named from either end."""
     case = families.two_path("1.2 mrad")
     shaft = {"stiffness": stiffness, "clocking": "1.2 mrad"}
     name = "pinionA-wheelA" if turned else "wheelA-pinionA"
@@ -36,7 +38,7 @@ def clocked(stiffness: str, turned: bool = False) -> ls.Case:
 
 
 def on_the_output() -> ls.Case:
-    """The same with the output gear itself behind two clocked rigid shafts."""
+    """Return the same with the output gear itself behind two clocked rigid shafts."""
     case = families.two_path("1.2 mrad")
     height = [*case.to_dict()["gears"]["out"]["centre"][:2]]
     behind = {
@@ -51,7 +53,7 @@ def on_the_output() -> ls.Case:
 
 
 def shaft_work(shaft: str, gear: str) -> Work:
-    """T β of a shaft; what one of its gears takes over it gives T, from the first to the second."""
+    """Return T β of a shaft; T, from first to second, is the torque transmitted to a gear."""
 
     def work(train: Train, found: Equilibrium) -> float:
         ends = train.shafts[shaft]
@@ -62,7 +64,7 @@ def shaft_work(shaft: str, gear: str) -> Work:
 
 
 def flank_work(flank: str, part: str) -> Work:
-    """F times gap, backlash or errors along the line of action."""
+    """Return F times gap, backlash or errors along the line of action."""
 
     def work(train: Train, found: Equilibrium) -> float:
         here = situation_of(train, found.index)
@@ -80,12 +82,12 @@ def flank_work(flank: str, part: str) -> Work:
 
 
 def contact_work(contact: str, length: float) -> Work:
-    """Force of a ring's contact times its float or clearance."""
+    """Return the force of a ring's contact times its float or clearance."""
     return lambda train, found: found.ring_force[contact] * length
 
 
 def drawn_arc_work(train: Train, found: Equilibrium) -> float:
-    """Force of the arc towards gear 6 times what the errors shift it along its normal."""
+    """Return the force of the arc towards gear 6 times the errors' shift along its normal."""
     arc = situation_of(train, found.index).arc(train.rings["4"], 1)
     push = found.ring_force[train.rings["4"].arc_name("6")]
     return push * float(arc.normal(np.zeros(3)) @ arc.shift)
@@ -96,7 +98,7 @@ def offset_work(train: Train, found: Equilibrium) -> float:
 
 
 def arcs(**changes: object) -> ls.Case:
-    """Limit rings with a clearance, and so narrow that stop and arc carry."""
+    """Return limit rings with a clearance, so narrow that stop and arc carry."""
     return shipped("fgfbstts/limit_ring").replace(
         {"rings.4.clearance": "1 um", "rings.4.float": "2 um", **changes}
     )
@@ -151,7 +153,7 @@ def test_work_of_a_prescribed_displacement_is_counted(name):
 
 
 def test_work_of_the_slip_of_the_position_before_is_counted():
-    """Friction acts about the slip before, whose work is F · s₀."""
+    """Friction acts about the previous slip, whose work is F · s₀."""
     train = build_train(shipped("fgfbstts/full_float"))
     before = {gear: np.array([20e-6, -10e-6, 0.0]) for gear in train.splines}
     train = train.remembering(before)

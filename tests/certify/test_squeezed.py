@@ -1,4 +1,4 @@
-"""Rigid limits without clearance between them may squeeze a gear as hard as they like."""
+"""Rigid limits without clearance between them may squeeze a gear with any force."""
 
 import math
 

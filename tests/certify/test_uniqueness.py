@@ -1,7 +1,7 @@
-"""Whether an answer is the only one: closed forms in which the verdict must flip, and energies.
+"""Whether an answer is the only one: closed forms in which the verdict must change, and energies.
 
-A disc stands between two arcs at distances a_1 and a_2 that squeeze it with F each, held sideways
-by a spring k alone. Rolling off sideways by y gains F y²/2 (1/a_1 + 1/a_2) and costs k y²/2: the
+A disc is between two arcs at distances a_1 and a_2 that squeeze it with F each; only a spring k
+holds it sideways. Rolling off sideways by y gains F y²/2 (1/a_1 + 1/a_2) and costs k y²/2: the
 place between them is a minimum below F* = k/(1/a_1 + 1/a_2), and a saddle above.
 """
 
@@ -25,7 +25,7 @@ CRITICAL = SPRING / (1.0 / A1 + 1.0 / A2)
 
 
 def squeezed_case(force: float) -> ls.Case:
-    """A disc without tooth load, its neighbours shifted against it until the arcs bear `force`."""
+    """Return a disc without tooth load; shifted neighbours make its arcs carry `force`."""
     shift = force / WALL
     gears = {
         "p": {"base_radius": "0.05 m", "centre": ["0 m", "0 m"],
@@ -55,7 +55,7 @@ def squeezed_case(force: float) -> ls.Case:
             },
             "operating": {
                 "input": "2", "output": "1", "running": "counter-clockwise", "torque": "0 N*m",
-                # Borne by the held output: it only says what force counts as large.
+                # The held output carries it: it only sets the scale of forces.
                 "external": {"1": "1e5 N*m"},
             },
         }
@@ -63,7 +63,7 @@ def squeezed_case(force: float) -> ls.Case:
 
 
 def squeezed(force: float) -> tuple[Train, Equilibrium]:
-    """The place between the arcs, which is an equilibrium whatever the squeeze."""
+    """Return the place between the arcs, which is an equilibrium for any squeeze."""
     train = build_train(squeezed_case(force))
     (ring,) = train.drums
     forces = dict.fromkeys(ring.stop_names, 0.0) | {ring.arc_name(n): force for n in "12"}
@@ -80,9 +80,9 @@ def squeezed(force: float) -> tuple[Train, Equilibrium]:
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.99, 0.999, 1.001, 1.01, 3.0])
 def test_a_disc_between_two_arcs_flips_at_the_critical_squeeze(share):
-    """The curvature is F/F*, whatever the distances; and the exact energy agrees with the verdict.
+    """The curvature is F/F* for any distances, and the exact energy agrees with the verdict.
 
-    The wall gives by F/WALL, so that the centres stand nearer than a by that.
+    The wall yields by F/WALL, so the centres are closer than a by that amount.
     """
     force = share * CRITICAL
     train, answer = squeezed(force)
@@ -92,7 +92,7 @@ def test_a_disc_between_two_arcs_flips_at_the_critical_squeeze(share):
     assert found.curvature == pytest.approx(exact, rel=1e-9)
     assert found.curvature == pytest.approx(share, rel=3.0 * given / A1 + 1e-9)
     assert found.kind == ("local" if exact < 1.0 else "not proved")
-    # Sideways along y; the neighbours' rotations make the flanks open, and x follows by symmetry.
+    # Sideways is along y; the neighbours' rotations open the flanks, and x follows by symmetry.
     ring = train.drums[0]
     for y in (3e-6, 1e-5):
         moved = replace(answer, displacement=answer.displacement | {"p": y * ring.across})
@@ -101,7 +101,7 @@ def test_a_disc_between_two_arcs_flips_at_the_critical_squeeze(share):
 
 
 def _sideways(train, moved, answer) -> float:
-    """Energy of springs and walls [J] that a move costs, flanks left out."""
+    """Return the energy of springs and walls [J] that a move costs, without flanks."""
     without = {m: replace(mesh, gaps=(1.0,)) for m, mesh in train.meshes.items()}
     bare = replace(train, meshes=without)
     return potential(bare, moved) - potential(bare, answer)
@@ -122,7 +122,7 @@ def test_an_arc_that_does_not_carry_leaves_the_least_energy():
 
 
 def test_a_float_on_an_elastic_ring_is_unique_and_the_energy_says_so():
-    """Random moves around the answer of an elastic ring cost energy; the claim is in JSON."""
+    """Random moves around the answer of an elastic ring cost energy; the verdict is in JSON."""
     case = shipped("fgfbstts/limit_ring").replace(
         {"rings.4.stiffness": "1e9 N/m", "rings.5.stiffness": "1e9 N/m"}
     )
@@ -157,7 +157,7 @@ def test_friction_that_follows_the_torque_is_no_convex_problem():
 
 
 def test_many_answers_say_what_single_ones_say():
-    """Convex where nothing carries; the arcs' part as Σ F/a of the ring where it is largest."""
+    """Convex if nothing carries; else the arcs' part is Σ F/a of the ring where it is largest."""
     case = shipped("fgfbstts/limit_ring")
     clearances = {f"rings.{r}.clearance [mm]": [0.0, 1.0] for r in "45"}
     floats = {"rings.4.float [um]": [8.24, 1e3], "rings.5.float [um]": [2.74, 1e3]}
@@ -179,8 +179,8 @@ def test_many_answers_say_what_single_ones_say():
 
 
 def test_a_search_finds_the_places_beside_a_saddle():
-    """Above the critical squeeze the disc rolls off to either stop, so there is another answer than
-    any one that is found; below it there is none.
+    """Above the critical squeeze the disc rolls off to either stop, so there is another answer
+    besides any that is found; below it there is none.
     """
     beyond = search(squeezed_case(3.0 * CRITICAL))
     places = [o.displacement["p"][1] for o in (beyond.answer.equilibrium, *beyond.others)]
@@ -193,7 +193,7 @@ def test_a_search_finds_the_places_beside_a_saddle():
 
 
 def test_an_answer_of_splines_with_memory_is_judged_where_an_arc_carries():
-    """Where nothing has slipped, splines hold by their shafts as by their laws."""
+    """If nothing has slipped, splines hold by their shafts in the same way as by their laws."""
     changes = {
         "splines.5.normal_force": "500 N",
         "splines.5.radius": None,

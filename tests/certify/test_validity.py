@@ -1,9 +1,9 @@
-"""Displacements against exact involute kinematics of one mesh, and what becomes of large ones.
+"""Displacements against exact involute kinematics of one mesh, and the treatment of large ones.
 
-Exact geometry: the line of action is the tangent of both base circles, of length
-L' = √(a'² − R²) with R = r_1 ± r_2. Unwinding the two strings gives the approach
-δ = r_1 φ_1 − r_2 φ_2 ∓ (R Δχ + L' − L), exactly linear in both rotations, where Δχ is the angle by
-which the line turns; − for two external gears. Nothing of the library enters it.
+Exact geometry: the line of action is the tangent of both base circles, of length L' = √(a'² − R²)
+with R = r_1 ± r_2. Unwinding the two strings gives the approach δ = r_1 φ_1 − r_2 φ_2 ∓ (R Δχ + L'
+− L), exactly linear in both rotations, where Δχ is the angle by which the line turns; − for two
+external gears. It uses nothing of the library.
 """
 
 import math
@@ -28,7 +28,7 @@ R1 = 0.05
 
 
 def pair(kind: str, teeth: int | None = None) -> ls.Case:
-    """A pinion that drives a gear with external or internal teeth."""
+    """Return a pinion that drives a gear with external or internal teeth."""
     r2 = {"external": 0.12, "internal": 0.2}[kind]
     base = R1 + r2 if kind == "external" else r2 - R1
     gears = {
@@ -47,7 +47,7 @@ def pair(kind: str, teeth: int | None = None) -> ls.Case:
 
 
 def claim(train, moved) -> Equilibrium:
-    """An answer in which the pinion is displaced by `moved` (2,) [m] and turned to touch."""
+    """Return an answer with the pinion displaced by `moved` (2,) [m] and turned into contact."""
     apart = -float(train.meshes["1-2"].drive_normal[:2] @ np.asarray(moved))
     return Equilibrium(
         index=1,
@@ -61,7 +61,7 @@ def claim(train, moved) -> Equilibrium:
 
 
 def exact(kind: str, r2: float, moved: np.ndarray) -> float:
-    """Approach [m] of a pinion displaced by `moved`, by the strings of the base circles."""
+    """Return the approach [m] of a pinion displaced by `moved`, by strings of the base circles."""
     base = R1 + r2 if kind == "external" else r2 - R1
     start = np.array([base / math.cos(ALPHA), 0.0])
     way = start - moved
@@ -77,8 +77,8 @@ def exact(kind: str, r2: float, moved: np.ndarray) -> float:
 
 @pytest.mark.parametrize("kind", ["external", "internal"])
 def test_the_neglected_approach_is_that_of_exact_involutes(kind):
-    """Its estimate agrees to the first power of the displacement, in every direction; up to the
-    bound of a warning it is right to 10 %.
+    """Its estimate agrees to the first power of the displacement in every direction; up to the
+    threshold of a warning it is right to 10 %.
     """
     train = build_train(pair(kind))
     mesh = train.meshes["1-2"]
@@ -92,7 +92,7 @@ def test_the_neglected_approach_is_that_of_exact_involutes(kind):
             neglected = abs(exact(kind, r2, moved) - linear)
             measured = validity(train, claim(train, moved), 1.0).measures["approach"].value
             misfits.append(abs(measured - neglected) / (size * R1) ** 2)
-        # Third order over second order: ten times smaller where the displacement is.
+        # Third order over second order: it decreases tenfold with the displacement.
         assert misfits[1] < 0.15 * misfits[0] + 1e-6
         across = abs(float(mesh.coast_normal[:2] @ way))
         far = CERTIFY.turned * R1 * math.tan(ALPHA) * way
@@ -104,7 +104,7 @@ def test_the_neglected_approach_is_that_of_exact_involutes(kind):
 
 @pytest.mark.parametrize("kind", ["external", "internal"])
 def test_an_answer_is_refused_before_the_line_of_action_vanishes(kind):
-    """The base circles touch where the gears have come nearer by L tan(α/2), and not before."""
+    """The base circles touch when the gears have come closer by L tan(α/2), and not before."""
     train = build_train(pair(kind))
     mesh = train.meshes["1-2"]
     base = R1 + mesh.radii[1] if kind == "external" else mesh.radii[1] - R1
@@ -114,7 +114,7 @@ def test_an_answer_is_refused_before_the_line_of_action_vanishes(kind):
     assert math.isnan(exact(kind, mesh.radii[1], 1.001 * limit * inward))
     figure = validity(train, claim(train, limit * inward), 1.0).measures["line_of_action"]
     assert figure.refusal == pytest.approx(math.tan(0.5 * ALPHA))
-    # Across the line of action, the whole way counts.
+    # Across the line of action, the whole displacement counts.
     n = mesh.drive_normal[:2]
     across = np.array([-n[1], n[0]])
     refused = validity(train, claim(train, 1.001 * limit * across), 1.0)
@@ -139,7 +139,7 @@ def test_a_common_shift_and_rotations_neglect_nothing():
 
 @pytest.mark.parametrize("teeth", [None, 40])
 def test_compression_by_the_height_of_the_teeth(teeth):
-    """The height of 2.25 modules of the teeth given, or of the 17 that stand for unknown ones."""
+    """The height is 2.25 modules of the given teeth, or of 17 teeth if their number is unknown."""
     train = build_train(pair("external", teeth))
     module = 2.0 * R1 / ((teeth or 17) * math.cos(ALPHA))
     shares = {
@@ -158,7 +158,7 @@ def test_compression_by_the_height_of_the_teeth(teeth):
 
 
 def test_the_bound_of_the_neglected_approach():
-    """Above NEGLECTED deflections a warning, above MEANINGLESS a refusal."""
+    """Above NEGLECTED deflections there is a warning, above MEANINGLESS a refusal."""
     train = build_train(pair("external"))
     n = train.meshes["1-2"].drive_normal[:2]
     moved = 1e-4 * np.array([-n[1], n[0]])
@@ -174,7 +174,7 @@ def test_the_bound_of_the_neglected_approach():
 
 
 def test_what_a_gap_takes_up_is_not_neglected():
-    """A flank that is open by more cannot close by what its approach is off."""
+    """A flank that is open by more than the error of its approach cannot close because of it."""
     train = build_train(pair("external"))
     n = train.meshes["1-2"].drive_normal[:2]
     touching = claim(train, 1e-4 * np.array([-n[1], n[0]]))
@@ -189,7 +189,7 @@ def test_what_a_gap_takes_up_is_not_neglected():
     ("gap", "force", "left"), [(3.0, 0.0, 0.0), (3.0, 1.0, 1.0), (0.5, 0.0, 1.0)]
 )
 def test_a_gear_that_carries_nothing_turns_in_its_play(gap, force, left):
-    """An idler touches its driver and is open by `gap` towards the gear that it drives."""
+    """An idler touches its driver and has a gap of `gap` to the gear that it drives."""
     data = pair("external").to_dict()
     far = (R1 + 0.12) / math.cos(ALPHA) + 0.24 / math.cos(ALPHA)
     data["gears"]["3"] = {"base_radius": "0.12 m", "centre": [f"{far!r} m", "0 m"]}
@@ -211,7 +211,7 @@ def test_a_gear_that_carries_nothing_turns_in_its_play(gap, force, left):
 
 
 def test_many_answers_are_measured_as_single_ones():
-    """Right answers of a case with everything, and the same pushed far away."""
+    """Right answers of a case with everything, and the same displaced far away."""
     train = build_train(shipped("fgfbstts/all_elements"))
     indices = [1, 2, 3, 1, 2, 3]
     found = Equilibria.empty(train, len(indices))
@@ -233,8 +233,8 @@ def test_many_answers_are_measured_as_single_ones():
 
 
 def test_a_case_that_gives_way_too_much_is_refused_everywhere():
-    """By `solve` with the mesh, by `solve_many` sample by sample; the equilibrium itself, which
-    `explain` hands out, is certified.
+    """`solve` refuses it and names the mesh, `solve_many` sample by sample; the equilibrium itself,
+    which `explain` returns, is certified.
     """
     case = loaded(shipped("fgfbstts/base"), "5e5 N*m")
     with pytest.raises(ls.Refused, match="tooth height") as refused:
@@ -268,7 +268,7 @@ def test_a_warning_stands_in_the_result_and_outlives_a_file(tmp_path):
 
 
 def rig(clocking: str, **mesh: str) -> ls.Case:
-    """Two equal pairs back to back, the torque between them locked in by clocking a shaft."""
+    """Return two equal pairs back to back, with a torque locked in by clocking a shaft."""
     axis, wheels = ["0 mm", "0 mm"], ["150 mm", "0 mm"]
     teeth = [{"teeth": n, "module": "4 mm"} for n in (25, 50)]
     return ls.Case(
@@ -290,9 +290,9 @@ def rig(clocking: str, **mesh: str) -> ls.Case:
 
 
 def test_a_mesh_without_backlash_that_is_wound_open_is_told() -> None:
-    """With backlash the loop is a torsion spring: springs in a row, reduced to the first shaft.
+    """With backlash the loop is a torsion spring: springs in series, referred to the first shaft.
 
-    Of 20 N·m from outside a part goes either way, as the compliances share it.
+    An external torque of 20 N·m divides between the two directions according to the compliances.
     """
     mesh, thin, thick = 1 / 5e5, 1 / 4e4, 4 / 2e5
     play = 100e-6 / 50e-3

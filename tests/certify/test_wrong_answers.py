@@ -1,7 +1,7 @@
 """The certificate refuses wrong answers of every kind, and names what is wrong with them.
 
-Source: formulation, section 8. Each scenario is solved once; then one thing about the answer is
-altered, and the residual that must show it is named together with the element. Nothing here relies
+Source: formulation, section 8. Each scenario is solved once; then one thing in the answer is
+altered, and the residual that must show it is named together with the element. Nothing here depends
 on how the answer was found.
 """
 
@@ -78,7 +78,7 @@ def scaled_flank(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def scaled_everything(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """All forces and displacements a little too large: only the external torque disagrees."""
+    """Make all forces and displacements slightly too large: only the external torque disagrees."""
     grown = {
         field: {k: 1.001 * v for k, v in getattr(found, field).items()}
         for field in ("flank_force", "ring_force", "radial_reaction", "displacement", "rotation")
@@ -93,7 +93,7 @@ def missing_contact(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def force_on_open_flank(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """A flank that is apart must not push, however little."""
+    """Give an open flank a small force: it must not push at all."""
     for name, force in found.flank_force.items():
         if force == 0.0:
             push = 1e-4 * load(train, found)
@@ -116,7 +116,7 @@ def missing_ring_force(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def shifted_float(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """A gear off its place, along each of its two directions that the answer determines."""
+    """Move a gear off its place, along each of its two directions that the answer determines."""
     for gear, body in train.gears.items():
         for axis, way in zip("xy", body.frame, strict=True):
             if body.support is None or f"gear {gear} {axis}" in found.undetermined:
@@ -131,7 +131,7 @@ def beyond_the_ring(train: Train, found: Equilibrium) -> Iterator[Wrong]:
         far = 10.0 * deflection(train, found)
         if hasattr(ring, "radius"):
             moved = found.displacement[ring.gear] + far * train.gears[ring.gear].frame[0]
-            # An elastic ring has no reach: there its graph is what the reaction leaves.
+            # An elastic ring has no reach: its graph and the reaction then disagree.
             shows = "penetration" if math.isinf(ring.stiffness) else "cone_membership"
             answer = altered(found, "displacement", {ring.gear: moved})
             yield Wrong(ring.name, answer, shows, None)
@@ -143,7 +143,7 @@ def beyond_the_ring(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def beyond_the_neighbour(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """The limited gear is mirrored at its neighbour, where the arc's inequality holds."""
+    """Mirror the limited gear at its neighbour, where the arc's inequality holds."""
     for ring in train.drums:
         for side, neighbour in enumerate(ring.neighbours):
             arc = situation_of(train, found.index).arc(ring, side)
@@ -154,7 +154,7 @@ def beyond_the_neighbour(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def rigid_gear_moved(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """A rigid bearing gives way, or a floating gear leaves its plane."""
+    """Let a rigid bearing give way, or a floating gear leave its plane."""
     for name, gear in train.gears.items():
         way = gear.frame[0] if gear.support is None else gear.axis
         moved = found.displacement[name] + 1e-3 * deflection(train, found) * way
@@ -168,7 +168,7 @@ def rotated_gear(train: Train, found: Equilibrium) -> Iterator[Wrong]:
             continue
         angle = found.rotation[name] + 1e-3 * deflection(train, found) / gear.base_radius
         answer = altered(found, "rotation", {name: angle})
-        # A gear that touches nothing shows as one that now overlaps.
+        # The error of a gear that touches nothing shows as an overlap.
         touching = any(
             found.flank_force[n] > 0.0
             for n, m in train.meshes.items()
@@ -178,7 +178,7 @@ def rotated_gear(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def swapped_meshes(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """Two meshes of one stage that carry different forces change places."""
+    """Exchange two meshes of one stage that carry different forces."""
     for stage in train.stages:
         a, b = (
             min(stage.meshes, key=found.flank_force.get),
@@ -191,7 +191,7 @@ def swapped_meshes(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def turned_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """A reaction of a round ring or a spline that does not point along the offset."""
+    """Tilt a reaction of a round ring or a spline away from the offset."""
     for pull in (*train.splines.values(), *train.rings.values()):
         name = getattr(pull, "name", None)
         if name not in found.radial_reaction:
@@ -203,8 +203,8 @@ def turned_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def wrong_size_of_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """More than the friction bound or the ring's spring gives; on a rigid ring, more than
-    balance allows.
+    """Make a reaction larger than the friction bound or the ring's spring gives; on a rigid ring,
+    larger than balance allows.
     """
     for pull in (*train.splines.values(), *train.rings.values()):
         name = getattr(pull, "name", None)
@@ -217,14 +217,14 @@ def wrong_size_of_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 
 
 def pulling_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """A reaction that pushes outwards."""
+    """Make a reaction push outwards."""
     for name, force in found.radial_reaction.items():
         answer = altered(found, "radial_reaction", {name: -force})
         yield Wrong(name, answer, "cone_membership", name)
 
 
 def other_position(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """The right answer of a position claimed for another, where the two differ."""
+    """Claim the right answer of a position for another position, if the two differ."""
     if train.count > 1 and train.march is not None:
         yield Wrong("position 2", replace(found, index=2), "deformation_law", None)
 
@@ -280,13 +280,13 @@ def test_what_is_not_a_number_is_refused_wherever_it_stands(scenario, wrong):
 @pytest.mark.parametrize("scenario", SCENARIOS)
 @pytest.mark.quick(3)
 def test_the_certificate_answers_in_proportion(scenario):
-    """A misfit below the tolerance shows as such, the same misfit just above it fails, for every
-    contact that carries. Whether the torques are then bounded closely enough is another question.
+    """A misfit just below the tolerance passes, one just above it fails, for every loaded contact.
 
-    The residual is proportional to the misfit, so its slope at a thousand tolerances shows where
-    the tolerance is crossed. The slope itself lies near 1: the certificate neither overlooks a
-    force nor magnifies round-off. 20 % are left on either side for what the right answer's own
-    residual (below 1e-12) and curvature add.
+    Whether the torques are then bounded closely enough is another question. The residual is
+    proportional to the misfit, so its slope at a thousand tolerances shows where the tolerance is
+    crossed. The slope itself is near 1: the certificate neither overlooks a force nor magnifies
+    round-off. 20 % on either side allow for the right answer's own residual (below 1e-12) and for
+    curvature.
     """
     train, found = solved(scenario)
     scale = load(train, found)
@@ -314,7 +314,7 @@ def test_the_tolerance_is_the_callers(tolerance):
 
 
 def test_a_free_displacement_does_not_blind_the_certificate():
-    """Pinion 1 may lie anywhere along its free direction; that must not excuse the rest."""
+    """Pinion 1 may be anywhere along its free direction; other errors must still be found."""
     train = build_train(shipped("fgfbstts/limit_ring"))
     other = {"errors.6.installation": ["0 um", "100.4 um"], "rings.4.float": "8.3 um"}
     found, _ = answer(build_train(shipped("fgfbstts/limit_ring").replace(other)))
@@ -324,7 +324,7 @@ def test_a_free_displacement_does_not_blind_the_certificate():
 
 
 def test_a_preload_between_rigid_stops_does_not_blind_the_certificate():
-    """Two opposite stops may press each other at will; that must not excuse the rest."""
+    """Two opposite stops may press each other with any force; other errors must still be found."""
     case = shipped("fgfbstts/limit_ring").replace({"rings.4.float": "0 um"})
     train = build_train(case)
     found, _ = answer(build_train(case.replace({"operating.power": "1998 kW"})))
@@ -334,7 +334,7 @@ def test_a_preload_between_rigid_stops_does_not_blind_the_certificate():
 
 
 def test_a_torque_at_which_a_spline_has_no_law_is_refused():
-    """With S1 given and F_m from the torque, a claim of no torque lets the spline's law drop."""
+    """With S1 fixed and F_m from the torque, a claim of zero torque makes the spline's law drop."""
     spline = {
         "bending_stiffness": "1.78e7 N/m",
         "clearance": "100 um",

@@ -18,12 +18,12 @@ START = "from loadshare.cli.main import main; main()"
 
 @pytest.fixture(scope="session")
 def cases() -> Path:
-    """The folder of shipped cases."""
+    """Return the folder of shipped cases."""
     return CASES
 
 
 def on_a_screen_of(columns: int) -> Callable[..., Any]:
-    """The command in this process; nothing but an exit code may leave it."""
+    """Run the command in this process; only an exit code may leave it."""
     runner = CliRunner(env={"COLUMNS": f"{columns}", "FORCE_COLOR": None, "TTY_COMPATIBLE": None})
 
     def run(*words: str | Path) -> Any:
@@ -44,7 +44,7 @@ def command() -> Callable[..., Any]:
 
 @pytest.fixture
 def environment() -> dict[str, str]:
-    """The environment of a pipe: nothing that asks for colours or sets a width."""
+    """Return the environment of a pipe: nothing that asks for colours or sets a width."""
     return plain_environment()
 
 
@@ -66,14 +66,14 @@ def process() -> Callable[..., subprocess.CompletedProcess[str]]:
 
 
 def plain_environment(**settings: str) -> dict[str, str]:
-    """The environment of a pipe: nothing that asks for colours or sets a width."""
+    """Return the environment of a pipe: nothing that asks for colours or sets a width."""
     wanted = {k: v for k, v in os.environ.items() if k not in ("FORCE_COLOR", "COLUMNS")}
     return wanted | {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONUTF8": "1"} | settings
 
 
 @pytest.fixture
 def unheld(tmp_path: Path) -> Path:
-    """A free sun between two planets: nothing holds it across their line."""
+    """Write a case with a free sun between two planets: nothing holds it across their line."""
     return write_case(
         tmp_path / "unheld.toml",
         CASES / "star" / "floating_sun_3.toml",
@@ -83,7 +83,7 @@ def unheld(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def half_held(tmp_path: Path, unheld: Path) -> Path:
-    """The same with two positions, of which the first is at rest and so has an equilibrium."""
+    """Write the same with two positions; the first is unloaded and so has an equilibrium."""
     return write_case(
         tmp_path / "half_held.toml",
         unheld,
@@ -93,7 +93,7 @@ def half_held(tmp_path: Path, unheld: Path) -> Path:
 
 @pytest.fixture
 def broken(tmp_path: Path) -> Path:
-    """A case with three problems."""
+    """Write a case with three problems."""
     return write_case(
         tmp_path / "broken.toml",
         CASES / "fgfbstts" / "base.toml",

@@ -1,4 +1,4 @@
-"""`loadshare batch`: no case stops the others, what is certified is kept, files are whole."""
+"""`loadshare batch`: no case stops the others, certified results are kept, files are complete."""
 
 import json
 import os
@@ -37,8 +37,8 @@ def outcomes(folder):
 def test_no_digit_of_a_result_hangs_on_what_its_process_has_solved_before(
     command, star, tmp_path, monkeypatch
 ):
-    # Engines round differently, and a process that has compiled code at hand prefers it. Which
-    # cases come before a case depends on the number of processes and on interruptions.
+    # Engines round differently, and a process that has loaded compiled code prefers it. Which cases
+    # come before a given one depends on the number of processes and on interruptions.
     used = []
 
     def settle(*given, **more):
@@ -52,7 +52,7 @@ def test_no_digit_of_a_result_hangs_on_what_its_process_has_solved_before(
     used.clear()
     assert command("batch", star, "-o", tmp_path, "-j", "1").exit_code == 0
     assert not used
-    # Compiled code is for so many positions that they are worth reading it, and then for all.
+    # Compiled code is used for a case with enough positions to be worth loading it, then for all.
     monkeypatch.setattr(engines, "at_hand", lambda: True)
     case = ls.load_case(star / "floating_sun_3.toml").replace({"operating.positions": 10})
     assert engine_for(case, JOB.few // 10) == "vectorised"
@@ -157,7 +157,7 @@ def test_what_is_certified_is_kept(command, star, tmp_path):
 
 
 def test_a_result_says_what_its_case_says_now(command, star, tmp_path):
-    """A title changes no mechanics, but the result shows it."""
+    """A title does not change the mechanics, but the result shows it."""
     case, out = tmp_path / "case.toml", tmp_path / "out"
     text = (star / "floating_sun_3.toml").read_text(encoding="utf-8")
     title = ls.load_case(star / "floating_sun_3.toml").title
@@ -292,11 +292,11 @@ if __name__ == "__main__":
     from loadshare.cli.main import main
     main()
 """
-"""A batch whose first case is solved at once, while the others wait for a file."""
+"""A batch whose first case is solved immediately, while the others wait for a file."""
 
 
 def gated(script, words, environment):
-    """Start such a batch, in a session of its own."""
+    """Start such a batch in a session of its own."""
     return subprocess.Popen(
         [sys.executable, script, "batch", *words],
         stdout=subprocess.DEVNULL,
@@ -308,7 +308,7 @@ def gated(script, words, environment):
 
 
 def await_first(out, batch):
-    """Wait for the result of its first case."""
+    """Wait for the result of the first case."""
     while not (out / "floating_sun_3.json").exists():
         assert batch.poll() is None
         time.sleep(0.01)
@@ -317,12 +317,12 @@ def await_first(out, batch):
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_path, environment):
-    """What is under way is finished, what waits is left: as a terminal interrupts, all at once."""
+    """Cases in progress are finished, others left; all get the signal, as from a terminal."""
     out, script = tmp_path / "out", tmp_path / "script.py"
     script.write_text(GATED, encoding="utf-8")
     words = (cases / "star", cases / "two_path", "-o", out, "--jobs", "2")
     batch = gated(script, words, environment)
-    # A batch that does not react would wait for its gate, and the test for the batch.
+    # A batch that ignores the signal would wait for its gate, and the test for the batch.
     guard = threading.Timer(60.0, os.killpg, (batch.pid, signal.SIGKILL))
     guard.start()
     try:
@@ -336,7 +336,7 @@ def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_pa
     assert batch.returncode == 130
     assert "The same command goes on" in stderr
     assert "Traceback" not in stderr
-    # Each process has one case under way, and one more may wait in the pipe between them.
+    # Each process has one case in progress, and one more may wait in the pipe between them.
     assert summary(out)["not_done"]
     assert set(outcomes(out).values()) <= {"certified"}
     for file in set(out.glob("*.json")) - {out / "summary.json"}:
@@ -356,27 +356,28 @@ def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_pa
 )
 @pytest.mark.quick(1)
 def test_a_batch_ends_where_it_stands(cases, tmp_path, environment, sent, code, jobs):
-    """At the second Ctrl-C and at SIGTERM what is under way is left, what is kept is reported."""
+    """The second Ctrl-C and SIGTERM abandon the cases in progress; kept results are reported."""
     out, script = tmp_path / "out", tmp_path / "script.py"
     script.write_text(GATED, encoding="utf-8")
     words = (cases / "star", "-o", out, "--jobs", jobs)
     batch = gated(script, words, environment)
-    # The gate stays closed: a batch that waits for what is under way never ends.
+    # The gate stays closed: a batch that waits for the case in progress never ends.
     guard = threading.Timer(120.0, os.killpg, (batch.pid, signal.SIGKILL))
     guard.start()
     try:
         await_first(out, batch)
-        # Workers have none of the first; of the second they may die, which is no crash of a case.
+        # The first signal does not affect workers; the second may kill them, which is not a crash
+        # of a case.
         os.killpg(batch.pid, sent[0])
         if sent[0] == signal.SIGINT:
             assert batch.stderr.readline().startswith("Stopping")
             os.killpg(batch.pid, signal.SIGINT)
-        # Workers hold the other end of this pipe: when it is read to its end, they are gone.
+        # Workers hold the other end of this pipe: once it is read to its end, they have ended.
         _, stderr = batch.communicate()
     finally:
         guard.cancel()
     assert batch.returncode == code
-    # The file of a case is there a moment before its process has reported it.
+    # The file of a case exists a moment before its process reports it.
     assert re.search(r"Interrupted: [01] of 4 cases done\.\nThe same command goes on", stderr)
     assert "Traceback" not in stderr
     assert set(outcomes(out).items()) <= {("floating_sun_3", "certified")}

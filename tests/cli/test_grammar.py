@@ -1,4 +1,4 @@
-"""One grammar: what all commands understand alike, and old words that go on working."""
+"""One grammar: what all commands have in common, and old option names that still work."""
 
 import json
 import os
@@ -22,7 +22,7 @@ BASE = CASES / "fgfbstts/base.toml"
 
 
 def options(name: str) -> dict[str, object]:
-    """The options of a command, by all their names."""
+    """Return the options of a command by all their names."""
     found = get_command(app).commands[name].params
     return {option: p for p in found if p.param_type_name == "option" for option in p.opts}
 
@@ -41,7 +41,7 @@ def test_every_command_takes_the_same_words(name):
         assert known["-o"] is known["--output"]
     else:
         assert name in ("check", "explore", "warm")
-    # No old word is an option of its own; two of `critical` are, and are not shown.
+    # No old name is an option in its own right, except two of `critical`, which are hidden.
     assert not set(OLD) - {"--json"} & set(known)
     hidden = {option for option, p in known.items() if p.hidden}
     assert hidden == ({"--from", "--to"} if name == "critical" else set())
@@ -252,7 +252,7 @@ def test_quiet_says_what_went_wrong(command, half_held):
 
 
 def proposed(line: str) -> list[str]:
-    """What the shell proposes after a line that ends in what is being typed."""
+    """Return the completions that the shell proposes at the end of a line."""
     words = line.split(" ")
     count = str(len(words) - 1)
     variables = {"COMP_WORDS": line, "COMP_CWORD": count, "_LOADSHARE_COMPLETE": "complete_bash"}
@@ -295,7 +295,7 @@ def test_who_stops_a_command_is_told_what_is_kept(command, monkeypatch, number, 
 
     monkeypatch.setattr("loadshare.study.sweep.sweep", stopped)
     handlers = {one: signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)}
-    # A shell lets what it runs in the background ignore it.
+    # A shell makes background processes ignore SIGINT.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         done = command("sweep", RING, "--over", "rings.*.float=0 um:12 um:61")

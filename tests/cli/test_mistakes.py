@@ -1,4 +1,4 @@
-"""Mistakes of a new user, and what leads out of each: a message is judged by what it proposes."""
+"""Mistakes of a new user: a message is judged by the remedy that it proposes."""
 
 import pytest
 from tests.cli.conftest import CASES, on_a_screen_of
@@ -60,7 +60,7 @@ def test_a_mistake_in_a_case_is_one_message_that_leads_on(command, tmp_path, tex
 
 @pytest.fixture(scope="module")
 def box(tmp_path_factory):
-    """Files of all kinds, none of which is a case."""
+    """Write files of all kinds, none of which is a case."""
     folder = tmp_path_factory.mktemp("box")
     command = on_a_screen_of(80)
     found = [f"{folder}/result.{form}" for form in ("json", "nc", "csv", "xlsx", "svg", "html")]
@@ -174,7 +174,7 @@ KEYS = ("base_radius", "outer_radius", "teeth", "bore", "profile_shift", "gears.
         ("gears.4.flaot", "gears.4.float"),
         ("planett1", "planet1"),
         ("radius", "base_radius or outer_radius"),
-        # What is like a word by a few letters only, or another number, is not near.
+        # A word with only a few letters in common, or another number, is not similar.
         *((word, "") for word in ("torque", "planet7", "gears.5.float", "stiffness", "x", "", 3)),
     ],
 )

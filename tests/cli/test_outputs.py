@@ -1,4 +1,4 @@
-"""Where commands write: never in place of a device, a pipe, a link or what they read."""
+"""Where commands write: never over a device, a pipe, a link or a file that they read."""
 
 import errno
 import json
@@ -81,12 +81,12 @@ def test_a_name_of_a_file_commands_no_terminal(tmp_path):
 def test_a_case_whose_name_is_no_text_is_solved_and_written_with_question_marks(
     tmp_path, monkeypatch
 ):
-    # As archives have it that were packed where letters have another code.
+    # Archives that were packed on a system with another encoding have such names.
     monkeypatch.chdir(tmp_path)
     name = os.fsdecode(b"pr\xfcfstand.toml")
     Path(name).write_bytes(CASE.read_bytes())
     files = [f"found.{form}" for form in ("json", "nc", "xlsx", "toml")]
-    # Quiet: what stands for a screen here shows no question mark.
+    # Quiet, because the simulated screen does not show question marks.
     done = call("run", name, "-q", *(word for file in files for word in ("-o", file)))
     assert done.exit_code == 0
     for file in files[:2]:
@@ -101,7 +101,7 @@ def test_a_case_whose_name_is_no_text_is_solved_and_written_with_question_marks(
 
 
 def test_what_another_is_writing_is_left_alone(tmp_path, monkeypatch):
-    """Both write the same file: each has its own next to it until it is whole."""
+    """Both write the same file: each has its own temporary file until it is complete."""
     file = tmp_path / "file.txt"
     started, going = threading.Event(), threading.Event()
     at_once = Path.write_bytes
@@ -129,7 +129,7 @@ def test_what_another_is_writing_is_left_alone(tmp_path, monkeypatch):
 def test_a_folder_that_cannot_be_brought_to_the_disk_is_reported(
     tmp_path, monkeypatch, code, reported
 ):
-    """Unless its file system has no such thing."""
+    """It is not reported if the file system has no such operation."""
     real = os.fsync
 
     def failing(handle: int) -> None:
@@ -236,7 +236,7 @@ EVERY = ("base.toml", "case.toml", "link.html")
 
 @pytest.fixture
 def copied(tmp_path):
-    """A case that extends another one, and the other one."""
+    """Write a case that extends another one; return both."""
     base, case = tmp_path / "base.toml", tmp_path / "case.toml"
     base.write_text(CASE.read_text())
     case.write_text('extends = "base.toml"\n')
@@ -273,7 +273,7 @@ def test_a_law_is_not_written_over_its_pair(tmp_path):
 
 
 def test_no_cell_of_a_table_is_a_formula():
-    """Names are their user's to choose; quantities stay what they are."""
+    """Names are chosen by users; quantities stay as they are."""
     import pandas as pd
 
     names = ["=1+1", "+a", "-a", "@a", "\t=1", "a", "-0.5 um", "+.5", None]
@@ -286,7 +286,7 @@ def test_no_cell_of_a_table_is_a_formula():
 
 
 def test_a_column_of_parquet_has_one_type_whatever_is_in_it(tmp_path):
-    """Files of one study are read together; figures may happen to be whole, or to be missing."""
+    """Files of one study are read together; figures may happen to be whole, or be missing."""
     import numpy as np
     import pandas as pd
     from pyarrow import parquet
@@ -305,7 +305,7 @@ def test_a_column_of_parquet_has_one_type_whatever_is_in_it(tmp_path):
 
 
 def test_a_slash_in_a_name_is_written_to_netcdf(tmp_path):
-    """There, it would mean a group; names of elements are their user's to choose."""
+    """In netCDF it would mean a group; names of elements are chosen by users."""
     import xarray as xr
 
     keys = ('gears."a/b".x', 'gears."a|b".x')
@@ -320,7 +320,7 @@ def test_a_slash_in_a_name_is_written_to_netcdf(tmp_path):
     for name in names:
         assert found[names[name]].values.tolist() == arrays[name].values.tolist()
     assert found[names[keys[0]]].attrs["units"] == "um"
-    # What was given is left as it was.
+    # The given data set is not changed.
     assert set(arrays.variables) == {"load/max", *keys}
 
 
@@ -349,7 +349,7 @@ def test_an_empty_name_is_no_file(tmp_path, monkeypatch, name):
 
 
 def test_files_are_written_though_nobody_reads_the_screen(tmp_path):
-    """As with ``| head -1``."""
+    """This happens with ``| head -1``."""
     file = tmp_path / "result.json"
     words = [sys.executable, "-m", "loadshare", "run", str(CASE), "-o", str(file)]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:

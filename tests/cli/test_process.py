@@ -1,4 +1,4 @@
-"""The command as the user runs it: what it imports, and what reaches a pipe."""
+"""The command as the user runs it: what it imports, and its output to a pipe."""
 
 import subprocess
 import sys
@@ -13,7 +13,7 @@ HEAVY = (
 
 
 def imported(words, environment, *others):
-    """Return which heavy packages a command, and others after it, have imported by their end."""
+    """Return the heavy packages that a command, and others after it, have imported at the end."""
     script = f"""
 import sys
 from loadshare.cli.main import main
@@ -96,7 +96,7 @@ CLOSED = {
     ("run", BASE, "--json"): {1: 2},
     ("new", "drive", "-o", "-"): {1: 2},
 }
-"""Exit codes; of what is asked for on stdout, where that is closed."""
+"""Exit codes of commands whose output goes to stdout, when it is closed."""
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="streams that are closed by a shell")
@@ -104,7 +104,7 @@ CLOSED = {
 @pytest.mark.parametrize(("words", "code"), CLOSED.items(), ids=str)
 @pytest.mark.quick(3)
 def test_streams_may_be_closed(environment, tmp_path, words, code, closed):
-    """As by `2>&-`, by cron and by some services."""
+    """This happens with `2>&-`, in cron and in some services."""
     given = [str(word).replace("{}", str(tmp_path)) for word in words]
     redirections = "".join(f" {number}>&-" for number in closed)
     done = subprocess.run(
@@ -153,7 +153,7 @@ main(["run", {str(cases / "fgfbstts/base.toml")!r}])
 @pytest.mark.parametrize("code", [130, 143])
 @pytest.mark.parametrize("number", ["SIGINT", "SIGTERM"])
 def test_a_signal_at_the_very_end_of_a_stopped_command_leaves_its_code(code, number):
-    # What modules hold goes when Python has handed signals back already.
+    # Python restores signal handlers before it deletes the contents of modules.
     script = f"""
 import os, signal, sys
 from loadshare import __main__
@@ -205,9 +205,9 @@ MODULES = {
 def test_a_command_that_is_stopped_while_it_loads_ends_with_its_code(
     tmp_path, environment, loading
 ):
-    """Dataclasses are made by exec(): CPython would end the process by SIGINT after that.
+    """Dataclasses use exec(): CPython would end the process by SIGINT after that.
 
-    Classes of compiled modules that are being made turn an interruption into an error of their own.
+    Compiled modules that are creating classes turn an interruption into an error of their own.
     """
     text = INTERRUPTED.format(MODULES[loading])
     (tmp_path / "interrupted.py").write_text(text, encoding="utf-8")

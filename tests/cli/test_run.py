@@ -1,4 +1,4 @@
-"""`loadshare run`: what is printed, what is written, and the exit code."""
+"""`loadshare run`: its printed output, its files, and the exit code."""
 
 import json
 import math
@@ -212,7 +212,7 @@ def test_a_refusal_leaves_with_1_and_names_what_nothing_holds(command, unheld):
 
 
 def test_only_a_mesh_squeezed_between_its_flanks_is_said_to_carry_on_both(command, cases):
-    """One that its second gear drives carries on one flank: its torque is no difference."""
+    """A mesh that its second gear drives carries on one flank: its torque is no difference."""
     driven = "Where the torque is negative, the gear named first is driven."
     case = cases / "planetary/four_planets.toml"
     words = ("--set", "operating.torque=-1000 N*m")
@@ -245,7 +245,7 @@ def test_a_refusal_names_what_turns_together(command, cases, tmp_path):
 
 
 def test_an_output_that_stands_still_as_the_input_turns_is_named(command, tmp_path):
-    """A gear pair drives the sun at 3.6 of the carrier's speed, and the ring stands still."""
+    """A gear pair drives the sun at 3.6 times the carrier's speed, so the ring stands still."""
     neutral = tmp_path / "neutral.toml"
     neutral.write_text(NEUTRAL, encoding="utf-8")
     result = command("run", neutral)
@@ -338,7 +338,7 @@ def test_a_file_that_cannot_be_written_is_reported(command, cases, tmp_path):
 
 
 def test_a_case_that_is_written_keeps_laws_that_follow_from_teeth(command, cases, tmp_path):
-    """Changed again, its laws change as those of the case that it was made from."""
+    """If it is changed again, its laws change like those of the original case."""
     case, width = cases / "planetary/four_planets.toml", "gears.sun.face_width=30 mm"
     command("run", case, "--set", "operating.torque=2 kN*m", "-o", tmp_path / "made.toml")
     change = ("--set", width, "--set", "operating.torque=2 kN*m", "--json")

@@ -1,4 +1,4 @@
-"""What follows from teeth, as tables, against what a commercial report prints of a gearbox."""
+"""Quantities that follow from teeth, as tables, against a commercial report on a gearbox."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""A terminal shows that libraries are being loaded, and nothing of it is left."""
+"""A terminal shows that libraries are being loaded, and the message is removed afterwards."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ pty = pytest.importorskip("pty")
 
 @contextmanager
 def terminal():
-    """Put a terminal in place of stderr; yields what reads what it was sent.
+    """Replace stderr by a terminal; yield a function that reads what it received.
 
-    In the test's own body: pytest puts its streams back between the fixtures and the test.
+    It is used in the test's body, because pytest restores its streams between fixtures and test.
     """
     ours, theirs = pty.openpty()
     os.set_blocking(ours, False)

@@ -1,4 +1,4 @@
-"""Contact problems without gears against closed forms, and what their residuals judge."""
+"""Contact problems without gears against closed forms, and the residuals that judge answers."""
 
 import dataclasses
 import math
@@ -29,7 +29,7 @@ METHODS = ("newton", "picard")
 
 
 def block(load: float, law: PowerLaw = RIGID, spring: float = 1e6) -> ContactProblem:
-    """A block of one coordinate between two stops 1 mm away, on a spring."""
+    """Return a block of one coordinate between two stops 1 mm away, on a spring."""
     stops = (
         Row("right stop", "stop", np.array([1.0]), 1e-3, law),
         Row("left stop", "stop", np.array([-1.0]), 1e-3, law),
@@ -38,7 +38,7 @@ def block(load: float, law: PowerLaw = RIGID, spring: float = 1e6) -> ContactPro
 
 
 def disc(load: tuple[float, float], law: RadialLaw) -> ContactProblem:
-    """A disc without springs in a drum."""
+    """Return a disc without springs in a drum."""
     inside = Radial("drum", np.eye(2), np.zeros(2), law)
     return ContactProblem(("x", "y"), np.zeros((2, 2)), np.array(load), radials=(inside,))
 
@@ -62,7 +62,7 @@ def test_rows_have_unit_norm_whatever_their_size(size: float) -> None:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_block_on_a_hertz_contact(method: str) -> None:
-    """With F = b x + c x^(2/3) of the overlap and the spring, by bisection."""
+    """The overlap follows from F = b x + c x^(2/3) and the spring, by bisection."""
     law = PowerLaw(2e-9, 3e-8)
     found = solve_contact(block(5e3, law), method=method)
     low, high = 0.0, 5e3
@@ -83,7 +83,7 @@ def test_a_disc_leans_on_its_drum_where_the_load_points() -> None:
 
 
 def test_a_disc_on_a_slope_of_friction() -> None:
-    """Friction of 10 N from the first, then 1e5 N/m: it stays under 8 N and moves under 50 N."""
+    """A friction of 10 N, then 1e5 N/m: the disc stays under 8 N and moves under 50 N."""
     law = RadialLaw((Piece(10.0, 1e5, math.inf, "slip"),))
     rests, moves = solve_contact(disc((8.0, 0.0), law)), solve_contact(disc((30.0, 40.0), law))
     assert rests.place == pytest.approx({"x": 0.0, "y": 0.0}, abs=1e-15)
@@ -92,7 +92,7 @@ def test_a_disc_on_a_slope_of_friction() -> None:
 
 
 def test_an_arc_turns_its_face() -> None:
-    """A body pressed onto a round neighbour, held sideways by a spring: by the angle it rolls."""
+    """A body is pressed onto a round neighbour and held sideways by a spring; it rolls."""
     arc = Arc(np.array([0.1, 0.0, 0.0]), np.zeros(3), 1e-3)
     relative = np.vstack([np.eye(2), np.zeros((1, 2))])
     rolls = ArcRow("arc", arc, relative, RIGID, 0.0)
@@ -121,7 +121,7 @@ def test_what_has_no_equilibrium_is_refused() -> None:
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("load", [(30.0, 40.0), (1e5, 3.0), (-1e9, 1e-3), (1e200, 0.0)])
 def test_a_load_beyond_all_friction_is_refused(load: tuple[float, float]) -> None:
-    """Friction of 10 N, and nothing behind it."""
+    """A friction of 10 N, with nothing behind it."""
     slips = RadialLaw((Piece(10.0, 0.0, math.inf, "slip"),))
     with pytest.raises(Refused, match=r"the load moves .* without end"):
         solve_contact(disc(load, slips))
@@ -130,7 +130,7 @@ def test_a_load_beyond_all_friction_is_refused(load: tuple[float, float]) -> Non
 @pytest.mark.parametrize("angle", [0.0, 0.3, math.atan2(4.0, 3.0), math.pi / 2, 2.0, -2.9])
 @pytest.mark.parametrize("behind", [(), (Piece(10.0, 1e3, math.inf, "stop"),)])
 def test_friction_bears_exactly_what_it_can(angle: float, behind: tuple[Piece, ...]) -> None:
-    """Under 10 N a disc with a friction of 10 N is in equilibrium anywhere along the load."""
+    """Under 10 N, a disc with a friction of 10 N is in equilibrium anywhere along the load."""
     load = (10.0 * math.cos(angle), 10.0 * math.sin(angle))
     slips = Piece(10.0, 0.0, 0.05 if behind else math.inf, "slip")
     found = solve_contact(disc(load, RadialLaw((slips, *behind))))
@@ -139,7 +139,7 @@ def test_friction_bears_exactly_what_it_can(angle: float, behind: tuple[Piece, .
 
 
 def test_a_load_that_is_refused_without_running_away_is_not_said_to() -> None:
-    """Stops that contradict one another by 1 mm; friction that is not used up."""
+    """Stops that contradict one another by 1 mm, beside friction that is not used up."""
     stops = [Row(name, "stop", [s, 0.0], -5e-4, RIGID) for name, s in (("l", -1.0), ("r", 1.0))]
     slips = Radial("s", np.eye(2), np.zeros(2), RadialLaw((Piece(10.0, 0.0, math.inf, "slip"),)))
     between = ContactProblem(("x", "y"), np.zeros((2, 2)), [0.0, 9.0], stops, (), (slips,))
@@ -223,7 +223,7 @@ def test_a_force_across_the_offset_does_not_pass() -> None:
 
 @st.composite
 def problems(draw: st.DrawFn) -> ContactProblem:
-    """Springs, compliant contacts of every law, and drums, in up to five coordinates."""
+    """Draw springs, compliant contacts of every law, and drums, in up to five coordinates."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     n, m, k = draw(st.integers(2, 5)), draw(st.integers(1, 6)), draw(st.integers(0, 2))
     root = rng.normal(size=(n, n))
@@ -301,7 +301,7 @@ def test_radial_laws_that_are_no_rising_graph_are_refused(pieces, message) -> No
 
 
 def test_round_off_in_a_stiffness_is_no_lack_of_symmetry() -> None:
-    """Springs along directions B make BᵀKB; its halves differ in their last digits."""
+    """Springs along directions B give BᵀKB, whose halves differ in their last digits."""
     along = np.random.default_rng(3).normal(size=(4, 3))
     stiffness = along.T @ np.diag([1e6, 3e7, 2e5, 1e8]) @ along
     stiffness[0, 1] = np.nextafter(stiffness[1, 0], np.inf)
@@ -320,7 +320,7 @@ XY, YX = np.eye(2), np.eye(2)[::-1]
 
 @pytest.mark.parametrize("method", METHODS)
 def test_of_two_pads_that_hold_one_body_at_two_places_one_slips(method: str) -> None:
-    """Without load, and under a load that leaves one of them exactly its friction."""
+    """Without load, and under a load that is exactly the friction of one of them."""
     pads = (
         Radial("a", XY, np.array([0.0, 1.0]), SLIPS),
         Radial("b", YX, np.zeros(2), SLIPS),
@@ -335,7 +335,7 @@ def test_of_two_pads_that_hold_one_body_at_two_places_one_slips(method: str) -> 
 
 
 def test_a_stop_that_just_touches_where_friction_is_used_up_is_no_hindrance() -> None:
-    """At rest the pad holds exactly its friction; the limit beside it carries nothing."""
+    """At rest the pad carries exactly its friction; the limit beside it carries nothing."""
     law = RadialLaw((Piece(3.0, 0.0, 1.0, "slip"), Piece(3.0, 10.0, math.inf, "stop")))
     pad = Radial("pad", XY, np.array([1.0, -1.0]), law)
     rows = [
@@ -351,7 +351,7 @@ def test_a_stop_that_just_touches_where_friction_is_used_up_is_no_hindrance() ->
 
 
 def test_what_comes_to_rest_only_at_infinity_is_refused() -> None:
-    """The pad's friction is the load along y; springs hold it off its middle across."""
+    """The pad's friction equals the load along y; springs hold it off its centre across."""
     along = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     pad = Radial("pad", along, np.array([1.0, 0.0]), SLIPS)
     limit = Row("limit", "stop", np.array([1.0, -1.0, -1.0]), -1.0, RIGID)

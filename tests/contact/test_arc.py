@@ -1,6 +1,6 @@
 """The exclusion arc of a limit ring, on the side where the gear is mounted and beyond.
 
-Source: formulation, section 6: the arc condition holds on the side on which the pinion is.
+Source: formulation, section 6: the arc condition holds on the side of the pinion.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ def test_on_its_own_side_it_is_the_distance_of_the_centres():
 
 
 def test_beyond_the_neighbour_it_is_violated_and_leads_back():
-    """At the mirrored place the inequality |d| ≥ a − c holds, and the margin must not."""
+    """At the mirrored place the inequality |d| ≥ a − c holds, but the margin must be negative."""
     for way in ([-0.17, 0.0, 0.0], [-0.4, 0.1, 0.0], [-0.2, -3.0, 0.0]):
         relative = np.array(way)
         margin = ARC.margin(relative)

@@ -1,4 +1,4 @@
-"""Coordinates that only springs hold are condensed, and condensing changes nothing."""
+"""Coordinates that only springs hold are condensed, which changes no answer."""
 
 import numpy as np
 from tests.support import shipped
@@ -14,7 +14,7 @@ FLANGE = {"centre": ["0 mm", "0 mm", "-1500 mm"], "base_radius": "30 mm"}
 
 
 def with_flange():
-    """The two-path box driven through a torsion shaft from a flange that meshes with nothing."""
+    """Return the two-path box driven by a torsion shaft from a flange without meshes."""
     case = families.two_path("0.0012 rad")
     data = case.to_dict()
     data["gears"]["flange"] = FLANGE
@@ -34,7 +34,7 @@ def test_a_flange_between_shafts_is_condensed_and_recovered():
     assert ("gear flange rotation", "only springs hold it") in record.removed
     assert "gear flange rotation" not in record.coordinates
     assert certify(train, lean).passed
-    # The wind-up of the quill shaft by Hooke's law, to round-off.
+    # The wind-up of the quill shaft follows Hooke's law, to round-off.
     wind = lean.rotation["flange"] - lean.rotation[train.shafts["quill"].second]
     assert np.isclose(wind, train.input_torque[0] / 2e4, rtol=1e-12)
     for gear, angle in whole.rotation.items():
@@ -53,7 +53,7 @@ def test_condensing_is_minimising():
     touched = np.array([True, False, True, True, False, True])
     reduced = condense(stiffness, load, touched)
     x = reduced.expand(rng.normal(size=4))
-    # The gradient vanishes along what was condensed, whatever the others are.
+    # The gradient along condensed coordinates vanishes, whatever the others are.
     assert np.abs((stiffness @ x - load)[~touched]).max() < 1e-12
 
 

@@ -1,4 +1,4 @@
-"""Rigid rows that cannot hold together are named, and nothing that has no part in it."""
+"""Rigid rows that contradict each other are named, without rows that have no part in it."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ from loadshare.errors import Refused
 
 @pytest.mark.parametrize("stiffness", [0.0, 1e6])
 def test_stops_that_contradict_one_another_are_named(stiffness):
-    """x <= 50 um and x >= 200 um; x <= 1 mm and a soft stop have no part in it."""
+    """x <= 50 um and x >= 200 um contradict; x <= 1 mm and a soft stop have no part in it."""
     rows = (
         Row("upper", "stop", [1.0], 5e-5, RIGID),
         Row("lower", "stop", [-1.0], -2e-4, RIGID),
@@ -27,7 +27,7 @@ def test_stops_that_contradict_one_another_are_named(stiffness):
     )
     with pytest.raises(Refused, match=r"contradict one another: upper, lower$"):
         solve_contact(ContactProblem(("x",), [[stiffness]], [3.0], rows))
-    # Without room between them they can hold.
+    # Stops that just meet do not contradict each other.
     meets = (rows[0], Row("lower", "stop", [-1.0], -5e-5, RIGID))
     found = solve_contact(ContactProblem(("x",), [[stiffness]], [3.0], meets))
     assert found.place["x"] == pytest.approx(5e-5, rel=1e-9)
@@ -48,7 +48,7 @@ def test_three_sides_without_a_place_are_named():
 
 
 def test_a_disc_that_lies_beyond_a_stop_is_named_with_it():
-    """Discs, too, leave no place: 3 µm about (1, 0) µm lies within x ≤ 4 µm."""
+    """Discs may contradict rows too: 3 µm about (1, 0) µm is within x ≤ 4 µm."""
     drum = Radial(
         "drum", np.eye(2), np.array([1e-6, 0.0]), RadialLaw((Piece(0.0, 0.0, 3e-6, "in"),))
     )

@@ -16,7 +16,7 @@ from loadshare.contact.programme import Point, Programme
 
 
 def problem(seed: int, rigid: bool, size: int = 5, contacts: int = 7) -> Programme:
-    """A random contact problem with a definite H, so that any load has one answer."""
+    """Return a random contact problem with a definite H, so that any load has one answer."""
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(size, size))
     rows = rng.normal(size=(contacts, size))
@@ -55,8 +55,8 @@ def by_brute_force(p: Programme) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("rigid", [False, True], ids=["elastic", "rigid"])
 @pytest.mark.parametrize("seed", range(25))
 def test_the_exact_solve_finds_what_brute_force_finds(seed, rigid):
-    """From no contact at all and from the right set; the systems' condition is below 1e4, so
-    1e-11.
+    """It starts from no contact at all and from the right set. The condition number of the systems
+    is below 1e4, hence 1e-11.
     """
     p = problem(seed, rigid)
     x, forces = by_brute_force(p)
@@ -74,7 +74,7 @@ def test_the_exact_solve_finds_what_brute_force_finds(seed, rigid):
 
 @pytest.mark.parametrize("seed", range(10))
 def test_an_active_set_is_read_from_an_approximate_answer(seed):
-    """A hundred times the error of any back-end, and every contact is still distinguished."""
+    """The error is a hundred times that of any back-end; every contact is still classified."""
     p = problem(seed, rigid=False)
     x, forces = by_brute_force(p)
     rng = np.random.default_rng(seed + 1000)
@@ -89,7 +89,7 @@ def test_an_active_set_is_read_from_an_approximate_answer(seed):
 
 
 def test_what_a_set_leaves_open_goes_to_its_least_norm_or_stays():
-    """A body on a spring, and one that nothing holds, 3 away from 0 and beyond a stop at 1."""
+    """One body is on a spring; nothing holds the other, 3 away from 0 and beyond a stop at 1."""
     p = replace(
         problem(0, rigid=True, size=2, contacts=1),
         stiffness=np.diag([2.0, 0.0]),
@@ -106,7 +106,7 @@ def test_what_a_set_leaves_open_goes_to_its_least_norm_or_stays():
 
 
 def test_a_regular_system_is_solved_to_round_off():
-    """Badly scaled on purpose: entries over twelve decades."""
+    """The system is badly scaled on purpose, with entries over twelve decades."""
     rng = np.random.default_rng(3)
     core = rng.normal(size=(6, 6))
     scale = 10.0 ** rng.uniform(-6, 6, 6)
@@ -118,7 +118,7 @@ def test_a_regular_system_is_solved_to_round_off():
 
 
 def test_a_singular_system_gives_the_least_norm_and_its_free_direction():
-    """Two masses on one spring between them, no ground: they may move together."""
+    """Two masses with one spring between them and no ground may move together."""
     matrix = np.array([[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 2.0]])
     solved = solve_symmetric(matrix, np.array([1.0, -1.0, 4.0]), 3)
     assert solved.values == pytest.approx([0.5, -0.5, 2.0], abs=1e-14)
@@ -128,7 +128,7 @@ def test_a_singular_system_gives_the_least_norm_and_its_free_direction():
 
 @pytest.mark.parametrize("seed", range(10))
 def test_least_norm_against_the_pseudo_inverse(seed):
-    """A random semidefinite H of deficient rank, loaded in its range."""
+    """A random semidefinite H of deficient rank, with a load in its range."""
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(6, 4))
     matrix = root @ root.T

@@ -80,7 +80,7 @@ def test_cones_by_clarabel(exact_hertz: bool) -> None:
 
 
 def test_a_loose_gear_whose_flanks_have_hertz_laws() -> None:
-    """Its place is any that its play allows: no flank without a force may be overlapped there."""
+    """It may be anywhere within its play, except where an unloaded flank would overlap."""
     law = {"b": "5e-7 rad/(N*m)", "c": "2e-7 rad/(N*m)^(2/3)"}
     gears = {
         "g1": {"base_radius": "50 mm", "support": "free", "centre": ["0 mm", "0 mm"]},

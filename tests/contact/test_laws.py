@@ -1,6 +1,6 @@
 """Compliance laws: inverse, energies and tangents.
 
-Source: formulation, section 3: δ = bF + cF^(2/3), U* = ½bF² + ⅗cF^(5/3), strain energy its
+Source: formulation, section 3: δ = bF + cF^(2/3), U* = ½bF² + ⅗cF^(5/3); the strain energy is its
 conjugate.
 """
 
@@ -27,7 +27,7 @@ every_law = pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 
 @every_law
 def test_force_is_the_inverse_of_compression(law):
-    """Up to a few units in the last place, over twelve decades."""
+    """It holds to a few units in the last place, over twelve decades."""
     for force in FORCES:
         assert law.force(law.compression(force)) == pytest.approx(force, rel=1e-14)
 
@@ -37,7 +37,7 @@ def test_force_is_the_inverse_of_compression(law):
     b=st.floats(-15, -6), c=st.floats(-15, -5), force=st.floats(-12, 8),
 )  # fmt: skip
 def test_force_is_the_inverse_of_compression_for_any_coefficients(b, c, force):
-    """Exponents are drawn: b, c and F over many decades and in any proportion."""
+    """Exponents are drawn: b, c and F over many decades and in any ratio."""
     law = PowerLaw(10.0**b, 10.0**c)
     assert law.force(law.compression(10.0**force)) == pytest.approx(10.0**force, rel=1e-14)
 
@@ -65,8 +65,8 @@ def test_energies_are_conjugate(law):
 
 @every_law
 def test_derivatives_of_the_energies(law):
-    """dU/dδ = F and dU*/dF = δ by central differences of relative width 1e-5: error of order
-    1e-10.
+    """dU/dδ = F and dU*/dF = δ by central differences of relative width 1e-5, whose error is of
+    order 1e-10.
     """
     for force in FORCES[1::7]:
         step = 1e-5 * force
@@ -121,7 +121,7 @@ def test_a_table_passes_through_its_points_and_goes_on_straight():
 
 
 def test_a_table_of_the_power_law_converges_to_it():
-    """Straight pieces over n equal steps: the error of an interpolation falls as 1/n²."""
+    """For straight pieces over n equal steps, the interpolation error decreases as 1/n²."""
     law = LAWS["b and c"]
     errors = []
     for n in (50, 100, 200):

@@ -1,4 +1,4 @@
-"""Coordinates that the forces of a contact problem leave open, and those that they hold."""
+"""Coordinates that the forces of a contact problem leave undetermined, and those they determine."""
 
 import math
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ DRUM = RadialLaw((Piece(0.0, 0.0, 0.1, "inside"),))
 SPLINE = RadialLaw(
     (Piece(0.0, 1e3, 0.01, "stick"), Piece(10.0, 0.0, 0.05, "slip"), Piece(10.0, 1e3, 1.0, "stop"))
 )
-"""It sticks to 10 N at 10 mm, slips to 60 mm and bends again."""
+"""It sticks up to 10 N at 10 mm, slips up to 60 mm and then bends again."""
 
 
 def disc(
@@ -35,13 +35,13 @@ def disc(
     rows: Sequence[Row] = (),
     centre: Sequence[float] = (0.0, 0.0),
 ) -> ContactProblem:
-    """A disc without springs on one radial element."""
+    """Return a disc without springs on one radial element."""
     held = Radial("held", np.eye(2), np.array(centre), law)
     return ContactProblem(("x", "y"), np.zeros((2, 2)), np.array(load), tuple(rows), (), (held,))
 
 
 def block(left: PowerLaw, right: PowerLaw, play: float = 0.0) -> ContactProblem:
-    """A block without spring or load between two stops."""
+    """Return a block without spring or load between two stops."""
     stops = (Row("left", "stop", [-1.0], 0.0, left), Row("right", "stop", [1.0], play, right))
     return ContactProblem(("x",), np.zeros((1, 1)), np.zeros(1), stops)
 
@@ -84,12 +84,12 @@ def test_three_stops_around_a_disc_hold_it_and_two_do_not() -> None:
 def test_a_spline_slips_under_exactly_its_friction(
     load: tuple[float, float], expected: set[str]
 ) -> None:
-    """Anywhere from 10 to 60 mm along the load it is in equilibrium."""
+    """It is in equilibrium anywhere from 10 to 60 mm along the load."""
     assert solve_contact(disc(SPLINE, load)).undetermined == expected
 
 
 def test_a_spring_along_it_holds_what_slips() -> None:
-    """10 mm at 1 kN/m takes 10 N, the slip the other 10 N."""
+    """The spring carries 10 N with 10 mm at 1 kN/m, the friction the other 10 N."""
     slips = Radial("spline", np.eye(2), np.zeros(2), SPLINE)
     springs = np.diag([1e3, 0.0])
     found = solve_contact(ContactProblem(("x", "y"), springs, [30.0, 0.0], radials=(slips,)))
@@ -101,7 +101,7 @@ def test_a_spring_along_it_holds_what_slips() -> None:
     ("side", "expected"), [(-1.0, set()), (1.0, {"x", "y"})], ids=["outside", "inside"]
 )
 def test_a_wall_that_touches_a_round_drum(side: float, expected: set[str]) -> None:
-    """A wall at the edge of a drum of 0.1 leaves all of the drum, or the one point where it is."""
+    """A wall at the edge of a drum of 0.1 leaves all of the drum free, or only its own point."""
     wall = Row("wall", "stop", np.array([side, 0.0]), side * 0.1, RIGID)
     found = solve_contact(disc(DRUM, rows=[wall]))
     assert found.undetermined == expected
@@ -110,7 +110,7 @@ def test_a_wall_that_touches_a_round_drum(side: float, expected: set[str]) -> No
 
 
 def test_a_body_that_is_pressed_onto_an_arc_is_held_along_it() -> None:
-    """Anywhere else on the arc it would be pushed another way than the load."""
+    """Anywhere else on the arc, the contact force would not be opposite to the load."""
     arc = Arc(np.array([0.1, 0.0, 0.0]), np.zeros(3), 1e-3)
     relative = np.vstack([np.eye(2), np.zeros((1, 2))])
     rolls = ArcRow("arc", arc, relative, RIGID, 0.0)

@@ -1,5 +1,4 @@
-"""The outer loop: it converges as its theory says, at light load too, and refuses what has no
-answer.
+"""The outer loop: it converges as theory predicts, also at light load, or refuses.
 
 Source: formulation, sections 3 and 7.
 """
@@ -17,7 +16,7 @@ from loadshare.train import build_train
 
 
 def hertzian(torque: str = "1000 N*m", gap: str = "0.4 mrad") -> ls.Case:
-    """A star of four whose meshes all follow b + c laws."""
+    """Return a star of four whose meshes all have b + c laws."""
     law = {"b": "5e-7 rad/(N*m)", "c": "6e-6 rad/(N*m)^(2/3)"}
     case = families.star(4)
     changes = {f'meshes."{m}".stiffness': None for m in case.meshes}
@@ -27,7 +26,7 @@ def hertzian(torque: str = "1000 N*m", gap: str = "0.4 mrad") -> ls.Case:
 
 
 def test_newton_is_quadratic_and_picard_linear():
-    """Near the answer every Newton pass doubles the digits; Picard gains a constant factor."""
+    """Near the answer, every Newton pass doubles the digits; Picard gains a constant factor."""
     train = build_train(hertzian())
     newton = [i.law for i in answer(train)[1].iterations]
     assert len(newton) <= 8
@@ -43,7 +42,7 @@ def test_newton_is_quadratic_and_picard_linear():
 @pytest.mark.parametrize("method", ["newton", "picard"])
 @pytest.mark.parametrize("torque", [1e-6, 1e-3, 1.0, 1000.0])
 def test_light_load_converges(torque, method):
-    """Without gaps the tangent compliance grows without bound as the load vanishes; equal meshes
+    """Without gaps, the tangent compliance grows without bound as the load vanishes; equal meshes
     still share equally.
     """
     case = hertzian(f"{torque!r} N*m", gap="0 rad")
@@ -58,7 +57,7 @@ def test_light_load_converges(torque, method):
 @pytest.mark.parametrize(("shaft", "stage"), [("5e5 N*m/rad", "slip"), ("rigid", "stick")])
 @pytest.mark.parametrize("method", ["newton", "picard", "power"])
 def test_friction_that_follows_the_torque_settles(method, shaft, stage):
-    """F_m = τ T/radius at the torque of the answer, whatever the shaft that brings it."""
+    """F_m = τ T/radius holds at the torque of the answer, whatever shaft transmits it."""
     spline = {
         "bending_stiffness": "1.78e7 N/m",
         "clearance": "100 um",
@@ -76,7 +75,7 @@ def test_friction_that_follows_the_torque_settles(method, shaft, stage):
 
 
 def test_a_spline_that_would_drop_under_its_torque_is_refused():
-    """K_w S1 is above F_m at the torque carried, which no case check can know."""
+    """K_w S1 exceeds F_m at the torque carried, which no check of the case can know."""
     spline = {
         "bending_stiffness": "1.78e7 N/m", "clearance": "100 um", "stick_limit": "50 um",
         "friction": 0.1, "radius": "5 m",
@@ -94,7 +93,7 @@ def test_a_train_that_nothing_holds_is_refused_by_name():
 
 
 def test_positions_that_fail_do_not_take_the_others_with_them():
-    """Only the spline under the large torque of position 2 would drop."""
+    """Only the force of the spline at the large torque of position 2 would drop."""
     spline = {
         "bending_stiffness": "1.78e7 N/m", "clearance": "100 um", "stick_limit": "5 um",
         "friction": 0.1, "radius": "5 m",

@@ -41,7 +41,7 @@ def test_the_three_stages_of_a_spline():
 
 
 def test_a_law_may_jump_up_where_slip_begins():
-    """K_w S1 < F_m: any force between is admissible at R = S1."""
+    """K_w S1 < F_m: any force between the two is admissible at R = S1."""
     law = LAWS["jump"]
     assert interval(law, 4e-6) == pytest.approx((KW * 4e-6, FM))
     assert middle(law, 3.999e-6) == pytest.approx(KW * 3.999e-6)
@@ -85,7 +85,7 @@ def test_graphs_are_monotone(law):
 
 @every_law
 def test_the_energy_is_the_integral_of_the_force(law):
-    """Trapezoids over straight pieces are exact when the corners are among the points."""
+    """The trapezoidal rule is exact for straight pieces if the corners are among the points."""
     corners = [law.start(k) for k in range(len(law.pieces) + 1)]
     points = sorted({c for c in corners if math.isfinite(c)} | set(np.linspace(0.0, S2, 101)))
     points = [p for p in points if p <= law.reach]
@@ -119,7 +119,7 @@ def test_scaling_is_a_change_of_units(law):
 
 
 def test_an_unbounded_complementary_energy_is_reported():
-    """A level last piece carries no more than its force."""
+    """A level last piece carries no more than its own force."""
     law = RadialLaw((Piece(0.0, 1e6, 1e-6, "stick"), Piece(1.0, 0.0, math.inf, "slip")))
     assert math.isfinite(complementary(law, 1.0))
     assert complementary(law, 1.001) == math.inf

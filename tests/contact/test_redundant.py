@@ -1,7 +1,7 @@
-"""Elements that hold the same coordinates: how they share a load is open, but not what each bears.
+"""Elements that hold the same coordinates: their shares of a load are not unique, but bounded.
 
-Forces that balance one another may be added to an equilibrium; friction bounds what is left of
-them. Source: formulation, sections 4 and 5.
+Forces that balance one another may be added to an equilibrium; friction bounds them. Source:
+formulation, sections 4 and 5.
 """
 
 import math
@@ -13,7 +13,7 @@ from loadshare.contact import RIGID, ContactProblem, Piece, Radial, RadialLaw, R
 
 
 def pad(name: str, matrix, friction: float) -> Radial:
-    """Friction without a spring or a stop behind it."""
+    """Return a friction pad without a spring or a stop behind it."""
     slips = RadialLaw((Piece(friction, 0.0, math.inf, "slip"),))
     return Radial(name, np.array(matrix, dtype=float), np.zeros(2), slips)
 
@@ -23,9 +23,9 @@ def pad(name: str, matrix, friction: float) -> Radial:
 @pytest.mark.parametrize("load", [3.0, 9.0, 11.5])
 @pytest.mark.quick(8)
 def test_two_pads_share_what_neither_bears_in_halves(stiffness, angle, load):
-    """Bounds of 10 N and 2 N: half of 9 N is more than the one, all of 11.5 N more than the other.
+    """With bounds of 10 N and 2 N, half of 9 N is too much for one, all of 11.5 N for the other.
 
-    Balance to 1e-9 of the load, what the certificate of a contact problem allows.
+    Balance holds to 1e-9 of the load, which the certificate of a contact problem allows.
     """
     pads = (pad("strong", np.eye(2), 10.0), pad("weak", np.eye(2), 2.0))
     loads = load * np.array([math.cos(angle), math.sin(angle)])
@@ -50,7 +50,7 @@ def test_pads_that_share_one_coordinate_only():
 
 
 def test_a_pad_beside_a_rigid_stop_and_a_pin():
-    """A pad of 2 N, two stops that face one another without room, 9 N: the stops bear the rest."""
+    """A pad of 2 N, two opposed stops without play, and 9 N: the stops carry the rest."""
     stops = tuple(Row(n, "stop", [s, 0.0], 0.0, RIGID) for n, s in (("l", -1.0), ("r", 1.0)))
     problem = ContactProblem(
         ("x", "y"), np.zeros((2, 2)), [9.0, 1.5], stops, (), (pad("pad", np.eye(2), 2.0),)
@@ -63,9 +63,9 @@ def test_a_pad_beside_a_rigid_stop_and_a_pin():
 
 
 def redundant(seed: int) -> ContactProblem:
-    """Pads, stops with friction in front, drums and rigid rows that depend on one another.
+    """Return pads, stops with friction in front, drums and rigid rows that are linearly dependent.
 
-    The load is made of forces that all of them admit at rest, so that there is an equilibrium.
+    The load is made of forces that all of them admit at rest, so that an equilibrium exists.
     """
     rng = np.random.default_rng(seed)
     n = int(rng.integers(1, 4))
@@ -98,9 +98,9 @@ def redundant(seed: int) -> ContactProblem:
 @pytest.mark.parametrize("seed", range(60))
 @pytest.mark.quick(10)
 def test_random_elements_share_as_each_admits(seed):
-    """At rest every pad bears what it can, whatever others bear; judged by this test's own sums.
+    """At rest every pad carries an admissible force; the test sums the forces independently.
 
-    Where springs hold, the place is the only one and at rest, to 1e-12 m; forces to 1e-8 of the
+    If springs hold a place, it is unique and at rest, to 1e-12 m; forces agree to 1e-8 of the
     largest.
     """
     problem = redundant(seed)

@@ -1,4 +1,4 @@
-"""By what claimed answers of contact problems are measured: nothing that a claim can inflate."""
+"""Scales by which answers of contact problems are judged: a claim cannot inflate them."""
 
 import math
 
@@ -23,7 +23,7 @@ STIFF_BEHIND = TableLaw((0.0, 1e-9, 1e14), (0.0, 1e-12, 1.1e-12))
 
 
 def wedged(law: PowerLaw | TableLaw, load: float = -3000.0) -> ContactProblem:
-    """A block on a spring between two stops without play."""
+    """Return a block on a spring between two stops without play."""
     stops = (
         Row("right", "stop", np.array([1.0]), 0.0, law),
         Row("left", "stop", np.array([-1.0]), 0.0, law),
@@ -34,7 +34,7 @@ def wedged(law: PowerLaw | TableLaw, load: float = -3000.0) -> ContactProblem:
 @pytest.mark.parametrize("law", [RIGID, ALMOST_RIGID, STIFF_BEHIND])
 @pytest.mark.parametrize("squeeze", [1e6, 1e10, 1e13])
 def test_stops_that_squeeze_do_not_hide_a_load(law: PowerLaw | TableLaw, squeeze: float) -> None:
-    """The 3000 N are missing, however hard the two stops are claimed to press one another."""
+    """3000 N are missing, however hard the two stops are claimed to press one another."""
     judged = residuals(wedged(law), np.zeros(1), {"left": squeeze, "right": squeeze}, {})
     assert judged.balance == pytest.approx(1.0)
 
@@ -54,7 +54,7 @@ def test_friction_that_is_never_used_does_not_hide_a_load() -> None:
 @pytest.mark.parametrize("gap", [1e-13, 1e-10, 1e-3, 1e6])
 @pytest.mark.parametrize("spring", [1e-3, 1.0, 1e9])
 def test_without_load_gaps_and_springs_are_the_scale(gap: float, spring: float) -> None:
-    """A stop pushes a block away from where its spring rests: F = k g."""
+    """A stop pushes a block away from the rest position of its spring: F = k g."""
     stop = Row("stop", "stop", np.array([-1.0]), -gap, RIGID)
     pushed = ContactProblem(("x",), np.array([[spring]]), np.zeros(1), (stop,))
     found = solve_contact(pushed)
@@ -87,7 +87,7 @@ def test_contacts_that_squeeze_a_body_without_springs_or_load(overlap: float) ->
 @pytest.mark.parametrize("load", [0.0, 1e-3])
 @pytest.mark.parametrize("offset", [1e-6, 1.0])
 def test_springs_that_strain_one_another_under_next_to_no_load(load: float, offset: float) -> None:
-    """Two springs k, m apart: each carries k m/2, to its last digits, and half of the load."""
+    """Two springs k, offset by m: each carries k m/2, to its last digits, and half of the load."""
     other = Radial(
         "other",
         np.eye(2),

@@ -3,8 +3,8 @@
 ``python tests/docs/blocks.py docs/tutorial.md …`` runs the blocks of the pages and writes what they
 print into them.
 
-How output is compared: word by word, white space aside. Numbers are equal to a relative 1e-6.
-Figures below 1e-9 are round-off: any two of them are equal, and what follows one in its line (the
+Output is compared word by word, ignoring white space. Numbers must agree to a relative 1e-6.
+Figures below 1e-9 are round-off: any two of them are equal, and the text after one in its line (the
 place where it was found) is not compared. A line of the page that is a single … stands for any
 number of lines, a word … for the rest of its line.
 """
@@ -34,7 +34,7 @@ _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-]?\d+)?")
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: its language, text, and where the text is in the page."""
+    """A fenced block: its language, its text, and the position of the text in the page."""
 
     language: str
     text: str
@@ -48,7 +48,7 @@ def blocks_of(page: str) -> list[Block]:
 
 @contextlib.contextmanager
 def workplace() -> Iterator[Path]:
-    """Stand in a temporary folder with a copy of the cases, where `loadshare` is a command."""
+    """Work in a temporary folder with a copy of the cases, in which `loadshare` is a command."""
     here = Path.cwd()
     path, width = os.environ["PATH"], os.environ.get("COLUMNS")
     with tempfile.TemporaryDirectory() as name:
@@ -92,7 +92,7 @@ def run_console(text: str) -> str:
                 check=False,
             )
             rows = [row.rstrip() for row in done.stdout.rstrip().splitlines()]
-            # Printed once in an installation, by whichever command comes first.
+            # This is printed once in an installation, by whichever command comes first.
             parts += [line, *(row for row in rows if not row.startswith("Compiling: "))]
     return "\n".join(parts) + "\n"
 
@@ -136,7 +136,7 @@ def same_line(shown: str, real: str) -> bool:
             return False
         other = found[number]
         if _round_off(word) and _round_off(other):
-            return True  # where round-off is largest is up to the machine, too
+            return True  # where round-off is largest also depends on the computer
         if not _same_word(word, other):
             return False
     return len(wanted) == len(found)
@@ -169,7 +169,7 @@ def _same_word(shown: str, real: str) -> bool:
 def outcomes(page: str, place: str) -> Iterator[tuple[Block, str]]:
     """Run all blocks of a page in order; yield each block that shows output, and what was printed.
 
-    Python blocks share one namespace. A ``text`` block directly after one holds its output.
+    Python blocks share one namespace. A ``text`` block directly after one contains its output.
     """
     names: dict[str, Any] = {"__name__": "page"}
     printed: str | None = None

@@ -1,4 +1,4 @@
-"""Pages are tried as their readers do."""
+"""Pages are tested as their readers use them."""
 
 import pytest
 
@@ -7,5 +7,5 @@ from loadshare.outside import OUTSIDE
 
 @pytest.fixture(autouse=True)
 def nothing_outside(monkeypatch):
-    """No case reads a file outside of its folder, unless it is told to."""
+    """Keep cases from reading files outside their folders, unless told to."""
     monkeypatch.delenv(OUTSIDE)

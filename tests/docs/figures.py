@@ -1,8 +1,9 @@
-"""Where every number in the prose of the documentation comes from.
+"""The source of every number in the prose of the documentation.
 
-`RULES` computes numbers again: a text of a page in which ``{}`` stands for each number, and what
-gives them, in that order. `GIVEN` holds the numbers that are no results, as patterns with the kind
-they are of. Whoever writes a number into a page adds it to one of the two; results to `RULES`.
+`RULES` computes numbers again: each rule has a text of a page in which ``{}`` stands for each
+number, and a function that returns these numbers in order. `GIVEN` contains patterns of numbers
+that are not results, by kind. Whoever writes a number into a page adds it to one of the two;
+results to `RULES`.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ def ring(gear: str) -> float:
 
 
 def shift(result: ls.Result, gear: str, index: int = 0) -> tuple[float, float]:
-    """Displacement [µm]."""
+    """Return a displacement [µm]."""
     x, y = result.positions[index].displacement[gear]
     return 1e6 * x, 1e6 * y
 
@@ -76,7 +77,7 @@ def floats(size: object, **more: object) -> ls.Result:
 
 @cache
 def freed() -> dict[str, float]:
-    """Float at which each pinion leaves its stop [µm]."""
+    """Return the float at which each pinion leaves its stop [µm]."""
     events = ls.critical(
         CASES / "fgfbstts/limit_ring.toml", "rings.*.float", "0 um", "12 um", positions=[1]
     ).events
@@ -137,13 +138,13 @@ RULES = [
 
 
 def star(planets: int, gap: str = "0.4 mrad") -> list[float]:
-    """Share of each planet, Ω."""
+    """Return the share Ω of each planet."""
     at = solved(f"star/floating_sun_{planets}", ('meshes."sun-planet1".gap', gap)).positions[0]
     return [at.share[f"sun-planet{k + 1}"] or 0.0 for k in range(planets)]
 
 
 def excess() -> float:
-    """X of the floating sun with a gap of 0.4 mrad."""
+    """Return X of the floating sun with a gap of 0.4 mrad."""
     return star(4)[1] - 1.0
 
 
@@ -171,7 +172,7 @@ def lost(gap: float) -> Values:
 
 @cache
 def moved(gear: str, way: str = "x") -> ls.Result:
-    """Gear 6's installation error of 50 um along x given to another gear, or along z."""
+    """Return a solution with gear 6's error of 50 um along x given to another gear, or along z."""
     case = ls.load_case(CASES / "fgfbstts/installation_error.toml")
     error = ["50 um", "0 um"] if way == "x" else ["0 um", "0 um", "50 um"]
     return ls.solve(case.replace({"errors": {gear: {"installation": error}}, "assumed": None}))
@@ -202,7 +203,9 @@ def cleared(clearance: float) -> ls.Result:
 
 
 def route(**how: object) -> Values:
-    """How far the torques of every element's case are from the default's, and the residual."""
+    """Return differences of torques from the default's, and the residual, for a case with every
+    element.
+    """
 
     def row() -> list[Below]:
         case = CASES / "fgfbstts/all_elements.toml"
@@ -222,7 +225,9 @@ def all_elements() -> ls.Result:
 
 
 def point(gear: str, printed: tuple[float, float], ring_of_case: bool) -> Values:
-    """Place of a pinion [µm], unlimited or in the case's ring, and how far from the paper's."""
+    """Return the place of a pinion [µm], unlimited or in the case's ring, and its distance from the
+    paper's.
+    """
 
     def row() -> list[float]:
         if ring_of_case:
@@ -248,7 +253,7 @@ def revolution() -> ls.Result:
 
 
 def eccentric(gear: str) -> float:
-    """Largest pair Ω over a revolution of one eccentric gear."""
+    """Return the largest pair Ω over a revolution of one eccentric gear."""
     case = ls.load_case(CASES / "fgfbstts/eccentricity.toml")
     changes = {"errors": {gear: {"eccentricity": {"amount": "50 um"}}}, "march.gear": gear}
     return ls.solve(case.replace({**changes, "assumed": None})).pair_omega["II"]
@@ -260,7 +265,7 @@ def over_revolution(mesh: str) -> list[float]:
 
 
 def loads() -> tuple[list[float], list[float]]:
-    """(Ω − 1) T of 6-10 [N·m] and pair Ω of stage II at the eight loads."""
+    """Return (Ω − 1) T of 6-10 [N·m] and the pair Ω of stage II at the eight loads."""
     positions = solved("fgfbstts/load").positions
     shares = [p.share["6-10"] or 0.0 for p in positions]
     # The mean torque of the stage is T/Ω of any branch.
@@ -281,7 +286,7 @@ SPLIT = "Clearance of a bearing shifts a split"
 
 
 def split_in_bearings(clearance: int) -> list[float]:
-    """Share of path A of the split-path box, its pinions in bearings, one for each law."""
+    """Return the share of path A of the split-path box with pinions in bearings, for each law."""
     laws = {
         "stiffness": "3e8 N/m",
         "ball_stiffness": "5e10 N/m^1.5",
@@ -301,7 +306,7 @@ def split_in_bearings(clearance: int) -> list[float]:
 
 
 def validation_rules() -> Iterator[Rule]:
-    """Rules of the validation page; what the paper prints is in the texts."""
+    """Yield the rules of the validation page; the texts contain the paper's values."""
 
     def rule(text: str, values: Values, section: str = "") -> Rule:
         return Rule(VALIDATION, text, values, section)
@@ -379,7 +384,7 @@ def validation_rules() -> Iterator[Rule]:
 
 
 def spline_rules(rule: Callable[..., Rule]) -> Iterator[Rule]:
-    """Rules of Figs. 11 and 12."""
+    """Yield the rules of Figs. 11 and 12."""
 
     def full() -> ls.Result:
         return solved("fgfbstts/full_float")
@@ -398,7 +403,7 @@ def spline_rules(rule: Callable[..., Rule]) -> Iterator[Rule]:
 
 
 def ring_rules(rule: Callable[..., Rule]) -> Iterator[Rule]:
-    """Rules of Figs. 13 and 14."""
+    """Yield the rules of Figs. 13 and 14."""
     texts = (
         ("Ω of 7-10 at float 0 | 1.047 | {} | {} |", "7-10", 1.047, "0 um"),
         ("pair at float 0 | 1.019 (8-10) | {} (9-10) | {} |", "9-10", 1.019, "0 um"),
@@ -534,13 +539,13 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"−6 to 62 µrad at 20 positions, at most 5 % of the loaded error",
     ),
 }
-"""Numbers that are no results of the library, or measured ones: patterns by kind."""
+"""Numbers that are not results of the library, or were measured: patterns by kind."""
 
 MEASURED_FROM = {
     "docs/ltca.md": "## How far it can be trusted",
     "docs/reliability.md": "## Files",
 }
-"""Pages whose rest, from a heading on, promises, and gives what dated runs printed."""
+"""Pages that, from a heading on, state targets and the results of dated runs."""
 
 PAGES = (
     *("README.md", INDEX, TUTORIAL, "docs/studies.md", "docs/results.md", "docs/pictures.md"),
@@ -549,4 +554,4 @@ PAGES = (
     *("docs/case-reference.md", "docs/command-line.md", "docs/decisions.md"),
     "docs/reliability.md",
 )
-"""Every page but those that a command writes as a whole (reproduction, evidence)."""
+"""All pages except those that a command writes as a whole (reproduction, evidence)."""

@@ -1,7 +1,7 @@
 """The notebooks of the gallery: pages whose blocks are run, and whose pictures are drawn, as shown.
 
-``python tests/docs/gallery.py docs/gallery/float.md …`` writes what the blocks of the pages print
-into them, and draws their pictures.
+``python tests/docs/gallery.py docs/gallery/float.md …`` writes the output of the blocks into the
+pages, and draws their pictures.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ blocks = _load("blocks")
 def cells(page: str, place: str) -> Iterator[tuple[Any, str, str, Any]]:
     """Run the Python blocks of a page; yield each, its output, its picture's file, and the picture.
 
-    A block whose last line is a picture shows it, as a notebook does; the image is below.
+    A block whose last line is a picture shows it, as in a notebook; the image follows the block.
     """
     names: dict[str, Any] = {"__name__": "page"}
     for block in blocks.blocks_of(page):
@@ -48,7 +48,7 @@ def cells(page: str, place: str) -> Iterator[tuple[Any, str, str, Any]]:
 
 
 def shown_output(page: str, block: Any) -> Any:
-    """The ``text`` block directly after a Python block; None if there is none."""
+    """Return the ``text`` block directly after a Python block; None if there is none."""
     following = [b for b in blocks.blocks_of(page) if b.start > block.end]
     between = page[block.end : following[0].start] if following else ""
     found = following and following[0].language == "text"
@@ -56,12 +56,12 @@ def shown_output(page: str, block: Any) -> Any:
 
 
 def words(svg: str) -> list[str]:
-    """What is written in a picture."""
+    """Return the words in a picture."""
     return re.findall(r"<text[^>]*>([^<]*)</text>", svg)
 
 
 def rewrite(file: Path) -> None:
-    """Write what the blocks print into a page, and draw its pictures."""
+    """Write the output of the blocks into a page, and draw its pictures."""
     page = file.read_text(encoding="utf-8")
     parts, at = [], 0
     with blocks.workplace():

@@ -1,8 +1,8 @@
-"""Numbers in the prose of the documentation: found, and classified by where they come from.
+"""Numbers in the prose of the documentation, found and classified by their source.
 
 A number may be *computed* (a rule of `figures.py` computes it), *printed elsewhere* (a case, a
-paper, a standard: a pattern of `figures.py` with the reason), or it stands in what is not prose:
-blocks and inline code, formulas, links, headings. Any other number is an error of the page.
+paper, a standard: a pattern of `figures.py` with the reason), or part of something other than
+prose: blocks and inline code, formulas, links, headings. Any other number is an error of the page.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SILENT = (
     re.compile(r"^:::.*$", re.MULTILINE),
     re.compile(r"^ *\d+\. ", re.MULTILINE),
 )
-"""What is not prose."""
+"""Parts of a page that are not prose."""
 
 
 @dataclass(frozen=True)
@@ -57,13 +57,13 @@ def numbers(page: str) -> Iterator[Found]:
 
 
 def template(text: str) -> re.Pattern[str]:
-    """Return the pattern of a text in which ``{}`` stands for a number; white space is one."""
+    """Return the pattern of a text in which ``{}`` stands for a number; any white space matches."""
     parts = [r"\s+".join(map(re.escape, part.split(" "))) for part in text.split("{}")]
     return re.compile(r"([+−-]?\d+(?:\.\d+)?(?:e[-−+]?\d+)?)".join(parts))
 
 
 def same(shown: str, computed: float) -> bool:
-    """Tell whether a number is what is printed when rounded as the page rounds it."""
+    """Return whether a computed number, rounded as on the page, is the one shown."""
     plain = shown.replace("−", "-")
     if "e" in plain:
         mantissa = plain.partition("e")[0]
@@ -84,7 +84,7 @@ def uncovered(page: str, spans: Iterable[tuple[int, int]]) -> list[str]:
 
 
 def matches(rule: Any, page: str) -> list[re.Match[str]]:
-    """Return where the text of a rule is: in its section, or anywhere in the page."""
+    """Return all matches of a rule's text: in its section, or anywhere in the page."""
     first, last = 0, len(page)
     if rule.section:
         first = page.index(f"# {rule.section}\n")

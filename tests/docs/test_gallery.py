@@ -1,4 +1,4 @@
-"""Notebooks of the gallery: what they print and draw is what their pages show."""
+"""Notebooks of the gallery: their output and pictures are those that their pages show."""
 
 from __future__ import annotations
 

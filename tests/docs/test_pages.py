@@ -1,4 +1,4 @@
-"""Every block of the pages is run; what a page shows is what a reader gets."""
+"""Every block of the pages is run; a reader gets the output that the page shows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every number in the prose of the pages is computed again, or known to be no result."""
+"""Every number in the prose of the pages is computed again, or known not to be a result."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def read(page: str) -> str:
 
 
 def misfits(rule, text: str) -> list[str]:
-    """What is wrong with the numbers of a rule, wherever its text is in a page."""
+    """Return what is wrong with the numbers of a rule, wherever its text occurs in a page."""
     found = prose.matches(rule, text)
     if not found:
-        return []  # what becomes of such a rule is another test's
+        return []  # another test checks that each rule matches
     wanted = rule.values()
     wrong = []
     for match in found:
@@ -65,7 +65,7 @@ def test_a_number_in_prose_is_what_is_computed(rule):
 
 @pytest.mark.parametrize("page", figures.PAGES)
 def test_every_number_in_prose_is_accounted_for(page):
-    """A new number needs a rule in `figures.RULES`; one that is no result, a pattern in `GIVEN`."""
+    """A new number needs a rule in `figures.RULES`, or a pattern in `GIVEN` if it is no result."""
     text = read(page)
     spans = [
         match.span()
@@ -84,7 +84,7 @@ def test_every_rule_is_about_something(page):
     text = read(page)
     own = [r for r in figures.RULES if r.page == page]
     idle = [r.text for r in own if not prose.matches(r, text)]
-    # A clearance is given once, whether the pinion sticks or slips there.
+    # A clearance appears once, whether the pinion sticks or slips there.
     assert [t for t in idle if not t.endswith(("| st", "| slip"))] == []
 
 

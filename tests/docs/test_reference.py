@@ -1,4 +1,4 @@
-"""The reference pages say what the code says."""
+"""The reference pages agree with the code."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_every_row_has_a_form_and_a_description():
 
 
 def _numbers(schema, field):
-    """Whether a value, or what a list or table of it holds, is a number or has a unit."""
+    """Return whether a value, or an item of a list or table, is a number or has a unit."""
     options = field.get("oneOf") or field.get("anyOf")
     if options:
         return any(_numbers(schema, option) for option in options)
@@ -67,7 +67,7 @@ def _numbers(schema, field):
 
 
 def test_every_number_states_its_unit():
-    """In brackets, such as [length], or [-] without one; every kind of value has its unit."""
+    """The unit is in brackets, such as [length], or [-] without one, for every kind of value."""
     schema = case_schema()
     missing = [
         f"{name}.{key}"

@@ -20,7 +20,7 @@ BARE = "evidence/branches.html"
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """All pages, built strictly: those of `make docs` if it says where, else made now."""
+    """Return all pages, built strictly: by `make docs` if it gives their folder, else now."""
     if built := os.environ.get("LOADSHARE_SITE"):
         return ROOT / built
     folder = tmp_path_factory.mktemp("site")
@@ -48,7 +48,7 @@ def browser(chrome):
 def test_the_search_works_from_a_folder(browser, site, page):
     on_screen(browser, 1280)
     browser.get("about:blank")
-    browser.get_log("browser")  # what pages opened before have left there
+    browser.get_log("browser")  # entries that earlier pages left
     visit(browser, site / page)
     field = browser.find_element(By.CSS_SELECTOR, "input.md-search__input")
     field.click()
@@ -62,13 +62,13 @@ def test_the_search_works_from_a_folder(browser, site, page):
 
 
 FEW = ("index.html", "case-reference.html", "evidence/speed.html", "gallery/float.html")
-"""Pages of a kind each: words, wide tables, figures, code."""
+"""Pages of different kinds: words, wide tables, figures, code."""
 
 
 @pytest.mark.parametrize("every", mostly_slow((False, True), (False,)), ids=["few", "every"])
 def test_pages_can_be_read(browser, site, every):
-    """Nothing is wider than the screen, words stand out, controls and pictures have names."""
-    # What was chosen before goes before what the system wants.
+    """Nothing is wider than the screen, text has contrast, controls and pictures have names."""
+    # An earlier choice of the reader takes precedence over the system's setting.
     visit(browser, site / "index.html")
     browser.execute_script("localStorage.clear()")
     bad = []

@@ -1,4 +1,4 @@
-"""What tests of files from elsewhere share."""
+"""Shared fixtures of tests of files from other programs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 
 @pytest.fixture
 def written(tmp_path):
-    """Return how a file is written."""
+    """Return a function that writes a file."""
 
     def write(content: bytes, name: str = "unit.rexs") -> Path:
         path = tmp_path / name

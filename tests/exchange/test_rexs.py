@@ -1,4 +1,4 @@
-"""Units from REXS files: what is taken, what is assumed, and files that are none."""
+"""Units from REXS files: what is imported, what is assumed, and files that are not REXS."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from loadshare.study.parameter import read_value
 
 
 def test_a_planetary_set_is_the_set_that_it_says(written) -> None:
-    """Torques by Willis; planets ride on the carrier, the ring is held, a pin bearing is off."""
+    """Torques by Willis; planets are on the carrier, the ring is held, a pin bearing is offset."""
     found = import_rexs(written(xml(*planetary())))
     case = found.case()
     assert case.gears["carrier_3"].type == "carrier"
@@ -30,7 +30,7 @@ def test_a_planetary_set_is_the_set_that_it_says(written) -> None:
     assert case.operating.input == "gear_53"
     assert case.operating.output == "carrier_3"
     assert case.gears["gear_53"].support == "free"
-    # The outer ring is off by 15 um in the planet: this settles by as much the other way.
+    # The outer ring is off by 15 um in the planet, so the planet settles by as much the other way.
     assert [v.si for v in case.errors["gear_248"].installation] == pytest.approx([0.0, -15e-6, 0.0])
     assert any("lubricant" in line for line in found.left_out)
     assert any("iso" in line for line in found.assumed)
@@ -58,7 +58,7 @@ def test_shafts_bearings_and_stiffness_are_taken_by_their_formulas(written) -> N
     case = import_rexs(written(xml(*two_stages()))).case()
     polar = math.pi / 32.0 * (0.04**4 - 0.02**4)
     assert case.shafts["gear_21-gear_22"].stiffness.si == pytest.approx(79.3e9 * polar / 0.1)
-    # Gears at 25 mm and 125 mm, the middles of their widths, between bearings 200 mm apart.
+    # Gears at 25 mm and 125 mm (centres of their widths), between bearings 200 mm apart.
     for gear, at in (("gear_21", 0.025), ("gear_22", 0.125)):
         yields = ((0.2 - at) / 0.2) ** 2 / 1e8 + (at / 0.2) ** 2 / 3e8
         assert case.gears[gear].support.si == pytest.approx(1.0 / yields)
@@ -129,12 +129,12 @@ def test_what_is_written_back_is_read_again_as_the_same_case(written, form) -> N
     law = result.positions[0].train.meshes["gear_53-gear_247"].laws[0]
     stiffness = stage.attributes["meshing_stiffness_characteristic"]
     assert stiffness == pytest.approx((1.0 / law.b, 1.0 / law.b))
-    # A second time there is one of each attribute.
+    # A second export replaces each attribute instead of adding one.
     assert export_rexs(result, copy) == copy.read_text()
 
 
 def test_forces_and_displacements_are_written_back(written) -> None:
-    """Two gears on one shaft between two bearings: levers, and no force is lost."""
+    """Two gears on one shaft between two bearings: levers apply, and no force is lost."""
     unit = written(xml(*two_stages()))
     result = ls.solve(import_rexs(unit).case())
     here = result.positions[0]
@@ -143,7 +143,7 @@ def test_forces_and_displacements_are_written_back(written) -> None:
     # At 25 mm and 125 mm between bearings at 0 and 200 mm.
     first = 0.875 * pushed["gear_21"] + 0.375 * pushed["gear_22"]
     both = pushed["gear_21"] + pushed["gear_22"]
-    # v is y and w is z, as of the gears' frames here: both axes are x.
+    # v is y and w is z in the gears' frames here: both axes are x.
     for id_, force in (("61", first), ("62", both - first), ("63", pushed["gear_23"])):
         for axis, value in zip("vw", force, strict=True):
             exported = found[id_].number(f"force_acting_on_outer_component_{axis}")
@@ -155,7 +155,7 @@ def test_forces_and_displacements_are_written_back(written) -> None:
     mesh = "gear_22-gear_23"
     assert stage["custom_loadshare_normal_force"] == pytest.approx((here.loads.meshes[mesh],))
     error = here.elastic.mesh_transmission_error[mesh]
-    # Micrometres are read as metres again.
+    # Micrometres are read back as metres.
     assert stage["custom_loadshare_transmission_error"] == pytest.approx((error,))
     moved = found["23"].attributes["custom_loadshare_displacement"]
     assert moved == pytest.approx(here.claim.displacement["gear_23"])
@@ -285,7 +285,7 @@ def test_what_a_unit_lacks_is_reported_all_at_once(written) -> None:
 
 
 def mutated(content: bytes, dice: random.Random) -> bytes:
-    """Change a few bytes, drop or repeat a piece, or put other values in the place of numbers."""
+    """Change a few bytes, drop or repeat a piece, or replace numbers by other values."""
     data = bytearray(content)
     for _ in range(dice.randint(1, 4)):
         kind, here = dice.randrange(4), dice.randrange(len(data))
@@ -309,7 +309,7 @@ def mutated(content: bytes, dice: random.Random) -> bytes:
 
 @pytest.mark.parametrize("start", range(4))
 def test_changed_files_are_reported_or_solved(written, start) -> None:
-    """No change of a file ends in anything but a case, a list of problems, or a refusal."""
+    """Any change of a file ends in a case, a list of problems, or a refusal."""
     forms = [
         xml(*planetary()),
         rexsj(*planetary(), "2.0"),

@@ -1,4 +1,4 @@
-"""What REXS bearings and couplings hold across the axis: what, how stiffly, and where."""
+"""Radial support by REXS bearings and couplings: which parts, their stiffness, and their places."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MM, NONE, STIFFNESS = "mm", "none", "N / m"
 
 
 def with_joints(parts, *joints):
-    """A unit with more bearings or couplings: type, attributes, inner and outer part."""
+    """Return a unit with more bearings or couplings: type, attributes, inner and outer part."""
     components, relations = parts
     for number, (kind, attributes, inner, outer) in enumerate(joints, 500):
         components = [*components, (number, kind, "", attributes)]
@@ -30,7 +30,7 @@ def with_joints(parts, *joints):
 
 
 def test_a_bearing_between_shafts_that_turn_holds_neither(written) -> None:
-    """The sun on a bearing in the carrier, the carrier on one in the casing: only that is one."""
+    """The sun has a bearing in the carrier, the carrier one in the casing: only that supports."""
     parts = with_joints(
         planetary(),
         ("concept_bearing", bearing(1e8), 34, 4),
@@ -48,7 +48,7 @@ def test_a_bearing_between_shafts_that_turn_holds_neither(written) -> None:
 
 
 def test_a_gear_on_a_fixed_axle_is_held_by_the_seats_of_the_axle(written) -> None:
-    """Wheel 23 turns on bearings on an axle in the casing: both yield, one after the other."""
+    """Wheel 23 turns on bearings on an axle in the casing: both yield in series."""
     parts = with_joints(
         two_stages(),
         ("concept_bearing", bearing(4e8, 10.0), 99, 12),
@@ -60,12 +60,12 @@ def test_a_gear_on_a_fixed_axle_is_held_by_the_seats_of_the_axle(written) -> Non
     components.append((99, "shaft", "axle", at(0.0, 140.0, 0.0)))
     relations = [r for r in relations if r[1].get("assembly") != 63]
     case = import_rexs(written(xml(components, relations))).case()
-    # All in the middle: two of each share the force.
+    # All are in the middle, so two of each share the force.
     assert case.gears["gear_23"].support.si == pytest.approx(1.0 / (1.0 / 8e8 + 1.0 / 2e8))
 
 
 def seated(stiffness: float, *places: float):
-    """A planetary set whose pins sit in side plates at places along them [mm]."""
+    """Return a planetary set whose pins are in side plates at given places along them [mm]."""
     components, relations = planetary()
     components = [*components, (67, "side_plate", "", at(125.0, 0.0, 0.0))]
     joints = [
@@ -136,7 +136,7 @@ def test_only_a_stiffness_that_is_not_given_is_assumed(written) -> None:
 
 
 def test_a_coupling_that_is_stiff_across_the_axis_holds_a_ring(written) -> None:
-    """Two brakes of a ring in the casing, as calculation programs write it."""
+    """Two brakes of a ring in the casing, as calculation programs write them."""
     parts = changed(planetary(), _65=bearing(3e8, 0.0))
     case = import_rexs(written(xml(*parts))).case()
     assert case.gears["gear_58"].support.si == pytest.approx(3e8)
@@ -159,7 +159,7 @@ def test_clearances_have_the_names_of_all_versions(written, given, clearance) ->
 
 
 def test_an_offset_bearing_tilts_its_shaft(written) -> None:
-    """Bearings at 0 and 200 mm, the first off by 8 um: 7 um at 25 mm and 3 um at 125 mm."""
+    """Bearings at 0 and 200 mm, the first offset by 8 um: 7 um at 25 mm and 3 um at 125 mm."""
     parts = changed(two_stages(), _61={"misalignment_in_v_direction": (8.0, "mum")})
     case = import_rexs(written(xml(*parts))).case()
     for gear, moved in (("gear_21", 7e-6), ("gear_22", 3e-6)):

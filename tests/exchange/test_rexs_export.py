@@ -1,4 +1,4 @@
-"""Results in REXS files with load cases, with shared stages and with pins."""
+"""Export of results into REXS files with load cases, with shared stages and with pins."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FACTOR, PUSHED = "mesh_load_factor_iso_6336_2019", "force_acting_on_inner_compon
 
 
 def with_cases(form: str) -> bytes:
-    """Two stages with two load cases, both with results of another program."""
+    """Return two stages with two load cases, both with results of another program."""
     components, relations = two_stages()
     old = {PUSHED: (111.0, "N")}
     cases = [
@@ -60,7 +60,7 @@ def test_results_are_those_of_the_first_load_case(written, form) -> None:
 
 @pytest.mark.parametrize("form", ["xml", "json"])
 def test_a_copy_of_an_archive_is_one(written, tmp_path, form) -> None:
-    """With all else that is in it, bit for bit the same each time."""
+    """It contains all other files unchanged, and is bit for bit the same each time."""
     command = on_a_screen_of(80)
     inside = f"unit.rexs{'j' if form == 'json' else ''}"
     with zipfile.ZipFile(tmp_path / "unit.rexsz", "w", zipfile.ZIP_DEFLATED) as archive:
@@ -133,7 +133,7 @@ def test_seats_of_pins_take_the_force_of_their_planets(written) -> None:
                 ]
                 for side in ("inner", "outer")
             }
-            # The pin is inside both of its seats and of the planet's bearing.
+            # The pin is inside both its seats and the planet's bearing.
             if part is None:
                 assert sides["inner"] == pytest.approx(force)
             else:
@@ -142,7 +142,7 @@ def test_seats_of_pins_take_the_force_of_their_planets(written) -> None:
 
 
 def test_a_mesh_that_jams_has_the_stiffness_of_its_flank(written) -> None:
-    """Force and compression are those of one flank, not what both push together."""
+    """Force and compression are those of one flank, not the sum of both."""
     unit = written(xml(*two_stages()))
     law = {"b": "1e-6 rad/(N*m)", "c": "2e-5 rad/(N*m)^(2/3)"}
     mesh = "gear_20-gear_21"
@@ -174,7 +174,7 @@ def test_a_copy_is_not_named_as_another_form(written, tmp_path) -> None:
 
 @pytest.mark.parametrize("names", [b'xmlns="http://x"', b'xmlns:x="http://x" x:y="1"', b'x:y="1"'])
 def test_a_copy_keeps_names_and_comments(written, names) -> None:
-    """Of a namespace, which the import does not ask for, declared or not."""
+    """Names of a namespace, declared or not, which the import ignores."""
     content = xml(*planetary()).replace(b"<model ", b"<model " + names + b" ")
     unit = written(content.replace(b"<relations>", b"<!-- as built --><relations>"))
     text = export_rexs(ls.solve(import_rexs(unit).case()), unit)
@@ -184,7 +184,7 @@ def test_a_copy_keeps_names_and_comments(written, names) -> None:
 
 
 def test_a_copy_keeps_a_name_that_is_no_unicode(written, tmp_path) -> None:
-    """Half of a letter beyond the 16 bits of JSON, as a program leaves that cuts names."""
+    """The name ends in half a surrogate pair of JSON, from a program that truncates names."""
     content = rexsj(*planetary(), "2.0").replace(b'"planet 0"', b'"planet \\ud83d"')
     unit = written(content, "unit.rexsj")
     copy = in_form_of(unit, export_rexs(ls.solve(import_rexs(unit).case()), unit))
@@ -193,7 +193,7 @@ def test_a_copy_keeps_a_name_that_is_no_unicode(written, tmp_path) -> None:
 
 
 def test_a_case_without_all_gears_of_the_unit_is_refused(written) -> None:
-    """Their bearings would bear too little, and stages keep what was found for another case."""
+    """Otherwise bearings would have too little force, and stages old results of another case."""
     unit = written(xml(*planetary()))
     text = import_rexs(unit).text.replace("gear_247", "planet_1")
     result = ls.solve(written(text.encode(), "unit.toml"))

@@ -25,7 +25,7 @@ BACK = {"u_axis_vector": ([-1.0, 0.0, 0.0], MM)}
 
 
 def forces(path) -> dict[str, np.ndarray]:
-    """Force of every gear on what holds it, x, y, z in the unit [N]."""
+    """Return the force of every gear on its support, x, y, z in the unit [N]."""
     result = ls.solve(import_rexs(path).case())
     loads = result.positions[0].loads.bearings
     return {name: np.array(loads[name]) @ np.array(result.frames[name]) for name in loads}
@@ -44,7 +44,9 @@ def forces(path) -> dict[str, np.ndarray]:
     ],
 )
 def test_a_torque_is_about_the_axis_of_its_shaft(written, turned, mirrored) -> None:
-    """Whichever way gears point. A torque the other way mirrors forces in the plane of the axes."""
+    """This holds for either direction of gears. A reversed torque mirrors forces in the plane of
+    the axes.
+    """
     plain = forces(written(xml(*two_stages())))
     found = forces(written(xml(*changed(two_stages(), **turned))))
     mirror = np.array([1.0, 1.0, -1.0]) if mirrored else np.ones(3)
@@ -61,7 +63,7 @@ def test_an_axis_that_is_not_its_shafts_is_reported(written) -> None:
 
 
 def driven_carrier(shaft: int = 4, torque: float = -7000.0, swapped: tuple[int, ...] = ()):
-    """A planetary set driven at a shaft of the carrier: 4, or 6, which points the other way."""
+    """Return a planetary set driven at a shaft of the carrier: 4, or 6, which points backwards."""
     components, relations = planetary()
     components.append((6, "shaft", "", at(175.0, 0.0, 0.0) | BACK))
     parts = changed(
@@ -97,7 +99,9 @@ def test_a_load_on_a_carriers_second_shaft_is_about_that_shafts_axis(written) ->
 def test_behind_a_driven_carrier_torque_goes_from_the_held_ring_to_the_sun(
     written, swapped
 ) -> None:
-    """As seen from the carrier. Sun 17, ring 61: of 7000 N·m the sun takes 17 and the ring 61."""
+    """As seen from the carrier, with sun 17 and ring 61: of 7000 N·m, the sun takes 17/78 and the
+    ring 61/78.
+    """
     unit = written(xml(*driven_carrier(swapped=swapped)))
     result = ls.solve(import_rexs(unit).case())
     stages = {name: set(branches) for name, branches in result.stages.items()}
@@ -108,7 +112,7 @@ def test_behind_a_driven_carrier_torque_goes_from_the_held_ring_to_the_sun(
     loads = result.positions[0].loads
     assert loads.gears["gear_58"] == pytest.approx(7000.0 * 61 / 78, rel=1e-9)
     assert loads.gears["gear_53"] == pytest.approx(7000.0 * 17 / 78, rel=1e-9)
-    # The same forces as with the sun driven: the flanks that bear them are drive flanks.
+    # The forces are the same as with the sun driven: the flanks that carry are drive flanks.
     for name, force in result.positions[0].equilibrium.flank_force.items():
         assert force > 0.0 or "coast" in name
 
@@ -124,7 +128,7 @@ def test_a_carrier_without_a_held_gear_has_one_stage_at_each_central_gear(writte
 
 
 def two_sets():
-    """Two planetary sets whose rings are on one held shaft; the first carrier drives sun 2053."""
+    """Return two planetary sets with rings on one held shaft; the first carrier drives sun 2053."""
     components, relations = planetary()
     kept = {1, 2, 62, 65}
 
@@ -177,7 +181,7 @@ def test_a_mere_force_is_no_output(written, output, says) -> None:
 
 
 def on_a_motor(sense: float = 1.0):
-    """Two stages driven through a coupling from a shaft without gears."""
+    """Return two stages driven through a coupling from a shaft without gears."""
     components, relations = two_stages()
     motor = at(-100.0, 0.0, 0.0) | {"u_axis_vector": ([sense, 0.0, 0.0], MM)}
     components += [(16, "shaft", "motor", motor), (72, "coupling", "", {})]
@@ -204,7 +208,7 @@ def test_a_load_behind_an_open_coupling_drives_nothing(written) -> None:
 
 
 def test_couplings_and_the_shaft_between_them_twist_one_after_the_other(written) -> None:
-    """Wheel 23 on shaft 12 drives gear 24 on shaft 13 over shaft 15, which has no gears."""
+    """Wheel 23 on shaft 12 drives gear 24 on shaft 13 through shaft 15, which has no gears."""
     components, relations = two_stages()
     components += [
         (13, "shaft", "", at(400.0, 140.0, 0.0)),
@@ -253,7 +257,7 @@ def test_a_brake_holds_through_a_shaft_without_gears(written) -> None:
 
 
 def gear(teeth: int, x: float, y: float):
-    """A gear of module 2 mm."""
+    """Return a gear of module 2 mm."""
     return {
         "number_of_teeth": (teeth, NONE),
         "normal_module": (2.0, MM),
@@ -264,7 +268,7 @@ def gear(teeth: int, x: float, y: float):
 
 @pytest.mark.parametrize(("name", "more"), [("fixed_coupling", {}), ("coupling", {})])
 def test_couplings_of_version_1_0_join_as_later_ones(written, name, more) -> None:
-    """They have a relation of their own and sides 1 and 2."""
+    """They have a relation of their own, and sides 1 and 2."""
     plain = import_rexs(written(xml(*two_pinions()))).data["shafts"]
     components, relations = two_pinions()
     components = [
@@ -290,7 +294,9 @@ OLD = {
 
 
 def with_a_power_take_off(taken: float, output: float, first: bool = False, speeds: bool = True):
-    """100 N·m drive the 20:40 stage: 200 on the middle shaft, of which some leave before 60:20."""
+    """Return a drive of 100 N·m on the 20:40 stage: 200 on the middle shaft, some of which leaves
+    before 60:20.
+    """
     components, relations = two_stages()
     components.append((34, "external_load", "pto", {TORQUE: (-taken, "N m")}))
     there = ("assembly", {"assembly": 11, "part": 34})
@@ -305,7 +311,7 @@ def with_a_power_take_off(taken: float, output: float, first: bool = False, spee
 @pytest.mark.parametrize("taken", [60.0, 120.0])
 @pytest.mark.parametrize(("first", "speeds"), [(False, False), (False, True), (True, True)])
 def test_a_power_take_off_takes_its_torque(written, taken, first, speeds) -> None:
-    """Which of the two that leave is called the output does not matter."""
+    """Either of the two loads that take power may be called the output."""
     output = 3.0 * (200.0 - taken)
     found = import_rexs(written(xml(*with_a_power_take_off(taken, output, first, speeds))))
     assert found.data["operating"]["input"] == "gear_20"
@@ -337,7 +343,7 @@ def test_an_output_torque_that_the_others_contradict_is_reported(written) -> Non
 def test_the_running_sense_follows_from_the_speed_of_another_shaft(
     written, middle, running, output
 ) -> None:
-    """The teeth turn 300 rpm of the middle shaft into 600 of the input, the other way round."""
+    """The teeth turn 300 rpm of the middle shaft into 600 of the input, in the opposite sense."""
     speeds = {"_11": {"rotational_speed": (middle, "1 / min")}}
     if output:
         speeds["_31"] = {TORQUE: (600.0, "N m")}
@@ -362,7 +368,7 @@ def test_a_speed_that_contradicts_the_one_that_counts_is_reported(written) -> No
 
 
 def test_what_takes_power_is_no_input_while_another_torque_can_be(written) -> None:
-    """The output comes first in the file and has a speed; that of the input is not given."""
+    """The output comes first in the file and has a speed; that of the input is missing."""
     components, relations = changed(
         two_stages(), _12={"rotational_speed": (100.0, "1 / min")}, _31={TORQUE: (600.0, "N m")}
     )

@@ -1,4 +1,4 @@
-"""Loose gears of gearboxes that shift, and shafts that ride on others."""
+"""Loose gears of gearboxes that shift, and shafts that are supported by others."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ MM, NONE = "mm", "none"
 
 
 def gearbox(shift: int, final: bool = False):
-    """Gears 20 and 22 of a shaft mesh with 21 and 23, which turn loose on the main shaft 12.
+    """Return gears 20 and 22 of a shaft that mesh with 21 and 23, which are loose on main shaft 12.
 
-    Each sits on a hollow shaft with a needle bearing on the main shaft, at 40 and at 110 mm of its
-    150 mm, and couples with it in one gear. With a final gear 24 on the main shaft, at 140 mm.
+    Each of these is on a hollow shaft with a needle bearing on the main shaft, at 40 and at 110 mm
+    of its 150 mm, and is coupled to it in one gear. A final gear 24 may be on the main shaft, at
+    140 mm.
     """
     components = [
         (1, "gear_unit", "", at(0.0, 0.0, 0.0) | {"gear_shift_index": (shift, NONE)}),
@@ -96,7 +97,7 @@ def test_only_the_gear_that_is_engaged_is_in_the_case(written, final, shift, dri
 
 @pytest.mark.parametrize("final", [False, True])
 def test_a_gear_on_a_turning_shaft_yields_with_that_shaft(written, final) -> None:
-    """The needle bearing, and the main shaft's bearings at 0 and 150 mm by their levers."""
+    """The needle bearing, and the main shaft's bearings at 0 and 150 mm with their levers."""
     unit = written(xml(*gearbox(1, final)))
     found = import_rexs(unit)
     yields = 1.0 / 5e8 + ((110 / 150) ** 2 + (40 / 150) ** 2) / 2e8
@@ -115,7 +116,7 @@ def test_a_gear_on_a_turning_shaft_yields_with_that_shaft(written, final) -> Non
 
 
 def test_what_carries_a_gears_shaft_adds_its_clearance_and_offset(written) -> None:
-    """Main shaft bearings: mean clearance 20 um, the first off by 15 um, 11 um at 40 of 150 mm."""
+    """Main shaft bearings: mean clearance 20 um, first offset by 15 um, 11 um at 40 of 150 mm."""
     parts = changed(
         gearbox(1),
         _62={"radial_clearance": (40.0, "mum"), "misalignment_in_w_direction": (15.0, "mum")},
@@ -145,7 +146,7 @@ def test_slide_bearings_hold(written) -> None:
 
 @pytest.mark.parametrize("first", [True, False])
 def test_a_shaft_on_which_planets_sit_is_their_pin(written, first) -> None:
-    """Without the relation that says so, wherever it stands among a carrier's parts."""
+    """The relation for pins is missing, and the shaft is anywhere among a carrier's parts."""
     components, relations = changed(planetary(), _65=along_both(0.0))
     plain = import_rexs(written(xml(components, relations))).data
     pins = [r for r in relations if r[1].get("part") in (235, 236, 237)]

@@ -1,4 +1,4 @@
-"""Where things are along shafts in REXS files: levers of bearings, and lengths that twist."""
+"""Places along shafts in REXS files: levers of bearings, and lengths that twist."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ SHEAR = 79.3e9
 
 
 def polar(diameter: float) -> float:
-    """Polar moment of a solid shaft [m^4], of a diameter in mm."""
+    """Return the polar moment of a solid shaft [m^4] from a diameter in mm."""
     return math.pi / 32.0 * (1e-3 * diameter) ** 4
 
 
 def seen(place: float, *bearings: tuple[float, float]) -> float:
-    """Stiffness of a beam at a place between two bearings (place, stiffness), by its levers."""
+    """Return the stiffness of a beam at a place between two bearings (place, stiffness)."""
     (u, k), (v, m) = bearings
     part = (place - u) / (v - u)
     return 1.0 / ((1.0 - part) ** 2 / k + part**2 / m)
@@ -43,9 +43,9 @@ def seen(place: float, *bearings: tuple[float, float]) -> float:
 @pytest.mark.parametrize(("version", "first"), [("1.0", 0.0), ("1.1", 25.0), ("2.0", 25.0)])
 @pytest.mark.parametrize("placed", [True, False])
 def test_a_gear_sits_at_its_middle_in_all_versions(written, version, first, placed) -> None:
-    """Version 1.0 gives where a gear begins, later ones its middle, and both where its middle is.
+    """Version 1.0 gives the start of a gear, later versions its middle; the gear's centre is there.
 
-    With places of gears in the unit, or with coordinates along the shaft alone.
+    The places of gears are in the unit, or only coordinates along the shaft are given.
     """
     here = {} if placed else {"support_vector": None}
     parts = changed(
@@ -62,14 +62,14 @@ def test_a_gear_sits_at_its_middle_in_all_versions(written, version, first, plac
 
 
 def test_places_in_the_unit_count_more_than_coordinates_along_shafts(written) -> None:
-    """The middles of both gears are 100 mm apart, whatever their widths and coordinates."""
+    """The centres of both gears are 100 mm apart, whatever their widths and coordinates."""
     parts = changed(two_stages(), _22={"face_width": (20.0, MM)}, _50=section(200.0, 40.0))
     case = import_rexs(written(xml(*parts, version="1.0"))).case()
     assert case.shafts["gear_21-gear_22"].stiffness.si == pytest.approx(SHEAR * polar(40.0) / 0.1)
 
 
 def carried(*bearings, shafts=((4, 0.0),)):
-    """A planetary set, its planets at x = 125 mm, with carrier shafts and bearings of these."""
+    """Return a planetary set with planets at x = 125 mm, and these carrier shafts and bearings."""
     components, relations = changed(planetary(), _4=at(shafts[0][1], 0.0, 0.0))
     for id_, start in shafts[1:]:
         components.append((id_, "shaft", "", at(start, 0.0, 0.0)))
@@ -81,7 +81,7 @@ def carried(*bearings, shafts=((4, 0.0),)):
 
 
 def test_a_carrier_overhangs_its_bearings(written) -> None:
-    """Bearings at 25 and 75 mm, the planets at 125 mm."""
+    """Bearings are at 25 and 75 mm, the planets at 125 mm."""
     parts = carried((4, 25.0, 1e9), (4, 75.0, 1e9))
     case = import_rexs(written(xml(*parts))).case()
     assert case.gears["carrier_3"].support.si == pytest.approx(
@@ -92,7 +92,7 @@ def test_a_carrier_overhangs_its_bearings(written) -> None:
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_bearings_on_two_shafts_of_a_carrier_have_levers_on_one_axis(written, way) -> None:
-    """Bearings at x = 75 and 175 mm, one on each shaft, the second shaft turned about or not."""
+    """Bearings are at x = 75 and 175 mm, one on each shaft; the second shaft is reversed or not."""
     components, relations = carried(
         (4, 75.0, 1e9), (6, 25.0 * way, 3e9), shafts=((4, 0.0), (6, 150.0))
     )
@@ -103,7 +103,7 @@ def test_bearings_on_two_shafts_of_a_carrier_have_levers_on_one_axis(written, wa
 
 
 def geared_carrier(plate: bool):
-    """A planetary set whose carrier shaft, 100 mm long, has gear 80 at 20 mm."""
+    """Return a planetary set whose carrier shaft, 100 mm long, has gear 80 at 20 mm."""
     components, relations = carried((4, 10.0, 1e9), (4, 90.0, 1e9))
     components += [
         (80, "cylindrical_gear", "", teeth(40, 4.0) | at(20.0, 0.0, 0.0)),
@@ -125,7 +125,7 @@ def geared_carrier(plate: bool):
 
 @pytest.mark.parametrize(("plate", "length", "more"), [(True, 0.076, 1 / 8e6), (False, 0.08, 0.0)])
 def test_a_carriers_shaft_twists_up_to_the_carrier(written, plate, length, more) -> None:
-    """Up to the coupling to a side plate, which twists as well; else to the end of the shaft."""
+    """It twists up to the coupling with a side plate, which twists too, or to the shaft's end."""
     case = import_rexs(written(xml(*geared_carrier(plate)))).case()
     yields = length / (SHEAR * polar(80.0)) + more
     stiffness = case.shafts["gear_80-carrier_3"].stiffness.si
@@ -133,17 +133,17 @@ def test_a_carriers_shaft_twists_up_to_the_carrier(written, plate, length, more)
 
 
 def test_a_coupling_drives_the_nearest_pinion(written) -> None:
-    """The near pinion takes its part first; the way to the coupling twists with the coupling."""
+    """The near pinion takes its part first; the shaft up to the coupling twists as well."""
     found = import_rexs(written(xml(*two_pinions())))
     shafts = found.case().shafts
     assert set(shafts) == {"gear_24-gear_25", "gear_26-gear_27", "gear_21-gear_25"}
-    # 25 sits at 175 mm, the coupling at 250 mm.
+    # Gear 25 is at 175 mm, the coupling at 250 mm.
     yields = 0.075 / (SHEAR * polar(30.0)) + 1e-6
     assert shafts["gear_21-gear_25"].stiffness.si == pytest.approx(1.0 / yields)
 
 
 def test_a_brake_holds_the_gear_next_to_it(written) -> None:
-    """Of two gears on a shaft the one beside the coupling to the casing."""
+    """Of two gears on a shaft, it is the one beside the coupling to the casing."""
     components, relations = two_stages()
     components.append((65, "coupling", "", along_both(120.0)))
     found = import_rexs(written(xml(components, [*relations, joint(65, 11, 2)])))

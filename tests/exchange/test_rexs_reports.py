@@ -1,4 +1,4 @@
-"""What the import of REXS files assumes, leaves out or refuses, and says so."""
+"""Reports on what the import of REXS files assumes, leaves out or refuses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MM, NONE, MODULUS = "mm", "none", "N / mm^2"
 
 
 def made_of(part: int, **material: object):
-    """Two stages of which a part has a material."""
+    """Return two stages; one part has a material."""
     components, relations = two_stages()
     components.append((88, "material", "", material))
     return components, [*relations, ("reference", {"origin": part, "referenced": 88})]
@@ -35,7 +35,7 @@ def made_of(part: int, **material: object):
 )
 @pytest.mark.parametrize("part", [11, 50])
 def test_a_shear_modulus_that_is_assumed_is_reported(written, part, material, shear, word) -> None:
-    """Of a shaft's material, or its section's."""
+    """It is that of a shaft's material, or its section's."""
     parts = two_stages() if material is None else made_of(part, **material)
     found = import_rexs(written(xml(*parts)))
     polar = math.pi / 32.0 * (0.04**4 - 0.02**4)
@@ -53,7 +53,7 @@ def test_a_gear_that_is_not_of_steel_is_reported(written, modulus, reported) -> 
 
 
 def flanked(left: dict, right: dict):
-    """Two stages of which gear 20 has two flanks."""
+    """Return two stages whose gear 20 has two flanks."""
     components, relations = two_stages()
     components += [(901, "flank_geometry", "", left), (902, "flank_geometry", "", right)]
     return components, [*relations, ("flank", {"gear": 20, "left": 901, "right": 902})]
@@ -96,7 +96,7 @@ def test_a_coupling_or_load_without_a_place_is_reported(written) -> None:
     found = import_rexs(written(xml(*changed(two_pinions(), _70=nowhere)))).assumed
     assert any("coupling 70 (flange): at the start of shaft 14 (pinions)" in s for s in found)
     assert any("external_load 31: at the start of shaft 15 (out)" in s for s in found)
-    # The shaft of load 30 has but one gear and nothing that twists.
+    # The shaft of load 30 has only one gear, and nothing that twists.
     assert not any("external_load 30" in s for s in found)
     found = import_rexs(written(xml(*two_pinions()))).assumed
     assert not any("coupling 70 (flange): at the start" in s for s in found)
@@ -113,7 +113,7 @@ def test_a_gear_has_whole_teeth_and_one_shaft(written) -> None:
 
 
 def test_preload_is_no_clearance(written) -> None:
-    """Of bearings with 40 um and with -20 um the mean clearance is 20 um."""
+    """The mean clearance of bearings with 40 um and with -20 um is 20 um."""
     parts = changed(
         two_stages(),
         _61={"radial_clearance": (40.0, "mum")},
@@ -182,7 +182,7 @@ def test_an_unknown_version_is_reported(written, version) -> None:
 
 
 def test_a_relation_that_is_given_twice_counts_once(written) -> None:
-    """Twice it doubled torques and stiffnesses, and made sections overlap."""
+    """Twice, it used to double torques and stiffnesses, and made sections overlap."""
     components, relations = two_stages()
     once, twice = (
         import_rexs(written(xml(components, given), name))
@@ -197,7 +197,7 @@ def test_a_relation_that_is_given_twice_counts_once(written) -> None:
 
 
 def test_two_gears_mesh_in_one_stage(written) -> None:
-    """A second stage of theirs took the place of the first, unsaid."""
+    """A second stage of theirs used to replace the first without a message."""
     components, relations = two_stages()
     stiff = next(c for c in components if c[0] == 41)[3]
     components.append((42, "cylindrical_stage", "", stiff))
@@ -209,7 +209,7 @@ def test_two_gears_mesh_in_one_stage(written) -> None:
 
 @pytest.mark.parametrize("roles", [None, {"gear_2": 248}, {"gear_1": 220, "gear_2": 248}])
 def test_a_stage_that_joins_no_gears_is_reported(written, roles) -> None:
-    """A planet that has lost its sun was in the case without a word."""
+    """A planet without its sun used to be imported without a message."""
     components, relations = planetary()
     at = next(k for k, (_, both) in enumerate(relations) if both.get("stage") == 212)
     relations[at : at + 1] = [("stage", {"stage": 212, **roles})] if roles else []
@@ -239,7 +239,7 @@ def test_a_number_that_is_given_as_two_is_refused(written, second, is_read) -> N
 
 @pytest.mark.parametrize("role", ["outer_part", "gear_2"])
 def test_relations_to_components_that_are_missing_are_named(written, role) -> None:
-    """A bearing that holds a shaft in nothing is left out; behind a lost mesh no output is."""
+    """A bearing in nothing is left out; behind a missing mesh there is no output."""
     components, relations = two_stages()
     kind, part = ("side", 61) if role == "outer_part" else ("stage", 41)
     for at, (given, roles) in enumerate(relations):
@@ -286,7 +286,7 @@ def test_a_pin_or_bearing_beside_the_axis_of_its_planet_is_reported(
 
 @pytest.mark.parametrize(("speed", "reported"), [(-1000.0 / 6.0, False), (-1000.0 / 5.0, True)])
 def test_another_speed_than_the_teeth_make_is_reported(written, speed, reported) -> None:
-    """20 to 40 teeth and 20 to 60: the output turns as the input does, at a sixth."""
+    """20 to 40 teeth and 20 to 60: the output turns like the input, at a sixth of its speed."""
     speeds = {
         f"_{id_}": {"rotational_speed": (n, "1 / min")} for id_, n in ((10, -1e3), (12, speed))
     }
@@ -305,7 +305,7 @@ def test_the_speed_of_a_carrier_is_compared_as_the_set_turns(written, speed, rep
 
 
 def test_speeds_of_a_differential_are_free(written) -> None:
-    """With its ring loose a set has two speeds: that of the carrier does not follow."""
+    """If its ring is loose, a set has two speeds: that of the carrier does not follow."""
     components, relations = changed(
         planetary(),
         _4={"rotational_speed": (400.0, "1 / min")},

@@ -1,4 +1,4 @@
-"""Values of REXS files: units, arrays, loads, and couplings that are open."""
+"""Values of REXS files: units, arrays, loads, and open couplings."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_kilonewton_metres_are_torques(written, unit) -> None:
     ],
 )
 def test_a_torque_keeps_all_its_digits(written, value, unit, text) -> None:
-    """And takes none of the round-off of its unit."""
+    """Nor does it get any round-off from its unit."""
     parts = changed(two_stages(), _30={"torque_around_u_axis": (value, unit)})
     assert import_rexs(written(xml(*parts))).data["operating"]["torque"] == text
 
@@ -91,7 +91,7 @@ def test_a_file_in_an_archive_may_have_its_ending_in_capitals(written, tmp_path)
 
 
 def shifted(engaged: list[bool], **unit: object):
-    """A planetary set whose brake is engaged in some gears."""
+    """Return a planetary set whose brake is engaged in some gears."""
     parts = changed(planetary(), _65={"is_engaged": (engaged, NONE)})
     return changed(parts, _1={key: (value, NONE) for key, value in unit.items()})
 
@@ -167,7 +167,7 @@ def test_a_coupling_between_two_gears_counts_at_the_nearest(written) -> None:
 
 
 def loaded(shaft: int, **attributes: object):
-    """Two stages with one more load."""
+    """Return two stages with one more load."""
     components, relations = two_stages()
     components.append((32, "external_load", "more", attributes))
     relations.append(("assembly", {"assembly": shaft, "part": 32}))
@@ -200,7 +200,7 @@ def test_a_load_without_torque_on_a_third_shaft_is_left_out_and_two_on_the_outpu
 
 
 def test_loads_on_both_shafts_of_a_carrier_are_on_one_body(written) -> None:
-    """A load on the carrier's second shaft is not the output of one on its first."""
+    """A load on the carrier's second shaft is not the output for one on its first."""
     components, relations = planetary()
     components += [
         (6, "shaft", "", at(150.0, 0.0, 0.0)),
@@ -228,7 +228,7 @@ def test_forces_of_loads_and_loads_beside_the_gears_are_listed(written) -> None:
 
 
 def test_a_carriers_shaft_may_be_known_by_its_stage_alone(written) -> None:
-    """Without the carrier's own relation to its shaft."""
+    """The carrier's own relation to its shaft is missing."""
     components, relations = planetary()
     relations = [r for r in relations if r[1] != {"assembly": 3, "part": 4}]
     by_stage = ("planet_carrier_shaft", {"planetary_stage": 9, "shaft": 4})
@@ -237,7 +237,7 @@ def test_a_carriers_shaft_may_be_known_by_its_stage_alone(written) -> None:
 
 
 def test_planets_may_sit_in_a_shaft_that_is_part_of_their_carrier(written) -> None:
-    """Without pins: a shaft that bears several planets is the carrier's, whoever says so."""
+    """Without pins: a shaft that supports several planets belongs to the carrier in any case."""
     components, relations = planetary()
     seated = [
         (kind, {**roles, "inner_part": 4} if roles.get("inner_part") in (235, 236, 237) else roles)
@@ -252,7 +252,7 @@ def test_planets_may_sit_in_a_shaft_that_is_part_of_their_carrier(written) -> No
 
 
 def test_what_is_taken_for_the_width_of_a_mesh_is_listed(written) -> None:
-    """Where the file says otherwise, or nothing."""
+    """If the file gives another width, or none."""
     density = {
         "mesh_stiffness_for_load_distribution_along_face_width": (20.0, "N / (mm mum)"),
         "common_face_width": None,

@@ -1,4 +1,4 @@
-"""Tables of a spreadsheet: the same case in and out, what cells mean, what is wrong with them."""
+"""Tables of a spreadsheet: export and import give the same case; cells, and errors in them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MESHES = "name,stiffness\na-b,1e6 N*m/rad\n"
 
 @pytest.fixture
 def box(tmp_path):
-    """Return how a folder of tables is written."""
+    """Return a function that writes a folder of tables."""
 
     def write(**tables: str | bytes) -> Path:
         given: dict[str, str | bytes] = {
@@ -81,7 +81,7 @@ def test_a_head_may_say_that_its_numbers_have_no_unit(box) -> None:
 
 
 def test_whole_numbers_may_have_decimals(box) -> None:
-    """Some programs write all numbers so; what counts teeth stays a whole number."""
+    """Some programs write all numbers so; numbers of teeth remain whole numbers."""
     case = import_tables(box(gears=GEARS.replace("a,20,2", "a,20.0,2.0"))).case()
     assert case == import_tables(box()).case().replace({"gears.a.module": "2.0 mm"})
     assert isinstance(case.gears["a"].teeth, int)
@@ -183,7 +183,7 @@ def test_a_folder_without_tables_and_none_at_all_are_reported(tmp_path) -> None:
 
 
 def test_names_that_look_like_formulas_stay_names(box, tmp_path) -> None:
-    """No cell that is written is a formula, and what is read again is the name."""
+    """No written cell is a formula, and reading it gives the name."""
     case = import_tables(box()).case()
     data = case.to_dict()
     name = "=1+1"
@@ -212,7 +212,7 @@ def test_what_cannot_stand_in_a_cell_is_not_written(box) -> None:
 
 
 def test_a_cell_of_a_table_may_be_as_long_as_the_table(box, tmp_path) -> None:
-    """As the loads of some ten thousand steps are; Python's reader of CSV stops at 131,072."""
+    """The loads of some ten thousand steps are; Python's CSV reader stops at 131,072 characters."""
     case = import_tables(box()).case().replace({"notes": "x" * 200_000})
     (tmp_path / "case.csv").write_text(csv_of(dict(case_frames(case.to_dict()))["case"]))
     limit = csv.field_size_limit()
@@ -272,7 +272,7 @@ def test_tables_of_an_earlier_case_join_no_other(tmp_path) -> None:
 
 
 class Stopped(BaseException):
-    """What a signal does to a command."""
+    """Stands for the effect of a signal on a command."""
 
 
 @pytest.mark.parametrize("kind", [Stopped, OSError])
@@ -357,7 +357,7 @@ def test_a_case_and_its_result_go_into_a_workbook_and_back(tmp_path) -> None:
 
 @pytest.mark.parametrize("text", ["x" * 32768, "a\x07b", "a\r\nb", "a\ufffeb"])
 def test_what_no_workbook_can_hold_is_not_written_there(box, text) -> None:
-    """It was cut, or became something else: so did lists of thousands of positions."""
+    """It used to be cut or changed, like lists of thousands of positions."""
     pytest.importorskip("openpyxl")
     data = import_tables(box()).case().to_dict()
     tables = dict(case_frames({**data, "notes": text}))
@@ -368,7 +368,7 @@ def test_what_no_workbook_can_hold_is_not_written_there(box, text) -> None:
 
 
 def test_names_of_a_result_stay_texts_in_a_workbook(box, tmp_path) -> None:
-    """A column is numbers because it holds numbers, not because its texts look like some."""
+    """A column is numeric because it contains numbers, not because its texts look like numbers."""
     openpyxl = pytest.importorskip("openpyxl")
     gears = GEARS.replace("\na,", "\n1_1,").replace("\nb,", "\nnan,")
     operating = OPERATING.replace("input,a", "input,1_1").replace("output,b", "output,nan")
@@ -390,7 +390,7 @@ def test_names_of_a_result_stay_texts_in_a_workbook(box, tmp_path) -> None:
 
 @pytest.fixture
 def book(tmp_path):
-    """Return a workbook with the tables of a case, and how it is read as it now stands."""
+    """Return a workbook with the tables of a case, and a function that reads its present state."""
     openpyxl = pytest.importorskip("openpyxl")
     book, path = openpyxl.Workbook(), tmp_path / "box.xlsx"
     book.remove(book.active)
@@ -415,7 +415,7 @@ def book(tmp_path):
 
 
 def test_a_sheet_that_is_lost_is_no_case_without_it(book) -> None:
-    """Of an archive that is damaged, or was written by half."""
+    """The archive is damaged, or was only half written."""
     sheets, read = book
     sheets.create_sheet("errors")["A1"] = "name"
     assert read()
@@ -424,7 +424,7 @@ def test_a_sheet_that_is_lost_is_no_case_without_it(book) -> None:
 
 
 def test_empty_sheets_of_no_table_are_left_out(book, tmp_path) -> None:
-    """Programs add them to new workbooks; an empty one of a table may have lost its rows."""
+    """Programs add them to new workbooks; an empty sheet of a table may have lost its rows."""
     sheets, read = book
     whole = read()
     sheets.create_sheet("Tabelle1")
@@ -441,7 +441,7 @@ def test_empty_sheets_of_no_table_are_left_out(book, tmp_path) -> None:
 
 
 def test_a_formula_without_a_saved_value_is_no_empty_cell(book) -> None:
-    """Programs that write formulas calculate none; a spreadsheet program saves values."""
+    """Programs that write formulas do not compute them; a spreadsheet program saves values."""
     sheets, read = book
     whole = read()
     sheets["gears"]["B2"] = "=4*5"
@@ -449,7 +449,7 @@ def test_a_formula_without_a_saved_value_is_no_empty_cell(book) -> None:
     message = "box.xlsx: sheet gears: row 2, column B: is a formula whose value was not saved"
     calculated = (b'fullCalcOnLoad="1"', b"")
     value = (b"<f>4*5</f><v />", b"<f>4*5</f><v>20</v>")
-    # What stands there as long as nobody has calculated is no value either.
+    # The value that is there before anybody has computed it does not count either.
     for changes in ((), (calculated,), (value,)):
         with pytest.raises(CaseError, match="save it, or write the value") as caught:
             read(*changes)
@@ -466,7 +466,7 @@ def test_a_formula_without_a_saved_value_is_no_empty_cell(book) -> None:
     [("A3", datetime(2026, 6, 4), None), ("B2", 20, "dd.mm.yyyy"), ("B2", 20, "h:mm")],
 )
 def test_a_date_is_told_to_be_no_name_and_no_number(book, cell, value, shown) -> None:
-    """Programs make one of the name 4-6, and show numbers as dates."""
+    """Programs turn the name 4-6 into one, and show numbers as dates."""
     sheets, read = book
     sheet = sheets["gears"]
     sheet[cell] = value
@@ -481,7 +481,7 @@ def test_merged_cells_have_their_value_in_every_row(book) -> None:
     sheets, read = book
     sheets["gears"]["E3"] = None
     sheets["gears"].merge_cells("E2:E3")
-    # A head that takes two rows is one head.
+    # A header that spans two rows is one header.
     sheets["operating"].insert_rows(2)
     sheets["operating"].merge_cells("A1:A2")
     found = read()

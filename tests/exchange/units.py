@@ -1,4 +1,4 @@
-"""Gear units as REXS writes them, made up, in XML and in JSON."""
+"""Invented gear units in REXS form, as XML and as JSON."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def rexsj(components: Iterable[Component], relations: Iterable[Relation], versio
 
 
 def at(x: float, y: float, z: float) -> dict[str, Any]:
-    """A place, its axis along x."""
+    """Return attributes of a place with its axis along x."""
     return {
         "support_vector": ([x, y, z], MM),
         "u_axis_vector": ([1.0, 0.0, 0.0], MM),
@@ -100,7 +100,7 @@ def at(x: float, y: float, z: float) -> dict[str, Any]:
 
 
 def teeth(count: int, module: float, **more: Any) -> dict[str, Any]:
-    """Attributes of a gear."""
+    """Return attributes of a gear."""
     return {
         "number_of_teeth": (count, NONE),
         "normal_module": (module, MM),
@@ -112,7 +112,7 @@ def teeth(count: int, module: float, **more: Any) -> dict[str, Any]:
 
 
 def planetary(planets: int = 3) -> tuple[list[Component], list[Relation]]:
-    """A set with a held ring: sun 17, planets 22, ring 61, module 4; carrier as output."""
+    """Return a set with a held ring: sun 17, planets 22, ring 61, module 4; carrier as output."""
     arm = 78.0
     components: list[Component] = [
         (1, "gear_unit", "unit", at(0.0, 0.0, 0.0)),
@@ -177,7 +177,7 @@ def planetary(planets: int = 3) -> tuple[list[Component], list[Relation]]:
 
 
 def two_stages() -> tuple[list[Component], list[Relation]]:
-    """Two stages on three shafts; the middle one has two gears and two bearings."""
+    """Return two stages on three shafts; the middle one has two gears and two bearings."""
     components: list[Component] = [
         (1, "gear_unit", "unit", at(0.0, 0.0, 0.0)),
         (2, "gear_casing", "casing", {}),
@@ -257,7 +257,7 @@ def changed(
 ) -> tuple[list[Component], list[Relation]]:
     """Return a unit in which some components, ``_12`` for 12, have other attributes.
 
-    None takes an attribute away.
+    None removes an attribute.
     """
     components, relations = parts
     made = []
@@ -268,23 +268,23 @@ def changed(
 
 
 def bearing(stiffness: float, along: float | None = None, **more: Any) -> dict[str, Any]:
-    """Attributes of a bearing: its stiffness [N/m], its place along both shafts [mm]."""
+    """Return attributes of a bearing: its stiffness [N/m], its place along both shafts [mm]."""
     places = {} if along is None else along_both(along)
     return {"radial_stiffness": (stiffness, "N / m"), **places, **more}
 
 
 def along_both(along: float) -> dict[str, Any]:
-    """Attributes of a bearing or coupling at a place along both its shafts [mm]."""
+    """Return attributes of a bearing or coupling at a place along both its shafts [mm]."""
     return {f"u_coordinate_on_shaft_{side}_side": (along, MM) for side in ("inner", "outer")}
 
 
 def joint(id_: int, inner: int, outer: int) -> Relation:
-    """A bearing or coupling between two components."""
+    """Return a bearing or coupling between two components."""
     return ("side", {"assembly": id_, "inner_part": inner, "outer_part": outer})
 
 
 def section(length: float, diameter: float) -> dict[str, Any]:
-    """Attributes of a solid section from the start of a shaft [mm]."""
+    """Return attributes of a solid section from the start of a shaft [mm]."""
     return {
         "u_coordinate_on_shaft": (0.0, MM),
         "length": (length, MM),
@@ -294,10 +294,10 @@ def section(length: float, diameter: float) -> dict[str, Any]:
 
 
 def two_pinions() -> tuple[list[Component], list[Relation]]:
-    """A shaft with two pinions, 150 mm apart, driven by a flange coupling at the end near one.
+    """Return a shaft with two pinions, 150 mm apart, driven by a flange coupling near one of them.
 
-    Gear 20 drives gear 21; coupling 70 joins the shaft of 21 to that of the pinions 24 and 25.
-    They drive the gears 26 and 27 of one shaft that does not twist.
+    Gear 20 drives gear 21; coupling 70 joins the shaft of 21 to that of the pinions 24 and 25. They
+    drive the gears 26 and 27 of one shaft that does not twist.
     """
     components: list[Component] = [
         (1, "gear_unit", "", at(0.0, 0.0, 0.0)),

@@ -1,4 +1,4 @@
-"""A client that says what it likes."""
+"""A client that may send anything."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 
 def ask(address, path, body=None, headers=None, method=None):
-    """Status, headers and content of an answer; JSON is read."""
+    """Return status, headers and content of an answer; JSON is parsed."""
     parts = urlsplit(address)
     connection = http.client.HTTPConnection(parts.hostname, parts.port, timeout=300)
     sent = dict(headers or {})
@@ -27,7 +27,7 @@ def ask(address, path, body=None, headers=None, method=None):
 
 
 def answer(address, changes=None, position=1):
-    """A setting, solved."""
+    """Return the answer for a setting."""
     status, _, found = ask(address, "/answer", {"changes": changes or {}, "position": position})
     assert status == 200
     return found

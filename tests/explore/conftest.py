@@ -23,7 +23,7 @@ SEED = CASES / "fgfbstts/limit_ring.toml"
 
 @contextlib.contextmanager
 def serving(case, file=None) -> Iterator[str]:
-    """The address of an explorer of a case."""
+    """Yield the address of an explorer of a case."""
     listening = socket.socket()
     listening.bind(("127.0.0.1", 0))
     port = listening.getsockname()[1]
@@ -43,18 +43,18 @@ def serving(case, file=None) -> Iterator[str]:
 
 @pytest.fixture(scope="session")
 def seed() -> Iterator[str]:
-    """The address of an explorer of the seed's case with limit rings."""
+    """Yield the address of an explorer of the seed's case with limit rings."""
     with serving(load_case(SEED), SEED) as address:
         yield address
 
 
 @pytest.fixture(scope="session")
 def served():
-    """A context manager that serves a case for one test."""
+    """Return a context manager that serves a case for one test."""
     return serving
 
 
 @pytest.fixture(scope="module")
 def browser(chrome) -> Any:
-    """A headless Chromium that reaches this machine; there is no other network here."""
+    """Return a headless Chromium that reaches this computer but no other."""
     return as_new(chrome, offline=False)

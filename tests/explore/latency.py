@@ -1,7 +1,8 @@
-"""How soon the explorer answers: `nice -n 5 python -m tests.explore.latency [REPEATS]`.
+"""Response times of the explorer: `nice -n 5 python -m tests.explore.latency [REPEATS]`.
 
-From the change of a slider to the frame that shows its answer, and from an address to a page with
-its first answer. The load of the machine, on which these times depend, is printed as well.
+They run from the change of a slider to the frame that shows its answer, and from opening an address
+to a page with its first answer. The load of the computer, on which these times depend, is printed
+too.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ look();
 
 
 def main(repeats: int) -> None:
-    """Measure, and print."""
+    """Measure and print the times."""
     before = os.getloadavg()
     with (
         tempfile.TemporaryDirectory() as profile,
@@ -55,7 +56,7 @@ def main(repeats: int) -> None:
         browser.set_script_timeout(60)
         slides = []
         for k in range(repeats):
-            # Some 2 µm to and fro, never where it was.
+            # Around 2 µm, never twice in a row at the same value.
             slides.append(browser.execute_async_script(SLIDE, 1.0 + 0.04 * ((17 * k) % repeats)))
             time.sleep(0.02)
     averages = ", ".join(f"{load:.1f}" for load in (before[0], os.getloadavg()[0]))

@@ -1,6 +1,6 @@
-"""The explorer as it looks, for the documentation: `python -m tests.explore.screens [FOLDER]`.
+"""Screenshots of the explorer for the documentation: `python -m tests.explore.screens [FOLDER]`.
 
-Screens of a phone, a laptop and a desktop, light and dark, from a browser; each is to be looked at.
+Screens of a phone, a laptop and a desktop, light and dark, from a browser; look at each of them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SAMPLES = 1000
 
 
 def main(folder: Path) -> None:
-    """Write the screens into a folder."""
+    """Write the screenshots into a folder."""
     with (
         tempfile.TemporaryDirectory() as profile,
         chromium(Path(profile), offline=False) as browser,
@@ -50,7 +50,7 @@ def main(folder: Path) -> None:
 
 
 def _along(browser) -> None:
-    """Critical values and trace of the first input."""
+    """Show critical values and the trace of the first input."""
     for button in browser.find_elements(By.CSS_SELECTOR, ".control[data-name] .row button")[:2]:
         button.click()
     _waits(browser, "#trace svg")
@@ -59,7 +59,7 @@ def _along(browser) -> None:
 
 
 def _studied(browser) -> None:
-    """What matters, and a tolerance study."""
+    """Run sensitivities and a tolerance study."""
     browser.find_element(By.ID, "slopes").click()
     for field, text in (("samples", SAMPLES), ("limit", 1.05)):
         browser.find_element(By.ID, field).clear()

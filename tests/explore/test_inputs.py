@@ -39,7 +39,7 @@ def test_round_steps():
 
 
 def test_what_makes_no_case_is_never_at_the_end_of_a_slider_of_a_size():
-    """Where zero is not allowed, a slider does not reach it."""
+    """If zero is not allowed, the slider does not reach it."""
     inputs = Inputs(shipped("fgfbstts/all_elements"))
     for key in ("rings.5.stiffness", "splines.4.bending_stiffness", "operating.speed"):
         one = inputs.every[key]
@@ -61,7 +61,7 @@ def test_a_part_of_an_error_keeps_the_others():
 
 
 def test_an_error_that_the_case_cannot_have_is_not_offered():
-    """Nothing determines how far the gears of this case turn: no eccentricity can."""
+    """Nothing determines how far gears of this case turn, so an eccentricity is not possible."""
     assert not [key for key in Inputs(shipped("fgfbstts/limit_ring")).every if "eccentric" in key]
 
 
@@ -135,7 +135,7 @@ def test_units_of_inputs_are_those_of_the_case():
 
 @pytest.mark.parametrize(("axis", "matters"), [([0.0, 0.0, -1.0], True), ("y", False)])
 def test_directions_count_against_the_axis_of_the_gear(axis, matters):
-    """What a page shows of an error by components is the error itself."""
+    """The components of an error that a page shows are those of the error itself."""
     places = {"s": (30, 0), "i1": (60, 96), "i2": (60, -96), "o": (150, 0)}
     gears = {
         name: {"base_radius": f"{radius} mm", "centre": [f"{x} mm", "0 mm"], "axis": axis}

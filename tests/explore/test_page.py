@@ -1,4 +1,4 @@
-"""The page in a browser: what it shows is of the present inputs, for everyone and everywhere."""
+"""The page in a browser: it always shows the answer to its present inputs, on every screen."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_the_page_opens_without_a_complaint(browser, seed, inputs):
 
 
 def test_a_planetary_set_opens_with_what_may_vary(browser, served):
-    """With the error of its pin, and with no number of teeth."""
+    """It opens with the error of a pin, but not with numbers of teeth."""
     with served(shipped("planetary/four_planets")) as address:
         opened(browser, address, names=[])
         waiting(browser, 10).until(lambda b: len(settled(b)["fields"]) == 6)
@@ -93,13 +93,13 @@ def _walk(browser, seed, inputs, steps, number):
     opened(browser, seed)
     seen, marked = walked(browser, steps, number)
     assert marked > 0
-    # The first and the last; how many come between depends on how busy the machine is.
+    # The first and the last; how many come between depends on the load of the computer.
     assert len({one["number"] for one in seen}) >= 2
     assert [bad for one in seen if (bad := contradicted(one, inputs, tables_of))] == []
 
 
 def test_an_old_answer_that_comes_late_is_marked(browser, seed):
-    """From the first change on, what is shown is marked as that of the previous setting."""
+    """From the first change on, the figures shown are marked as those of the previous setting."""
     opened(browser, seed)
     says = browser.execute_script(
         """const slider = document.querySelector("[data-name='rings.5.float'] [type=range]");
@@ -218,7 +218,7 @@ def test_pinned_settings_are_compared(browser, seed):
     browser.find_element(By.CSS_SELECTOR, "[aria-label='unpin A']").click()
     heads = browser.find_elements(By.CSS_SELECTOR, "#compared th")
     assert [head.text for head in heads] == ["figure", "B", "now", "change, B to now"]
-    # A pin that is cut off by the edge of a picture is reported below it.
+    # A pinned value that is cut off by the edge of a picture is reported below it.
     types(browser, "rings.5.float", "90 um")
     browser.find_element(By.ID, "pin").click()
     types(browser, "rings.5.float", "1 um")
@@ -250,7 +250,7 @@ def test_a_link_opens_the_view_again(browser, seed, inputs):
 
 
 def _position(browser):
-    """Where the slider of the position stands, and what stands beside it."""
+    """Return the value of the position slider, and the text beside it."""
     slider = browser.find_element(By.ID, "position-slider").get_attribute("value")
     text = browser.find_element(By.ID, "position-text").text
     assert browser.find_element(By.ID, "of").text.startswith(f"Pictures at position {slider}.")
@@ -258,7 +258,7 @@ def _position(browser):
 
 
 def test_all_positions_replace_the_figures_of_one(browser, served):
-    """Until then nothing is called K_γ; a position without an answer is reported."""
+    """Nothing is called K_γ before that; a position without an answer is reported."""
     case = partly_refused()
     with served(case) as address:
         opened(browser, address, names=["rings.4.float"])
@@ -277,7 +277,7 @@ def test_all_positions_replace_the_figures_of_one(browser, served):
     assert "14 of 15 positions certified" in note
     assert "Ω at 14 of 15" in bars
     assert "Kγ" not in summary
-    # The pin is of the same setting, and follows.
+    # The pinned setting is the same, and follows.
     assert "Ω at 14 of 15" in compared
     assert "Ω at position 1" not in compared
 
@@ -291,7 +291,7 @@ def test_a_bad_link_does_no_harm(browser, seed, inputs):
 
 
 def test_what_is_saved(browser, seed, tmp_path):
-    """The case as a file that extends the original; the view as SVG and PNG."""
+    """The case is saved as a file that extends the original, the view as SVG and PNG."""
     browser.execute_cdp_cmd(
         "Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)}
     )
@@ -352,7 +352,7 @@ SCREENS = [(name, width) for name in SHOWN for width in (390, 1280, 1920)]
 
 @pytest.mark.parametrize(("name", "width"), mostly_slow(SCREENS, [SCREENS[0]]))
 def test_the_page_fits_every_screen(browser, served, name, width):
-    """No scrolling sideways, no words that overlap or are cut; contrast and names of controls."""
+    """No horizontal scrolling, no words that overlap or are cut; contrast and names of controls."""
     on_screen(browser, width, dark=width == 1280)
     with served(shipped(name)) as address:
         browser.get(address)
@@ -379,7 +379,7 @@ return [document.getElementById("verdict"), document.querySelector("#bars svg"),
 
 
 def test_on_a_phone_the_answer_is_in_sight_of_the_slider(browser, seed):
-    """The verdict with K_γ, the shares of the branches, and the slider, all on one screen."""
+    """The verdict with K_γ, the shares of the branches and the slider are on one screen."""
     on_screen(browser, 390, 844)
     opened(browser, seed, names=["rings.5.float", "operating.power"])
     assert browser.execute_script(IN_SIGHT) == [True, True, True]
@@ -392,10 +392,10 @@ def test_on_a_phone_the_answer_is_in_sight_of_the_slider(browser, seed):
 
 
 def test_flank_forces_have_heads(browser, seed):
-    """Each an outline: wider at its head than along its shaft, however large the force."""
+    """Each arrow is an outline that is wider at its head than at its shaft, for any force."""
     opened(browser, seed, names=["operating.power"])
     _arrows(browser)
-    # However small all of them are, the largest is wide.
+    # However small all forces are, the largest is wide.
     types(browser, "operating.power", "2 kW")
     assert max(shaft for shaft, _ in _arrows(browser)) > 5.0
 

@@ -1,4 +1,4 @@
-"""The server: equal to `ls.solve`, refusing malformed requests, remembering nobody."""
+"""The server: it agrees with `ls.solve`, refuses malformed requests, and keeps no state."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ FLOAT = "rings.5.float"
 
 
 def tables_of(case):
-    """What a page must show of a case: rows of tables, from a solve of its own."""
+    """Return the rows of tables that a page must show for a case, from an independent solve."""
     result = ls.solve(case)
     rows = [plain(sharing(result))["rows"]] if result.stages else []
     if result.positions[0].floats:
@@ -83,7 +83,7 @@ def test_many_positions_are_solved_one_by_one(served):
         first = answer(address)
     assert (found["count"], found["solved"], found["position"]) == (20, 1, 7)
     assert (found["measure"], whole["measure"]) == ("Ω at position 7", "Kγ")
-    # What comes later takes the place of every figure of the one position.
+    # The later answer replaces every figure of the one position.
     assert set(found) - set(whole) == set()
     assert shown(whole) == tables_of(shipped("fgfbstts/all_elements"))
     most = ls.solve(shipped("fgfbstts/all_elements")).omega["II"]
@@ -122,7 +122,7 @@ def test_a_setting_that_makes_no_case_is_reported(seed, changes, why):
 
 
 def partly_refused():
-    """More positions than are solved at once; at position 9 two meshes are far too soft."""
+    """Return more positions than are solved at once; at position 9 two meshes are far too soft."""
     soft = ["4.275e6 N*m/rad"] * 8 + ["1e3 N*m/rad"] + ["4.275e6 N*m/rad"] * 6
     stiffness = {f'meshes."{mesh}".stiffness': soft for mesh in ("4-6", "4-7")}
     return load_case(SEED).replace({"operating.positions": 15, **stiffness})
@@ -153,7 +153,7 @@ def test_a_position_without_an_answer_is_reported():
     ],
 )
 def test_the_arrows_turn_no_idler(name, power):
-    """About the centre of an idler, the moments of all its drawn forces cancel."""
+    """The moments of all drawn forces about the centre of an idler add up to zero."""
     inputs = Inputs(shipped(f"fgfbstts/{name}"))
     found = answer_of(inputs, {"operating.power": power}, 1)
     view = found["train"]["views"][0]
@@ -182,7 +182,7 @@ def test_a_value_is_returned_in_the_unit_of_the_slider(seed):
 
 
 def test_a_refused_setting_is_reported(seed):
-    """A load that would press teeth together by more than they are high."""
+    """The load would compress teeth by more than their height."""
     found = answer(seed, {"operating.power": "2e9 kW"})
     assert found["status"] == "refused"
     assert len(found["messages"]) == 5
@@ -266,7 +266,7 @@ def test_further_names():
 
 @pytest.mark.slow
 def test_a_hundred_at_once_do_not_mix(served):
-    """Everybody gets the answer to their own setting, whoever asks meanwhile."""
+    """Everybody gets the answer to their own setting, whoever else asks at the same time."""
     draw, case = random.Random(5), shipped("star/floating_sun_4")
     texts = [f"{draw.uniform(100.0, 900.0):.3f} N*m" for _ in range(12)]
     wanted = {text: tables_of(case.replace({"operating.torque": text})) for text in texts}
@@ -304,7 +304,7 @@ def test_a_setting_is_saved_as_a_case_that_extends_the_original(seed, tmp_path):
     inputs = Inputs(load_case(SEED))
     assert case == inputs.case.replace(inputs.changes(changes))
     assert ask(seed, "/toml", {"changes": {FLOAT: "3"}})[2]["status"] == "invalid"
-    # What the file itself does not contradict, but its train does.
+    # The file itself is consistent, but its train is not.
     wrong = {"gears.6.base_radius": "200 mm"}
     for path in ("/answer", "/toml"):
         assert ask(seed, path, {"changes": wrong})[2]["status"] == "invalid", path
@@ -351,6 +351,6 @@ def test_hostile_texts_travel_as_texts(served):
 
 
 def test_an_answer_has_no_number_that_is_none():
-    """Browsers read no NaN and no infinity."""
+    """Browsers cannot read NaN or infinity."""
     for name in ("fgfbstts/limit_ring", "star/floating_sun_3"):
         json.dumps(answer_of(Inputs(shipped(name)), {}, 1), allow_nan=False)

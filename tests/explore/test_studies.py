@@ -1,4 +1,4 @@
-"""Studies next to the page: by workers, cancelled when nobody waits for them."""
+"""Studies beside the page: run by workers, cancelled when nobody waits for them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ FLOAT = {"name": "rings.*.float", "low": 0.0, "high": 12.0}
 
 
 def study(address, name, body):
-    """The lines of a study's answer."""
+    """Return the lines of a study's answer."""
     status, headers, content = ask(address, f"/study/{name}", body)
     assert status == 200
     assert headers["content-type"] == "application/x-ndjson"
@@ -42,13 +42,13 @@ def study(address, name, body):
 
 @pytest.mark.slow
 def test_critical_values_are_those_of_the_study(seed):
-    """Searched stretch by stretch, the nearest to the present value first."""
+    """They are searched interval by interval, the nearest to the present value first."""
     lines = study(seed, "critical", FLOAT | {"low": 2.5, "high": 3.1, "at": 2.95})
     assert [line["done"] for line in lines] == list(range(1, EXPLORE.stretches + 1))
     assert {line["of"] for line in lines} == {EXPLORE.stretches}
     wanted = ls.critical(str(SEED), "rings.*.float", "2.5 um", "3.1 um", positions=[1])
     found = [event["value"] for line in lines for event in line["events"]]
-    # Where the search began shows in the last digits.
+    # The start of the search affects the last digits.
     assert found == pytest.approx(sorted({e.value for e in wanted.events}), rel=1e-9)
     text = lines[0]["events"][0]["told"]
     assert text.startswith("gear 5 leaves its ring")
@@ -71,7 +71,7 @@ def test_stretches_make_the_whole_slider(low, high):
 
 @pytest.mark.slow
 def test_a_stretch_whose_end_makes_no_case_is_reported(seed):
-    """It is no reason to know nothing of the others."""
+    """The other intervals are still searched."""
     request = {"name": "rings.4.float", "low": -1.0, "high": 2.0, "at": 2.0}
     lines = study(seed, "critical", request)
     assert lines[0]["gaps"] == []
@@ -104,7 +104,7 @@ def test_what_matters_comes_in_parts(seed):
 
 
 def test_a_slope_to_a_side_that_is_none_is_no_zero(seed):
-    """A float of nothing can only grow."""
+    """A float of zero can only grow."""
     none = {"rings.4.float": "0 um"}
     (line,) = study(seed, "slopes", {"keys": ["rings.4.float"], "changes": none})
     ((key, slope, _), effect), *_ = line["rows"]
@@ -119,7 +119,7 @@ RANGES = {"rings.*.float": [0.0, 12.0], "errors.6.installation.direction": [-180
 
 
 def figures(found, limit):
-    """The table of a page, from what `loadshare tolerance` finds."""
+    """Return the table of a page, from the result of `loadshare tolerance`."""
     shown = [one for one in found.omega if one.over in found.overs]
     shown.sort(key=lambda one: one != found.of("system", "stage"))
     return plain(omega_table(shown, limit))["rows"]
@@ -127,7 +127,7 @@ def figures(found, limit):
 
 @pytest.mark.slow
 def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
-    """The same samples, the same statistics to the last printed digit, at every stage of it."""
+    """Samples, and statistics at every stage, are the same to the last printed digit."""
     # The compiled engine solves a block at a time.
     count = JOB.block + 400 if at_hand() else 512
     body = {"ranges": RANGES, "samples": count, "seed": 3, "limit": 1.003}
@@ -150,7 +150,7 @@ def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
 
 
 def test_counts_and_geometry_do_not_scatter():
-    """They are left out, and named; alone they are no study."""
+    """They are left out and named; alone they are no study."""
     inputs = Inputs(shipped("planetary/four_planets"))
     ranges = {"gears.sun.teeth": [0.0, 36.0], "gears.sun.centre[0]": [-0.1, 0.1]}
     varying = {"errors.planet2.pin.tangential": [0.0, 40.0]}
@@ -176,7 +176,7 @@ def test_a_study_of_the_case_is_the_one_that_its_file_describes(served):
 
 @pytest.mark.slow
 def test_samples_without_an_answer_are_counted(seed):
-    """A load that would press teeth together by more than they are high."""
+    """The load would compress teeth by more than their height."""
     request = {"changes": {"operating.power": "2e9 kW"}, "ranges": RANGES, "samples": 20}
     last = study(seed, "tolerance", request)[-1]
     assert (last["done"], last["refused"]) == (20, 20)
@@ -235,7 +235,7 @@ def test_a_study_that_cannot_be_is_reported(seed, name, body, why):
 
 
 def test_a_study_that_is_broken_off_is_stopped(seed):
-    """Its worker is killed, and the next one is served."""
+    """Its worker is killed, and the next study is served."""
     parts = urlsplit(seed)
     for _ in range(2):
         line = http.client.HTTPConnection(parts.hostname, parts.port)
@@ -249,7 +249,7 @@ def test_a_study_that_is_broken_off_is_stopped(seed):
 
 @pytest.mark.slow
 def test_a_tolerance_study_that_is_broken_off_frees_its_worker(seed):
-    """In the middle of its lines."""
+    """The study is cancelled in the middle of its lines."""
     parts = urlsplit(seed)
     line = http.client.HTTPConnection(parts.hostname, parts.port, timeout=300)
     body = json.dumps({"ranges": RANGES, "samples": 100_000})
@@ -281,7 +281,7 @@ def test_ticks_trace_and_a_study_on_the_page(browser, seed):
     buttons[0].click()
     tick = By.CSS_SELECTOR, ".ticks button"
     waiting(browser, 120).until(lambda b: b.find_elements(*tick))
-    # Further stretches of the slider draw them anew.
+    # Further intervals of the slider redraw them.
     labels = steady(
         browser, lambda b: [one.get_attribute("aria-label") for one in b.find_elements(*tick)]
     )
@@ -304,7 +304,7 @@ def shown(browser, identity):
 
 
 def begin(browser, samples):
-    """Begin a tolerance study on the page, and wait for its first figures."""
+    """Start a tolerance study on the page, and wait for its first figures."""
     shown(whole(browser), "samples").clear()
     shown(browser, "samples").send_keys(str(samples))
     shown(browser, "tolerance").click()
@@ -335,7 +335,7 @@ def test_a_tolerance_study_grows_is_stopped_and_says_of_what_it_is(browser, seed
     time.sleep(0.5)
     assert shown(browser, "sampled").text == label
     assert not shown(browser, "stop").is_enabled()
-    # Started again, it ends with the setting; what was found says of which setting it is.
+    # A repeated study ends when the setting changes; its result names the setting it belongs to.
     begin(browser, 100_000)
     assert not shown(browser, "earlier").is_displayed()
     slider = browser.find_element(By.CSS_SELECTOR, "[data-name='rings.5.float'] [type=range]")
@@ -351,7 +351,7 @@ def test_a_tolerance_study_grows_is_stopped_and_says_of_what_it_is(browser, seed
 
 
 def test_a_tolerance_study_comes_to_its_end(browser, served):
-    """The numbers on the page are those of the library, for the seed and count of the case."""
+    """The numbers on the page are those of the library, with the seed and count of the case."""
     case = shipped("nrel_5mw/gearbox")
     with served(case) as address:
         opened(browser, address, names=[])

@@ -1,4 +1,4 @@
-"""Somebody plays with the page, and everything that it says meanwhile is written down."""
+"""A simulated user changes the page, and everything that it shows meanwhile is recorded."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ look();
 
 
 def opened(browser, address, names=NAMES, changes=None, timeout=60):
-    """The page with these sliders, when its first answer is there."""
+    """Open the page with these sliders, and wait for its first answer."""
     view = {"changes": changes or {}, "names": list(names), "position": 1}
     browser.get("about:blank")
     browser.get(f"{address}#{quote(json.dumps(view))}")
@@ -91,33 +91,33 @@ def opened(browser, address, names=NAMES, changes=None, timeout=60):
 
 
 def settled(browser, timeout=60):
-    """What the page says when it is done."""
+    """Return what the page shows when it is done."""
     waiting(browser, timeout).until(lambda b: b.execute_script(STATE) in SETTLED)
     return browser.execute_script(f"{SAYS} return says();")
 
 
 def whole(browser):
-    """The page when all is worked out: what comes last moves what is below, where one clicks."""
+    """Wait until the page is complete: the last parts move those below, where a test clicks."""
     waiting(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
     return browser
 
 
 def walked(browser, steps, seed):
-    """All that a page showed as current in a random walk, and the number of frames it did not."""
+    """Return all that a page showed as current in a random walk, and the number of other frames."""
     browser.set_script_timeout(600)
     found = browser.execute_async_script(WALK, steps, seed)
     return found["seen"], found["marked"]
 
 
 def setting(inputs, fields):
-    """Changes of a case, from the contents of the fields of the page."""
+    """Return the changes of a case from the contents of the fields of the page."""
     return inputs.changes(
         {key: text for key, text in fields.items() if text != str(inputs.every[key].text)}
     )
 
 
 def contradicted(says, inputs, tables_of):
-    """Why what the page says is not of the inputs that it shows; empty if it is."""
+    """Return why the page's figures do not belong to the inputs shown; empty if they do."""
     try:
         wanted = tables_of(inputs.case.replace(setting(inputs, says["fields"])))
     except CaseError:

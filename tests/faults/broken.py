@@ -1,4 +1,4 @@
-"""A library that writes files in their place, which the harness must find."""
+"""A library that overwrites files in place, which the harness must detect."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

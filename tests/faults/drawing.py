@@ -1,4 +1,4 @@
-"""Converts a picture: conversion, what, and settings on standard input, the file on output."""
+"""Convert a picture: conversion, specification and settings on standard input, file on output."""
 
 from __future__ import annotations
 

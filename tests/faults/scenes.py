@@ -1,4 +1,4 @@
-"""Commands that write files: what is there before, the command, what may differ afterwards."""
+"""Commands that write files: the files before, the command, the differences allowed afterwards."""
 
 from __future__ import annotations
 
@@ -14,28 +14,29 @@ from loadshare.outside import OUTSIDE
 from loadshare.settings import TOLERANCE
 
 Prepare = Callable[[Path, Callable[[Sequence[str]], None]], None]
-"""Fills a folder; it is given what runs a command."""
+"""Fills a folder; its second argument runs a command."""
 
 UNREADABLE = 1
-"""With what a batch ends of which one case cannot be read: it stops no other."""
+"""Exit code of a batch with one case that cannot be read: it stops no other."""
 OTHER = "1e-8"
-"""A tolerance with which results are others, and so are written again."""
+"""A tolerance with which results differ, and so are written again."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A command, given again and again.
+    """A command that is run again and again.
 
     Attributes
     ----------
     name : str
     words : tuple of str
-        In which ``{}`` stands for the folder; cases lie in ``in``, all that is written in ``out``.
+        Arguments, in which ``{}`` stands for the folder; cases are in ``in``, all output in
+        ``out``.
     prepare : callable
     again : tuple of int
         Exit codes, besides 2, with which an error may be reported.
     apart : bool
-        Whether its workers are processes of their own.
+        Whether its workers are separate processes.
     """
 
     name: str
@@ -50,10 +51,10 @@ MINUTE = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d UTC")
 
 
 def masked(name: str, content: bytes) -> bytes:
-    """Return what of a file must be the same in every run.
+    """Return the part of a file that must be the same in every run.
 
-    That of a batch's summary says how long each case took, and whether its result was kept; a page
-    says when it was made.
+    A batch's summary states the time of each case and whether its result was kept; a page states
+    the time of its creation.
     """
     if name.endswith(".html"):
         return MINUTE.sub(b"", content)
@@ -91,7 +92,7 @@ def batch_scenes(count: int) -> list[Scene]:
 
 
 def write_cases(folder: Path, count: int) -> None:
-    """Write the shipped cases but that of teeth, and more: stars with other torques."""
+    """Write the shipped cases except the one with teeth, and stars with other torques."""
     folder.mkdir(parents=True)
     files = [f for f in sorted(CASES.rglob("*.toml")) if f.parent.name != "pairs"]
     files = [f for f in files if "geometry" not in f.name]
@@ -104,7 +105,7 @@ def write_cases(folder: Path, count: int) -> None:
 
 
 def study_scenes(samples: int, positions: int, indices: int) -> list[Scene]:
-    """Return tolerance studies: into no folder, into an empty one, and one that stopped midway."""
+    """Return tolerance studies: into no folder, an empty one, and one of an interrupted study."""
     case = (
         'extends = "base/tolerance.toml"\n'
         f"study.errors.samples = {samples}\nstudy.errors.indices = {indices}\n"
@@ -134,7 +135,7 @@ def study_scenes(samples: int, positions: int, indices: int) -> list[Scene]:
 
 
 def worker_scenes(count: int, samples: int, positions: int, indices: int) -> list[Scene]:
-    """Return a batch and a study that two processes work at; it is as large as that takes."""
+    """Return a batch and a study that two processes solve, as large as that requires."""
     most = TOLERANCE.small // positions // 16 * 16 + 16
     batch = batch_scenes(count)[0]
     study = study_scenes(max(samples, most), positions, indices)[0]
@@ -164,12 +165,12 @@ FILES: dict[str, tuple[str, ...]] = {
     "schema.json": ("schema", "-o", "{}/out/schema.json"),
     "case.toml": ("new", "fresh", "-o", "{}/out/case.toml", "--force"),
 }
-"""Commands that write one file; tables are several, one after the other."""
+"""Commands that write one file; tables are several files, one after the other."""
 OLD = b"what was there before\n"
 
 
 def file_scenes() -> list[Scene]:
-    """Return commands that write one file: into no folder, and in place of another file."""
+    """Return commands that write one file: into no folder, and over another file."""
 
     def fresh(folder: Path, run: Callable[[Sequence[str]], None]) -> None:
         cases = folder / "in"
@@ -201,5 +202,5 @@ def file_scenes() -> list[Scene]:
 UNHELD = """extends = "star.toml"
 remove = ['meshes."sun-planet3"', 'meshes."planet3-ring"', "gears.planet3", "stages"]
 """
-"""Nothing holds the sun across the line of its planets: it is refused."""
+"""Nothing holds the sun across the line of its planets, so the case is refused."""
 ENVIRONMENT = {OUTSIDE: ""}

@@ -1,8 +1,8 @@
-"""A process that has everything imported, and forks for every command that it is to run.
+"""A process that has imported everything, and forks for every command that it runs.
 
 A command in a process of its own takes seconds, most of them for imports; a fork takes some
-thousandths. Answers of the solver are kept from the undisturbed run: what is tried here are files,
-and that a sample has the same answer whoever solves it is tested elsewhere.
+milliseconds. Answers of the solver are kept from the undisturbed run: this harness tests files, and
+other tests check that a sample has the same answer whoever solves it.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from pathlib import Path
 from typing import Any
 
 SECONDS = 600
-"""Longer is a hang."""
+"""Seconds after which a command counts as hanging."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """How a command ended.
+    """The end of a command.
 
     Attributes
     ----------
     code : int
         Exit code; negative for the signal that killed it.
     out, err : str
-        What it printed.
+        Its printed output.
     """
 
     code: int
@@ -43,7 +43,7 @@ class Ended:
 
     @property
     def output(self) -> str:
-        """All of it."""
+        """All printed output."""
         return self.out + self.err
 
 
@@ -53,11 +53,11 @@ class Server:
     Parameters
     ----------
     folder : pathlib.Path
-        For what commands say.
+        Folder for the output of commands.
     environment : dict
-        More of its variables.
+        Further environment variables.
     *modules : str
-        What it imports as well.
+        Further modules that it imports.
     """
 
     def __init__(self, folder: Path, environment: dict[str, str], *modules: str) -> None:
@@ -89,9 +89,9 @@ class Server:
         ----------
         words : sequence of str
         fork : bool
-            Without, what it solves is kept for those to come.
+            If not, its answers are kept for later commands.
         apart : bool
-            Whether what is large is left to its workers, which know nothing of what is kept.
+            Whether large work is left to its workers, which do not have the kept answers.
         """
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -138,7 +138,7 @@ def _run(words: Sequence[str], folder: Path) -> int:
         main(words)
     except SystemExit as left:
         code = left.code if isinstance(left.code, int) else int(left.code is not None)
-    except BaseException:  # noqa: BLE001 -- as the interpreter does with whatever escapes
+    except BaseException:  # noqa: BLE001 -- as the interpreter does with any exception that escapes
         traceback.print_exc()
     with suppress(OSError):
         sys.stdout.flush()
@@ -147,7 +147,7 @@ def _run(words: Sequence[str], folder: Path) -> int:
 
 
 def _keep_answers() -> None:
-    """Let what was solved once be looked up."""
+    """Cache solved answers for later commands."""
     import loadshare.job
     from loadshare.report import beside
     from loadshare.results import document, files, result
@@ -160,7 +160,7 @@ def _keep_answers() -> None:
     kept = _keeping(loadshare.job.solve, case_key)
     loadshare.job.solve = worst.solve = kept  # type: ignore[attr-defined]
 
-    # What was solved once is one object, and says the same.
+    # A solved result is one object, which always writes the same document.
     beside.start = lambda: None
     beside.begin = _keeping(_drawn, lambda *given, **how: json.dumps([*given, how]))
     document.to_document = result.to_document = _keeping(document.to_document, id)
@@ -198,7 +198,7 @@ def _drawn(conversion: str, what: object, **how: Any) -> Future[str | bytes]:
 
 
 def _solve_here(here: bool) -> None:
-    """Let large studies be solved in this process as well, which knows the answers, or not."""
+    """Choose whether large studies are also solved in this process, which has the answers."""
     from loadshare.settings import TOLERANCE
     from loadshare.study.tolerance import study
 

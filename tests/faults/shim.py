@@ -1,4 +1,4 @@
-"""The C library that counts file-system calls and lets one fail: compiled, loaded, set, read."""
+"""The C library that counts file-system calls and makes one fail: compile, load, set, read."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from typing import NamedTuple
 SOURCE = Path(__file__).with_name("shim.c")
 ROOM = 1024
 FIELDS = struct.Struct(f"=6q{ROOM}s64s{ROOM}s{ROOM}s")
-"""As `struct control` has them."""
+"""Layout of `struct control`."""
 SHORT, KILL = -1, -2
 
 
 class Fault(NamedTuple):
-    """What becomes of a call, and whether the disk stays full from there on."""
+    """The effect on a call, and whether the disk stays full from then on."""
 
     error: int
     lasting: bool = False
@@ -39,7 +39,7 @@ FAULTS = {
 
 
 def why_not() -> str:
-    """Return why calls cannot be made to fail here; nothing where they can."""
+    """Return why calls cannot be made to fail here; empty if they can."""
     if sys.platform != "linux":
         return "calls are made to fail by LD_PRELOAD, which is Linux's"
     if shutil.which("cc") is None:
@@ -49,16 +49,16 @@ def why_not() -> str:
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What the library saw.
+    """The calls that the library counted.
 
     Attributes
     ----------
     calls : int
-        In the folder that is watched.
+        Number of calls in the watched folder.
     hit : int
-        Those that failed.
+        Number of those that failed.
     name, path : str
-        Of the first that failed.
+        Name and path of the first that failed.
     """
 
     calls: int
@@ -68,12 +68,12 @@ class Seen:
 
 
 class Shim:
-    """The library and the file that sets what shall fail.
+    """The library, and the file that sets which call fails.
 
     Parameters
     ----------
     folder : pathlib.Path
-        Where both are made.
+        Folder in which both are created.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -85,19 +85,19 @@ class Shim:
             self._shared = mmap.mmap(file.fileno(), FIELDS.size)
 
     def environment(self) -> dict[str, str]:
-        """Return the variables with which a process loads it."""
+        """Return the environment variables with which a process loads the library."""
         return {"LD_PRELOAD": str(self.library), "LOADSHARE_FAULTS": str(self.file)}
 
     def arm(
         self, root: Path, target: int = 0, fault: str = "kill", log: Path | None = None
     ) -> None:
-        """Count calls below a folder, and let one fail.
+        """Count calls below a folder, and make one fail.
 
         Parameters
         ----------
         root : pathlib.Path
         target : int
-            Which call, from 1; 0 for none.
+            Number of the call to fail, from 1; 0 for none.
         fault : str
             A key of `FAULTS`.
         log : pathlib.Path, optional
@@ -109,7 +109,7 @@ class Shim:
         self._shared[:] = FIELDS.pack(*fields)
 
     def disarm(self) -> Seen:
-        """Count no more; return what was seen."""
+        """Stop counting; return the counts."""
         _, calls, _, _, _, hit, _, name, path, _ = FIELDS.unpack(self._shared[:])
         self._shared[:] = bytes(FIELDS.size)
         return Seen(calls, hit, _text(name), _text(path))

@@ -1,4 +1,4 @@
-"""A slice of the faults; ``python -m tests.faults`` tries them all."""
+"""A sample of faults; ``python -m tests.faults`` tries all of them."""
 
 import os
 from collections import Counter
@@ -15,13 +15,13 @@ from loadshare.report.page.report import report_page
 pytestmark = pytest.mark.skipif(bool(why_not()), reason=why_not())
 SMALL = {scene.name: scene for scene in (*batch_scenes(2), *study_scenes(64, 1, 0), *file_scenes())}
 TRIED = 6
-"""Faults of a scene in `make test`."""
+"""Number of faults of a scene in `make test`."""
 QUICK = ("batch over others", "sweep.csv", "refused.json")
 
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory):
-    """The library that lets calls fail, and what runs commands."""
+    """Yield the library that makes calls fail, and the server that runs commands."""
     folder = tmp_path_factory.mktemp("faults")
     shim = Shim(folder)
     with Server(folder, shim.environment() | ENVIRONMENT) as server:
@@ -48,13 +48,13 @@ def test_no_fault_leaves_anything_wrong(served, tmp_path, name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in SMALL if name.startswith("study")])
 def test_no_fault_leaves_anything_wrong_in_a_study(served, tmp_path, name):
-    """Its thousands of calls read columns, one like the other: of these some."""
+    """Most of its thousands of calls read columns and are alike; only some are tried."""
     stage = Stage(SMALL[name], tmp_path, *served)
     assert [str(one) for k, f in stage.plan(5) if (one := stage.trial(k, f)).wrong] == []
 
 
 def test_pages_are_compared_but_for_the_minute():
-    """So it is as long as pages say it in these words."""
+    """This fails if the wording of the time on pages changes."""
     pages = [
         report_page([], datetime(2026, 1, 2, 3, minute, tzinfo=UTC)).encode() for minute in (4, 5)
     ]
@@ -63,7 +63,7 @@ def test_pages_are_compared_but_for_the_minute():
 
 
 def test_every_call_is_seen_and_every_fault_met(served, tmp_path):
-    """Of the writing of one file: each step, by its name, and a kill at each."""
+    """For one file that is written: each step by its name, and a kill at each."""
     stage = Stage(SMALL["result.json over another"], tmp_path, *served)
     names = Counter(name for name, path in stage.log if "result.json" in path)
     for step in ("write", "fsync", "rename", "chmod"):
@@ -78,7 +78,7 @@ def test_every_call_is_seen_and_every_fault_met(served, tmp_path):
 
 
 def test_all_is_on_the_disk_before_it_has_its_name(served, tmp_path):
-    """No write after the file was brought to the disk, and its folder after it was put there."""
+    """No write follows the fsync of the file, and the folder is synced after the rename."""
     stage = Stage(SMALL["result.nc"], tmp_path, *served)
     (temporary,) = {path for name, path in stage.log if name == "write" and "result.nc" in path}
     events = [name for name, path in stage.log if path == temporary]
@@ -87,13 +87,13 @@ def test_all_is_on_the_disk_before_it_has_its_name(served, tmp_path):
     moved = [name for name, _ in stage.log].index("rename")
     folder = os.path.dirname(temporary)  # noqa: PTH120 -- of a text
     assert ("fsync", folder) in stage.log[moved:]
-    # The folder was made, and its name is in the one above.
+    # A new folder's name is in its parent, which must be synced too.
     made = stage.log.index(("mkdir", folder))
     assert ("fsync", os.path.dirname(folder)) in stage.log[made:moved]  # noqa: PTH120
 
 
 def test_the_harness_finds_what_must_not_be(tmp_path):
-    """A check that cannot fail would prove nothing: files are written in their place here."""
+    """A check that cannot fail would prove nothing: this library overwrites files in place."""
     shim, stage = Shim(tmp_path), tmp_path / "stage"
     stage.mkdir()
     with Server(tmp_path, shim.environment() | ENVIRONMENT, "tests.faults.broken") as server:

@@ -1,4 +1,4 @@
-"""One fault: a command whose k-th call fails, what is left of its files, and the command again."""
+"""One fault: a command whose k-th call fails, the files that remain, and the command again."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from loadshare.lock import LOCK
 
 Files = dict[str, bytes]
 LEFT = re.compile(r"^(.*/)?\.(.+)\.[0-9a-f]{16}$")
-"""What a killed process may leave, until the command is given again."""
+"""Names of temporary files that a killed process may leave until the command is run again."""
 CHANGING = ("mkdir", "rename", "unlink", "fsync", "flock", "chmod", "chown")
 KINDS = ("told", "lost", "corrupt", "unusable", "different", "left")
-"""What may be wrong: the report of the error, files that are gone, files that are neither what was
-there nor what is requested; a command that does not end well when it is given again, files that
-then are not those of an undisturbed run, and temporary ones that are still there."""
+"""Kinds of fault: a wrong report of the error; files that are lost; files that are neither the old
+nor the requested ones; a repeated command that fails; files that then differ from those of an
+undisturbed run; and temporary files that remain."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wrong:
-    """What must not be.
+    """A fault that was found.
 
     Attributes
     ----------
@@ -44,13 +44,13 @@ class Wrong:
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A fault and what became of it.
+    """An injected fault and its effects.
 
     Attributes
     ----------
     scene : str
     number : int
-        Of the call, from 1.
+        Number of the call, from 1.
     fault : str
         Key of `FAULTS`.
     seen : Seen
@@ -73,13 +73,13 @@ class Trial:
 
 
 class Stage:
-    """A scene, with what an undisturbed run of it leaves.
+    """A scene, with the files that an undisturbed run leaves.
 
     Parameters
     ----------
     scene : Scene
     folder : pathlib.Path
-        Empty.
+        An empty folder.
     server : Server
     shim : Shim
     """
@@ -97,16 +97,16 @@ class Stage:
         self.root.rename(self._start)
         self.before = _files(self._start)
         self._set()
-        # Once in the server itself, which keeps the answers, and once as all that follow.
+        # Once in the server itself, which keeps the answers, and once like all that follow.
         first = server.run(self.words, fork=False)
         self.after, self.code = _files(self.root), first.code
         self.log = self._logged(folder / "log")
         assert _files(self.root).keys() == self.after.keys()
-        # What is printed when all is there.
+        # The printed output when all files exist.
         self.out = server.run(self.words, fork=False).out
 
     def _logged(self, log: Path) -> list[tuple[str, str]]:
-        """Return the calls of an undisturbed run: what each is named, and its path."""
+        """Return the calls of an undisturbed run: the name of each, and its path."""
         self._set()
         self.shim.arm(self.root, log=log)
         ended = self._given()
@@ -116,10 +116,10 @@ class Stage:
         return [(name, path) for _, name, path in (line.split("\t") for line in lines)]
 
     def plan(self, step: int = 1, once: bool = False) -> list[tuple[int, str]]:
-        """Return the calls that are to fail, and how, in an order that is always the same.
+        """Return the calls that shall fail, each with its fault, in a fixed order.
 
-        What writes meets every fault, unless each call is to fail once; what reads meets one of
-        them in turn. Of all that every `step`-th.
+        Calls that write meet every fault, unless each call is to fail once; calls that read meet
+        one of the faults in turn. Of all these, every `step`-th is taken.
         """
         every, numbers = list(FAULTS), range(len(self.log))
         planned = [
@@ -127,7 +127,7 @@ class Stage:
             for k in numbers
             for fault in (every if self._writes(k) and not once else [every[k % len(every)]])
         ]
-        # However soon it is stopped, calls and faults of all kinds were tried.
+        # Shuffled, so that an early stop has still tried calls and faults of all kinds.
         random.Random(1).shuffle(planned)
         return planned[::step]
 
@@ -135,12 +135,12 @@ class Stage:
         name, path = self.log[k]
         if LEFT.match(path) or name in CHANGING:
             return True
-        # The opening and closing of a folder that is brought to the disk.
+        # Opening and closing a folder to sync it count as writing.
         around = self.log[max(k - 1, 0) : k + 2]
         return any(n == "fsync" and p == path for n, p in around)
 
     def trial(self, number: int, fault: str) -> Trial:
-        """Let a call fail, and give the command again."""
+        """Make a call fail, and run the command again."""
         self._set()
         self.shim.arm(self.root, number, fault)
         ended = self._given()
@@ -158,7 +158,7 @@ class Stage:
         shutil.copytree(self._start, self.root)
 
     def _reported(self, ended: Ended, seen: Seen, fault: str) -> Iterator[Wrong]:
-        """Judge how a command ended of which a call failed."""
+        """Judge how a command with a failed call ended."""
         if "Traceback" in ended.output or "Exception ignored" in ended.output:
             yield Wrong("told", f"a traceback: {ended.err.strip().splitlines()[-1]}")
         elif ended.code == -signal.SIGKILL:
@@ -170,9 +170,9 @@ class Stage:
             yield Wrong("told", f"names no file: {ended.output.strip()[-200:]}")
 
     def _named(self, output: str, fault: str, failed: Path) -> bool:
-        """Whether the output names the file, or one that was to be in the folder.
+        """Return whether the output names the file, or one that was to be in the folder.
 
-        Where a disk stays full, the file that ends a command need not be the first that failed.
+        If a disk stays full, the file that ends a command need not be the first that failed.
         """
         if FAULTS[fault].lasting:
             return str(self.root) in output
@@ -182,7 +182,7 @@ class Stage:
         return str(failed) in output
 
     def _state(self, ended: Ended) -> Iterator[Wrong]:
-        """Judge what is on disk after the fault."""
+        """Judge the files on disk after the fault."""
         now = _files(self.root)
         for name, content in now.items():
             allowed = [files[name] for files in (self.before, self.after) if name in files]
@@ -199,7 +199,7 @@ class Stage:
             yield from (Wrong("different", f"{name}, and not a word") for name in old)
 
     def _resumed(self, again: Ended) -> Iterator[Wrong]:
-        """Judge the command that was given again."""
+        """Judge the repeated command."""
         now = _files(self.root)
         if again.code != self.code or "Traceback" in again.output:
             yield Wrong("unusable", f"left with {again.code}: {again.output.strip()[-300:]}")
@@ -221,7 +221,7 @@ def _files(folder: Path) -> Files:
 
 
 def _tells(name: str, content: bytes) -> bool:
-    """Whether it is a whole file that also reports what went wrong: a batch's summary, a page."""
+    """Return whether a file is complete and reports what went wrong: a batch's summary, a page."""
     if name.endswith(".html"):
         return b"cannot be used" in content and content.rstrip().endswith(b"</html>")
     try:

@@ -1,4 +1,4 @@
-"""One flipped bit in what a command wrote: found, or no change of what is read."""
+"""One flipped bit in a file that a command wrote: detected, or the data read do not change."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from loadshare.study.tolerance.job import Job
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """A file, and how its readers take it.
+    """A file, and its readers.
 
     Attributes
     ----------
     kind : str
     file : pathlib.Path
     whole : bytes
-        What was written.
+        The bytes that were written.
     notices : callable
-        Reads the file; tells whether a change of it was found.
+        Reads the file; returns whether a change of it was detected.
 
     Notes
     -----
-    `notices` raises `AssertionError` if what it reads is another thing than what was written.
+    `notices` raises `AssertionError` if it reads something other than what was written.
     """
 
     kind: str
@@ -41,7 +41,7 @@ class Subject:
     notices: Callable[[], bool]
 
     def flip(self, place: int) -> bool:
-        """Flip one bit of the file, tell whether that was found, and mend it."""
+        """Flip one bit of the file, return whether that was detected, and restore it."""
         damaged = bytearray(self.whole)
         damaged[place // 8] ^= 1 << (place % 8)
         self.file.write_bytes(damaged)
@@ -57,7 +57,7 @@ def subjects(folder: Path) -> Iterator[Subject]:
     Parameters
     ----------
     folder : pathlib.Path
-        An empty one.
+        An empty folder.
     """
     yield from _results(folder)
     yield from _study(folder / "study")

@@ -1,4 +1,4 @@
-"""A slice of the flipped bits; ``python -m tests.flips --count 10000`` tries more."""
+"""A sample of flipped bits; ``python -m tests.flips --count 10000`` tries more."""
 
 import logging
 
@@ -20,7 +20,7 @@ def written(tmp_path_factory):
     ),
 )
 def test_every_flipped_bit_that_changes_data_is_found(written, kind, caplog):
-    """A flip in blanks or in unused bytes changes no data; all others are found."""
+    """A flip in white space or in unused bytes changes no data; all others are detected."""
     caplog.set_level(logging.CRITICAL)
     (subject,) = (s for s in written if s.kind == kind)
     found = [subject.flip(place) for place in places(subject, examples(40, 100), seed=1)]

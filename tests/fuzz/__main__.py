@@ -24,7 +24,7 @@ from tests.fuzz.corpus import keep
 from tests.fuzz.trial import Trial, compile_first, drawn, trial
 
 MEMORY = 2 << 30
-"""Bytes that no input may take, besides what the process has."""
+"""Bytes of memory that an input may take beyond those of the process."""
 
 
 def _alone(seed: int, number: int) -> Trial:
@@ -35,7 +35,7 @@ def _alone(seed: int, number: int) -> Trial:
 
 
 def _data() -> int:
-    """Bytes of data that this process has; 0 where the system does not say."""
+    """Return the bytes of data of this process; 0 if the system does not report them."""
     with suppress(OSError), Path("/proc/self/status").open(encoding="ascii") as lines:
         return 1024 * next(int(line.split()[1]) for line in lines if line.startswith("VmData"))
     return 0
@@ -43,7 +43,7 @@ def _data() -> int:
 
 @contextmanager
 def _empty() -> Iterator[Path]:
-    """Make a folder; not that of temporary files itself, as one may ask for what is above."""
+    """Make a folder inside a temporary one, because an input may refer to the parent folder."""
     with TemporaryDirectory() as above:
         folder = Path(above) / "in"
         folder.mkdir()
@@ -65,7 +65,7 @@ def _run() -> int:
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
     with ProcessPoolExecutor(1) as pool:
-        # In a process of its own: what compiling takes would count as an input's memory.
+        # In a process of its own, because the memory of the compiler would count as an input's.
         pool.submit(compile_first).result()
     start, reported, faults, codes = time.monotonic(), time.monotonic(), 0, Counter[str]()
     seen: set[str] = set()

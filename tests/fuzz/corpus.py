@@ -1,4 +1,4 @@
-"""Inputs that were found to end in what must not be, kept and tried again ever after."""
+"""Inputs that led to a fault, kept and tried again in every run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.fuzz.trial import CASES, tried
 
 CORPUS = Path(__file__).with_name("corpus")
-"""A folder for each, with its files as they were and `command.json`."""
+"""Folder with one subfolder for each input: its original files and `command.json`."""
 COMMAND = "command.json"
 
 
@@ -24,12 +24,12 @@ def keep(name: str, kind: str, words: tuple[str, ...], folder: Path) -> Path:
     words : tuple of str
         The command.
     folder : pathlib.Path
-        With its files.
+        Folder with its files.
     """
     kept = CORPUS / name
     kept.mkdir(parents=True, exist_ok=True)
     for file in folder.rglob("*"):
-        # Shipped files are put next to it again.
+        # Shipped files are not kept; they are copied next to it again.
         if file.is_file() and not _is_shipped(file):
             _copy(file, kept / file.relative_to(folder))
     marked = [w.replace(str(folder), "{folder}").replace(str(CASES), "{cases}") for w in words]
@@ -49,14 +49,14 @@ def _is_shipped(file: Path) -> bool:
 
 
 def retried(kept: Path, folder: Path) -> str:
-    """Try a kept input in an empty folder; return what must not happen."""
+    """Try a kept input in an empty folder; return the fault."""
     for file in CASES.glob("*/*.toml"):
         _copy(file, folder / file.name)
     for file in kept.rglob("*"):
         if file.is_file():
             _copy(file, folder / file.relative_to(kept))
     command = json.loads((folder / COMMAND).read_text(encoding="utf-8"))
-    # Not by format(): words may hold braces of their own.
+    # Not by format(), because arguments may contain braces of their own.
     words = (
         word.replace("{folder}", str(folder)).replace("{cases}", str(CASES))
         for word in command["words"]

@@ -1,10 +1,10 @@
-"""Cases led by coverage: ``python -m tests.fuzz.guided FOLDER -max_total_time=600``.
+"""Cases guided by coverage: ``python -m tests.fuzz.guided FOLDER -max_total_time=600``.
 
-Atheris (libFuzzer) keeps in FOLDER each case that reaches lines that none reached before, and
-changes those further. Arguments that begin with ``-`` are libFuzzer's. What must not happen is
-printed, once of each kind, and kept in `corpus`, where the tests try it again.
+Atheris (libFuzzer) keeps in FOLDER each case that reaches new lines, and mutates those further.
+Arguments that begin with ``-`` are libFuzzer's. Faults are printed, once of each kind, and kept in
+`corpus`, where the tests try them again.
 
-``make fuzz-guided`` installs Atheris, which has wheels for few systems, and does this.
+``make fuzz-guided`` installs Atheris, which has wheels for few systems, and runs this module.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ from tests.fuzz.trial import (
 )
 
 MOST = 30_000
-"""Bytes of a case."""
+"""Most bytes of a case."""
 
 
 class Trials:
-    """Cases given to the command, one after the other.
+    """Cases given to the command one after the other.
 
     Parameters
     ----------
     folder : pathlib.Path
-        Empty.
+        An empty folder.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -50,7 +50,7 @@ class Trials:
             lay_beside(file, folder)
 
     def one(self, text: bytes) -> None:
-        """Try a case; a study of it, where it holds one."""
+        """Try a case, or a study of it if it contains one."""
         (self._folder / "found.json").unlink(missing_ok=True)
         (self._folder / "case.toml").write_bytes(text)
         data = _read(text) or {}
@@ -74,7 +74,7 @@ def _read(text: bytes) -> dict[str, object] | None:
 
 
 def changed(text: bytes, most: int, seed: int) -> bytes:
-    """Return another case: with values changed, where the text is one."""
+    """Return another case: with values changed if the text is a case."""
     random = np.random.default_rng(seed)
     data = _read(text)
     if not data or random.integers(8) == 0:
@@ -82,7 +82,7 @@ def changed(text: bytes, most: int, seed: int) -> bytes:
     try:
         made = toml((rescaled if random.integers(4) == 0 else mutated)(random, data))
     except (ValueError, TypeError, RecursionError):
-        # No number to rescale, or what TOML has and JSON has not.
+        # No number to rescale, or a value that TOML has but JSON does not.
         return garbled(random, text)[:most]
     return made.encode()[:most]
 

@@ -1,9 +1,9 @@
-"""All that reads and answers a case, imported with counters of its lines."""
+"""All modules that read and answer a case, imported with line counters."""
 
 import atheris
 
 CODE = ("case", "cli", "job", "report", "results", "scene", "study", "train")
-"""Folders whose lines count; not those with code that Numba compiles, which takes no counters."""
+"""Folders whose lines count; those with code that Numba compiles cannot have counters."""
 
 with atheris.instrument_imports(include=[f"loadshare.{name}" for name in CODE]):
     import loadshare.cli.draw

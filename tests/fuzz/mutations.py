@@ -37,7 +37,7 @@ VALUES = (
 
 
 def places(data: Any, above: tuple[Step, ...] = ()) -> Iterator[tuple[Step, ...]]:
-    """Yield every place in nested data."""
+    """Yield the path of every item in nested data."""
     items = data.items() if isinstance(data, dict) else enumerate(data)
     for step, value in items:
         yield (*above, step)
@@ -46,31 +46,31 @@ def places(data: Any, above: tuple[Step, ...] = ()) -> Iterator[tuple[Step, ...]
 
 
 def at(data: Any, path: tuple[Step, ...]) -> Any:
-    """Return the value at a place."""
+    """Return the value at a path."""
     for step in path:
         data = data[step]
     return data
 
 
 def copied(data: Any) -> Any:
-    """Return data that may be changed without changing others."""
+    """Return a deep copy of data."""
     return json.loads(json.dumps(data))
 
 
 def pick(random: Random, some: Any) -> Any:
-    """Return one of some things."""
+    """Return a random one of several items."""
     return some[int(random.integers(len(some)))]
 
 
 def number(random: Random, value: Any) -> Any:
-    """Return another number in place of one."""
+    """Return a number to replace another."""
     text = str(value)
     figure, _, unit = text.partition(" ")
     match int(random.integers(7)):
         case 0:
             figure = pick(random, NUMBERS)
         case 4 | 5 | 6:
-            # As one might mean it.
+            # A number that one might mean.
             try:
                 figure = repr(float(figure) * float(random.uniform(0.1, 3.0)))
             except ValueError:
@@ -98,17 +98,17 @@ def whole(random: Random, value: Any) -> Any:
 
 
 def other(random: Random, value: Any) -> Any:
-    """Return something of any kind."""
+    """Return a value of any kind."""
     return copied(pick(random, VALUES))
 
 
 def named(random: Random, value: Any) -> Any:
-    """Return a text that no name should be."""
+    """Return a text that is not a valid name."""
     return pick(random, NAMES)
 
 
 def nested(random: Random, value: Any) -> Any:
-    """Return the value within tables and lists."""
+    """Return the value nested in tables and lists."""
     for _ in range(pick(random, (1, 2, 19, 25, 60))):
         value = [value] if random.integers(2) else {"a": value}
     return value
@@ -135,7 +135,7 @@ def mutated(random: Random, data: dict[str, Any]) -> dict[str, Any]:
             case 1 if isinstance(holder, dict):
                 holder[pick(random, NAMES)] = holder.pop(step)
             case 2:
-                # Something of another place, or of this one in another one's place.
+                # A value from another place, or from here in another place.
                 holder[step] = copied(at(made, pick(random, every)))
             case 3 if isinstance(holder, list):
                 holder.extend(copied(holder[: 1 + int(random.integers(3))]))
@@ -149,7 +149,7 @@ def mutated(random: Random, data: dict[str, Any]) -> dict[str, Any]:
 
 
 def rescaled(random: Random, data: dict[str, Any]) -> dict[str, Any]:
-    """Return data with some numbers made larger or smaller, up to a thousand times."""
+    """Return data with some numbers scaled, up or down by a factor of up to a thousand."""
     made: dict[str, Any] = copied(data)
     every = [path for path in places(made) if _QUANTITY.fullmatch(str(at(made, path)))]
     for _ in range(int(random.integers(1, 6))):
@@ -164,7 +164,7 @@ def rescaled(random: Random, data: dict[str, Any]) -> dict[str, Any]:
 
 
 def garbled(random: Random, text: bytes) -> bytes:
-    """Return text with some bytes changed, left out, put in or repeated."""
+    """Return text with some bytes changed, removed, inserted or repeated."""
     made = bytearray(text)
     for _ in range(int(random.integers(1, 6))):
         where = int(random.integers(len(made) + 1))
@@ -183,7 +183,7 @@ def garbled(random: Random, text: bytes) -> bytes:
 
 
 def toml(data: dict[str, Any]) -> str:
-    """Return data as TOML, each top-level key with all that it holds on one line."""
+    """Return data as TOML, each top-level key with its value on one line."""
     return "".join(f"{json.dumps(key)} = {_inline(value)}\n" for key, value in data.items())
 
 
@@ -199,7 +199,7 @@ def _inline(value: Any) -> str:
 
 
 def seeds(folder: Path) -> list[tuple[Path, dict[str, Any]]]:
-    """Return the files that are changed, with what they hold."""
+    """Return the files to be changed, with their contents."""
     return [
         (file, tomllib.loads(file.read_text(encoding="utf-8")))
         for file in sorted(folder.rglob("*.toml"))

@@ -1,4 +1,4 @@
-"""A slice of the unintended inputs; ``make fuzz N=100000`` tries as many as one likes."""
+"""A sample of unintended inputs; ``make fuzz N=100000`` tries any number of them."""
 
 import os
 import stat
@@ -22,8 +22,8 @@ def compiled():
 @pytest.mark.parametrize("part", range(8))
 @pytest.mark.quick(2)
 def test_no_input_ends_in_anything_but_words(tmp_path, part, monkeypatch):
-    """No traceback, no warning, no hang, no figure that is no number, no result that fails."""
-    # As for anybody else, who may not read files outside of the case's folder.
+    """No traceback, no warning, no hang, no NaN among figures, no result that fails."""
+    # As for ordinary users, whose cases may not read files outside their folder.
     monkeypatch.delenv(OUTSIDE)
     faults = []
     for number in range(40 * part, 40 * part + 40):
@@ -73,7 +73,7 @@ def test_a_name_that_is_too_long_is_reported():
 
 KEPT = sorted(CORPUS.iterdir())
 LONG = {"case-101-1696", "study-40003-5927", "study-60005-19145"}
-"""Of these, what takes seconds."""
+"""Those of the inputs that take seconds."""
 
 
 @pytest.mark.usefixtures("compiled")

@@ -1,4 +1,4 @@
-"""One unintended input, given to the command: what must never happen, and what did."""
+"""One unintended input given to the command, and the fault that it causes, if any."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from loadshare.tooth.pair.file import load_pair
 
 CASES = Path(__file__).parents[2] / "cases"
 SECONDS = 10.0
-"""Processor time beyond which it is a hang."""
+"""Processor time [s] beyond which a command counts as hanging."""
 SETTINGS = (
     "operating.torque",
     "operating.power",
@@ -95,20 +95,20 @@ COUNTS = {"samples", "steps", "starts", "indices"}
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """An input and what became of it.
+    """An input and its result.
 
     Attributes
     ----------
     kind : str
-        Of input: a key of `KINDS`.
+        Kind of input: a key of `KINDS`.
     seed, number : int
-        By which it is drawn again.
+        Numbers by which it can be drawn again.
     words : tuple of str
         The command.
     code : int
-        Exit code; −1 where something escaped.
+        Exit code; −1 if an exception escaped.
     fault : str
-        What must not happen; empty where nothing did.
+        Description of the fault; empty without one.
     """
 
     kind: str
@@ -120,7 +120,7 @@ class Trial:
 
 
 def _command(words: tuple[str, ...]) -> tuple[int, str]:
-    """Exit code and output of a command in this process."""
+    """Return exit code and output of a command in this process."""
     output = StringIO()
     try:
         with redirect_stdout(output), redirect_stderr(output):
@@ -131,7 +131,7 @@ def _command(words: tuple[str, ...]) -> tuple[int, str]:
 
 
 def _judged(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
-    """Exit code of a command, and what is wrong about it."""
+    """Return the exit code of a command, and its fault."""
     code, output = _command(words)
     if code not in (0, 1, 2):
         return code, f"left with {code}"
@@ -159,7 +159,7 @@ def _figures(data: Any) -> Iterator[float]:
 
 @cache
 def shipped_cases() -> list[tuple[Path, dict[str, Any]]]:
-    """Shipped cases but that of teeth, whose analysis may take its time."""
+    """Return the shipped cases except the one with teeth, whose analysis may take long."""
     return [s for s in seeds(CASES) if s[0].parent.name != "pairs" and "geometry" not in s[0].name]
 
 
@@ -172,7 +172,7 @@ def _case(random: Random, folder: Path) -> tuple[str, ...]:
 
 
 def _rescaled(random: Random, folder: Path) -> tuple[str, ...]:
-    """Write a case with other numbers, such as one might mean."""
+    """Write a case with other numbers that one might mean."""
     file, data = pick(random, shipped_cases())
     (folder / "case.toml").write_text(toml(rescaled(random, data)), encoding="utf-8")
     lay_beside(file, folder)
@@ -189,13 +189,13 @@ def _study(random: Random, folder: Path) -> tuple[str, ...]:
 
 
 def study_case(name: str) -> dict[str, Any]:
-    """Return a case that holds a study."""
+    """Return a case that contains a study."""
     study = {name: STUDIES[name]}
     return {"extends": "limit_ring.toml", "study": study, "measured": MEASURED}
 
 
 def shortened(case: dict[str, Any]) -> dict[str, Any]:
-    """Return a case without what may legitimately take hours: samples, steps."""
+    """Return a case without counts that may legitimately take hours: samples, steps."""
     for table in _tables_in(case):
         for key in COUNTS & set(table):
             if isinstance(table[key], int) and 20 < table[key] <= ALLOWED.samples:
@@ -220,7 +220,7 @@ def _bytes(random: Random, folder: Path) -> tuple[str, ...]:
 
 
 def lay_beside(file: Path, folder: Path) -> None:
-    """Put what a case may extend where it looks for it."""
+    """Put the files that a case may extend next to it."""
     for known in file.parent.glob("*.toml"):
         shutil.copyfile(known, folder / known.name)
 
@@ -233,7 +233,7 @@ def _solved(random: Random, folder: Path) -> tuple[str, ...]:
 
 
 def _words(random: Random, folder: Path) -> tuple[str, ...]:
-    """Ask for what is nothing, of a case that is good."""
+    """Run a command with invalid arguments on a valid case."""
     case = str(pick(random, shipped_cases())[0])
     value = f"{pick(random, NUMBERS)} {pick(random, UNITS)}"
     if random.integers(3) == 0:
@@ -260,7 +260,7 @@ def _words(random: Random, folder: Path) -> tuple[str, ...]:
 
 
 def _pair(random: Random, folder: Path) -> tuple[str, ...]:
-    """Write tooth data with some values changed, of which a case is checked."""
+    """Write tooth data with some values changed."""
     _, data = pick(random, seeds(CASES / "fgfbstts" / "pairs"))
     (folder / "pair.toml").write_text(toml(mutated(random, data)), encoding="utf-8")
     return ("pair", str(folder / "pair.toml"))
@@ -300,12 +300,12 @@ def _tables(random: Random, folder: Path) -> tuple[str, ...]:
 
 @cache
 def plain_cases() -> list[tuple[Path, dict[str, Any]]]:
-    """Shipped cases with all that they inherit."""
+    """Return the shipped cases with all that they inherit."""
     return [(file, ls.load_case(file).to_dict()) for file, _ in shipped_cases()]
 
 
 def _imported(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
-    """Import tables; what makes a case is solved."""
+    """Import tables; if they make a case, solve it."""
     code, wrong = _judged(words, folder)
     if code or wrong:
         return code, wrong
@@ -314,7 +314,7 @@ def _imported(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
 
 
 def _exchanged(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
-    """Import a unit; what makes a case is solved and written back, and imports again."""
+    """Import a unit; if it makes a case, solve it, export it and import it again."""
     code, wrong = _judged(words, folder)
     if code or wrong:
         return code, wrong
@@ -377,11 +377,11 @@ SHARES = (
     *(("case",) * 14 + ("numbers",) * 4 + ("bytes",) * 8 + ("words",) * 6 + ("study",) * 2),
     *(("pair",) * 4 + ("rexs",) * 2 + ("tables",) * 2 + ("result",) * 4),
 )
-"""How often each kind is drawn: studies take ten times as long as all others."""
+"""Relative frequency of each kind: studies take ten times as long as all others."""
 
 
 def compile_first() -> None:
-    """Compile all that an input may lead to: that takes its minutes, and is no hang."""
+    """Compile everything an input may need: this takes minutes, and must not count as a hang."""
     case = CASES / "fgfbstts" / "all_elements.toml"
     ls.solve_many(case, {"rings.4.float [um]": [1.0, 2.0]}, engine="compiled")
 
@@ -400,14 +400,14 @@ def trial(seed: int, number: int, folder: Path) -> Trial:
     ----------
     seed, number : int
     folder : pathlib.Path
-        Empty; what is written stays there.
+        An empty folder; the files stay there.
     """
     kind, words = drawn(seed, number, folder)
     return Trial(kind, seed, number, words, *tried(kind, words, folder))
 
 
 def tried(kind: str, words: tuple[str, ...], folder: Path) -> tuple[int, str]:
-    """Give an input to the command; return its exit code and what must not happen."""
+    """Run an input; return its exit code and its fault."""
     try:
         with chdir(folder), limited(SECONDS), warnings.catch_warnings():
             warnings.simplefilter("error")

@@ -1,4 +1,4 @@
-"""What blocks give back is kept for the next one."""
+"""Memory that a block frees is kept for the next one."""
 
 import os
 import platform
@@ -26,7 +26,7 @@ print(counts[-1])
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="another C library")
 @pytest.mark.slow
 def test_pages_are_not_fetched_anew():
-    """A batch that was solved before finds its memory there."""
+    """A repeated batch reuses its memory."""
 
     def pages(**environment: str) -> int:
         done = subprocess.run(

@@ -1,4 +1,4 @@
-"""Compiled code is an advantage, never a condition: what goes wrong with it costs time only."""
+"""Compiled code is an advantage, never a condition: any fault of it costs time only."""
 
 import importlib.util
 import itertools
@@ -59,7 +59,7 @@ def torques() -> list[float]:
 
 
 def run(script: str, command: tuple[str, ...] = (), **environment: str):
-    """Run a script of its own; what it prints, and what it says on the side."""
+    """Run a script in its own process; return its output and its messages."""
     done = subprocess.run(
         [*command, sys.executable, "-c", script],
         env={**os.environ, **environment},
@@ -73,7 +73,7 @@ def run(script: str, command: tuple[str, ...] = (), **environment: str):
 
 
 def as_a_user() -> tuple[str, ...]:
-    """What takes from root the right to write where it is forbidden."""
+    """Return a command prefix that makes root obey write permissions."""
     if os.geteuid() != 0:
         return ()
     if shutil.which("setpriv") is None:
@@ -83,9 +83,9 @@ def as_a_user() -> tuple[str, ...]:
 
 @pytest.fixture
 def read_only(tmp_path: Path):
-    """The package and a home in folders that cannot be written."""
+    """Put the package and a home into folders that cannot be written."""
     package, home = tmp_path / "package", tmp_path / "home"
-    # Bytecode goes along, but nothing that another process is writing.
+    # Bytecode is copied as well, but not files that another process is writing.
     ignored = shutil.ignore_patterns("*.nb?*", "*.lock", "*.pyc.*")
     shutil.copytree(PACKAGE, package / "loadshare", ignore=ignored)
     home.mkdir()
@@ -180,7 +180,7 @@ _number = itertools.count()
 
 
 def loaded(file: Path):
-    """The function of a module file, as a new process would see it."""
+    """Return the function of a module file, as a new process would see it."""
     spec = importlib.util.spec_from_file_location(f"kept_{next(_number)}", file)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -226,7 +226,7 @@ def test_what_was_kept_and_is_damaged_is_compiled_again(tmp_path, monkeypatch, e
 
 
 def test_code_of_an_older_version_is_not_run_where_the_new_could_not_be_kept(tmp_path, monkeypatch):
-    """The index says so before the code is written, as on a full disk or at a kill between both."""
+    """The index is written before the code: a full disk, or a kill in between, leaves it alone."""
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     file = tmp_path / "kept.py"
     file.write_text(MODULE, encoding="utf-8")
@@ -330,7 +330,7 @@ found = hash("one"), [fingerprint(f.py_func) for f in (_settle_all, _find_all, _
 
 
 def test_code_is_known_again_in_another_process():
-    """However strings are hashed there, and if warnings are errors."""
+    """This holds for any hashing of strings, and if warnings are errors."""
     names: dict[str, Any] = {}
     exec(KEPT, names)
     strict = "import warnings; warnings.simplefilter('error')"
@@ -349,7 +349,7 @@ def test_code_is_known_again_in_another_process():
 def test_numbers_of_another_file_that_change_are_compiled_anew(
     tmp_path, monkeypatch, imported, most
 ):
-    """Numba itself looks at the function's own file only."""
+    """Numba itself checks only the function's own file."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
     (tmp_path / "numbers_of.py").write_text(
         "from typing import NamedTuple\nclass N(NamedTuple):\n    most: float = 1.0\nN = N()\n"
@@ -440,7 +440,7 @@ def test_what_is_warm_is_at_hand():
 
 @pytest.mark.slow
 def test_what_is_warm_is_all_that_batches_call():
-    """In a process that finds it on disk nothing else is compiled, whatever elements there are."""
+    """A process that finds it on disk compiles nothing else, whatever the elements."""
     assert warm() is None
     script = f"""
 import loadshare as ls
@@ -457,7 +457,7 @@ print([str(e.data["dispatcher"]) for _, e in compiled.buffer])
 
 @pytest.mark.slow
 def test_what_is_at_hand_is_all_that_cases_call():
-    """In a process that finds on disk what this one has compiled, nothing else is compiled."""
+    """A process that finds on disk what this one compiled compiles nothing else."""
     for name in KINDS:
         ls.solve(CASES / "fgfbstts" / f"{name}.toml", engine="compiled")
     script = f"""
@@ -480,7 +480,7 @@ print([str(e.data["dispatcher"]) for _, e in compiled.buffer])
 
 @pytest.fixture
 def nothing_compiles():
-    """Reports on what was compiled before are done."""
+    """Wait until reports on earlier compilations are finished."""
     watch.wait(60.0)
 
 

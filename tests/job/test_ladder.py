@@ -1,4 +1,4 @@
-"""The ladder: the hot path first, then the back-ends, then a refusal that says why.
+"""The ladder: the hot path first, then the back-ends, then a refusal with its reason.
 
 Source: formulation, sections 6, 7 and 11.
 """
@@ -41,12 +41,12 @@ CASES = {
 
 @pytest.fixture(autouse=True)
 def by_numpy(monkeypatch):
-    """The engine that tests put another in place of, whatever was compiled before."""
+    """Use the engine that tests replace, whatever was compiled before."""
     monkeypatch.setattr(hot, "engine_at_hand", lambda _name, _count: vectorised.settle)
 
 
 def failing(structure, loading, sets, parts, state, one_only):
-    """An engine that finds no answer on any set."""
+    """Act as an engine that finds no answer on any set."""
     each = np.repeat(sets, [len(part) for part in parts], axis=0)
     return np.full(len(each), contact_states.FAILED, np.int8), each
 
@@ -54,7 +54,7 @@ def failing(structure, loading, sets, parts, state, one_only):
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.quick(2)
 def test_what_the_hot_path_leaves_the_next_rung_answers(name, monkeypatch):
-    """And says so; the answer is the same."""
+    """The rung is reported; the answer is the same."""
     case = CASES[name]()
     monkeypatch.setattr(vectorised, "settle", failing)
     found = ls.solve(case, positions=[1])
@@ -67,7 +67,7 @@ def test_what_the_hot_path_leaves_the_next_rung_answers(name, monkeypatch):
 
 
 def test_what_exchange_leaves_is_searched_for(monkeypatch):
-    """By the proximal method, from which an engine of its own takes over."""
+    """The proximal method finds it, and an engine of its own takes over."""
     own = Machine(build_train(shipped("fgfbstts/limit_ring")))
     exchanged = own.answer(own.situations([1, 2]), CERTIFY.tolerance, vectorised.settle)
     assert exchanged.passed.all()
@@ -83,7 +83,7 @@ def test_what_exchange_leaves_is_searched_for(monkeypatch):
     assert searched.passed.all()
     assert searched.searched.all()
     for one, other in zip(exchanged.equilibria.arrays, searched.equilibria.arrays, strict=True):
-        # Pinion 1 may lie anywhere along one direction, and the search does not settle where.
+        # Pinion 1 may be anywhere along one direction, which the search does not settle.
         if one is not exchanged.equilibria.displacement:
             scale = np.abs(one).max(initial=1e-300)
             assert np.abs(one - other).max(initial=0.0) < 1e-9 * scale
@@ -93,7 +93,7 @@ def test_what_exchange_leaves_is_searched_for(monkeypatch):
 
 @pytest.mark.parametrize("lies", [False, True])
 def test_samples_begin_where_the_search_for_another_ended(lies, monkeypatch):
-    """One of five is searched for, unless what the others then find is none: all of them then."""
+    """One of five is searched for; if the answers of the others from there fail, all are."""
     own = Machine(build_train(shipped("fgfbstts/limit_ring")))
     indices = range(1, 6)
     expected = own.answer(own.situations(indices), CERTIFY.tolerance, vectorised.settle)
@@ -119,7 +119,7 @@ def test_samples_begin_where_the_search_for_another_ended(lies, monkeypatch):
 
 
 def test_an_answer_that_was_searched_for_says_so(monkeypatch):
-    """And is of least norm, like any other."""
+    """It is of least norm, like any other."""
     settle, visits = vectorised.settle, []
 
     def slow(structure, loading, sets, parts, state, one_only):
@@ -144,9 +144,9 @@ def test_an_answer_that_was_searched_for_says_so(monkeypatch):
 
 
 def test_a_wrong_set_is_not_handed_out(monkeypatch):
-    """An engine that is content with any set, and no search for a better one.
+    """An engine accepts any set, and no search finds a better one.
 
-    What the certificate refuses climbs on.
+    An answer that the certificate refuses goes to the next rung.
     """
     settle = vectorised.settle
 
@@ -173,7 +173,7 @@ def test_a_wrong_set_is_not_handed_out(monkeypatch):
 
 @pytest.mark.parametrize("solver", ["clarabel", "cvxpy"])
 def test_a_back_end_that_is_named_comes_first(solver, monkeypatch):
-    """The hot path is not even looked at."""
+    """The hot path is not even tried."""
 
     def forbidden(*_args):
         raise AssertionError("the hot path was taken")
@@ -202,7 +202,7 @@ def test_the_rungs_in_order():
 
 
 def test_only_what_is_left_climbs(monkeypatch):
-    """One position of five fails on the hot path; only that one climbs, and order is kept."""
+    """One position of five fails on the hot path; only that one climbs, and the order is kept."""
     train = build_train(shipped("fgfbstts/both_errors"))
     quick = hot_answers(Machine(train), range(1, 6), CERTIFY.tolerance)
     monkeypatch.setattr(
@@ -214,7 +214,7 @@ def test_only_what_is_left_climbs(monkeypatch):
 
 
 def test_the_record_of_the_hot_path():
-    """Roles, redundants, sets visited and what was left out can be explained."""
+    """Roles, redundants, visited sets and omitted inequalities can be explained."""
     found = ls.explain(shipped("fgfbstts/limit_ring"))
     assert found.rung == HOT
     assert found.record.solver == HOT
@@ -229,7 +229,7 @@ def test_the_record_of_the_hot_path():
 
 
 def test_the_certificate_of_the_hot_path_is_that_of_the_answer():
-    """It is computed when it is looked at, and is the one that `certify` gives."""
+    """It is computed on first access, and equals the result of `certify`."""
     for name in CASES:
         found = ls.explain(CASES[name]())
         again = certify(found.train, found.equilibrium)
@@ -243,8 +243,8 @@ def test_the_certificate_of_the_hot_path_is_that_of_the_answer():
 
 
 def squeezed(case: ls.Case, gear: str) -> ls.Case:
-    """Two idlers that errors have moved towards the pinion between them by 20 µm each, and a ring
-    without room that is dimensioned on the drawing.
+    """Return a case in which errors have moved two idlers by 20 µm each towards the pinion between
+    them, whose ring has no clearance and is dimensioned on the drawing.
     """
     case = case.replace({f"rings.{gear}.measured": "nominal", f"rings.{gear}.clearance": "0 um"})
     train = build_train(case)
@@ -258,7 +258,7 @@ def squeezed(case: ls.Case, gear: str) -> ls.Case:
 
 
 def test_a_contradiction_names_the_limits():
-    """Both arcs of the ring, and nothing that has no part in it."""
+    """It names both arcs of the ring, and nothing that has no part in it."""
     case = squeezed(shipped("fgfbstts/limit_ring"), "4")
     scene = assemble(build_train(case), 1)
     assert set(contradiction(scene)) == {"ring 4: arc 6", "ring 4: arc 7"}
@@ -274,7 +274,7 @@ def test_a_contradiction_names_the_limits():
 
 
 def test_both_rings_are_named_where_they_contradict_each_other():
-    """Idler 7 pushes pinion 4 by 20 µm onto idler 6, which floats in a ring that holds it fast."""
+    """Idler 7 pushes pinion 4 by 20 µm onto idler 6, which floats in a ring without play."""
     case = squeezed(shipped("fgfbstts/limit_ring"), "4").replace(
         {
             "gears.6.support": "free",
@@ -290,8 +290,8 @@ def test_both_rings_are_named_where_they_contradict_each_other():
 
 
 def test_the_positions_that_have_an_answer_are_kept():
-    """An eccentric idler comes towards the pinion and goes: where it takes more than the clearance
-    the position is refused, and the others are in `partial`.
+    """An eccentric idler moves towards the pinion and away: positions at which this exceeds the
+    clearance are refused, and the others are in `partial`.
     """
     case = shipped("fgfbstts/eccentricity").replace(
         {
@@ -327,7 +327,7 @@ def test_limits_that_can_hold_do_not_contradict(name):
 
 
 def between_planets(offset: str) -> ls.Case:
-    """A sun between the rolling rings of two planets, one of which a round ring pins off centre."""
+    """Return a sun between the rolling rings of two planets; a round ring pins one off centre."""
     reach = 80.0 / math.cos(math.radians(20.0))
     gears = {
         "sun": {"centre": ["0 mm", "0 mm"], "base_radius": "50 mm"},
@@ -348,9 +348,9 @@ def between_planets(offset: str) -> ls.Case:
 
 
 def test_a_round_ring_has_its_part_in_a_contradiction():
-    """The planet is 1 µm too near at least, and the sun, between two rings, cannot make way.
+    """The planet is at least 1 µm too near, and the sun, between two rings, cannot move away.
 
-    The arcs bend by 0.02 µm over the sun's float. Where the ring lets the planet be in its place,
+    The arcs' sagitta over the sun's float is 0.02 µm. If the ring allows the planet its place,
     there is room.
     """
     tight = between_planets("-4 um")
@@ -364,14 +364,14 @@ def test_a_round_ring_has_its_part_in_a_contradiction():
 
 
 def test_limits_of_drawn_trains_that_leave_no_place_are_named():
-    """All rungs of the ladder were climbed for it, and no set was found."""
+    """All rungs of the ladder used to be tried, and no set was found."""
     for number in (2600, 2863):
         with pytest.raises(Refused, match="rigid limits contradict one another: ring sun"):
             ls.solve(draw(1, number), positions=[1])
 
 
 def test_room_for_the_squeeze_ends_the_contradiction():
-    """The overlap is 20 µm on either side: 21 µm of clearance hold it, 19 µm do not."""
+    """The overlap is 20 µm on either side: a clearance of 21 µm is enough, 19 µm is not."""
     case = squeezed(shipped("fgfbstts/limit_ring"), "4")
     assert ls.solve(case.replace({"rings.4.clearance": "21 um"}), positions=[1]).passed
     tight = build_train(case.replace({"rings.4.clearance": "19 um"}))
@@ -382,7 +382,7 @@ def test_room_for_the_squeeze_ends_the_contradiction():
 
 
 def beside_the_line(distance: str = "525.6314 mm") -> ls.Case:
-    """The seed's limit rings without clearance, the idlers 1e-6 rad off the line of the arcs."""
+    """Return the seed's limit rings without clearance, idlers 1e-6 rad off the line of the arcs."""
     case = shipped("fgfbstts/limit_ring")
     for gear in ("6", "7", "8", "9"):
         case = case.replace({f"gears.{gear}.centre.distance": distance})
@@ -390,7 +390,7 @@ def beside_the_line(distance: str = "525.6314 mm") -> ls.Case:
 
 
 def squeeze(train: Train, found: ls.Result | object) -> float:
-    """Largest force with which both arcs of a ring push at once [N]."""
+    """Return the largest force with which both arcs of a ring push at once [N]."""
     forces = found.ring_force
     return max(
         min(forces[ring.arc_name(n)] for n in ring.neighbours) for ring in train.rings.values()
@@ -398,8 +398,8 @@ def squeeze(train: Train, found: ls.Result | object) -> float:
 
 
 def test_a_float_between_opposed_arcs_rolls_or_is_refused():
-    """Arcs 1e-6 rad off the line seem to wedge a float in with a squeeze of 1e6 times its push.
-    The float rolls away; the squeeze is never certified.
+    """Arcs 1e-6 rad off the line seem to wedge a float with a squeeze of 1e6 times its push. The
+    float rolls away; the squeeze is never certified.
     """
     case = beside_the_line()
     train = build_train(case)
@@ -421,8 +421,8 @@ def test_a_float_between_opposed_arcs_rolls_or_is_refused():
 
 
 def test_a_squeeze_is_refused_by_its_certificate():
-    """The rolled answer with a squeeze added to both arcs of ring 4: in balance except for 1e-6 of
-    it, and refused for what the two directions leave open.
+    """It is the rolled answer with a squeeze added to both arcs of ring 4. It is balanced to 1e-6
+    of the squeeze, and refused for the uncertainty of the two directions.
     """
     case = beside_the_line()
     train = build_train(case)
@@ -464,7 +464,7 @@ def test_climbing_alone_gives_the_answer_of_the_hot_path():
 
 
 def test_the_rungs_after_the_hot_path_give_up_after_so_many_steps():
-    """Lost contact takes curved solves; with too few steps it is refused, and says so."""
+    """Lost contact needs curved solves; with too few steps, it is refused with that reason."""
     train = build_train(lost_contact())
     with pytest.raises(Refused, match="in the steps allowed"):
         climb(train, 1, Options(), CERTIFY.tolerance, steps=1)
@@ -472,13 +472,13 @@ def test_the_rungs_after_the_hot_path_give_up_after_so_many_steps():
 
 
 def test_what_a_part_of_the_load_displaces_too_far_is_refused_at_once():
-    """The whole load took seven seconds of solves that led nowhere."""
+    """Solving the whole load took seven seconds, without a result."""
     with pytest.raises(ls.Refused, match="under 70% of the load, the displacements are too large"):
         climb(build_train(draw(1, 3487)), 1, Options(), CERTIFY.tolerance, JOB.steps)
 
 
 def test_a_refusal_tells_of_a_part_of_the_load_that_is_too_much_already():
-    """Soft rings give way until the input rolls off its arc: a part of the load turns it far."""
+    """Soft rings yield until the input rolls off its arc: part of the load displaces it too far."""
     with pytest.raises(ls.Refused, match="large for the geometry already") as caught:
         climb(build_train(draw(1, 1292)), 1, Options(), CERTIFY.tolerance)
     assert "under 70% of the load" in str(caught.value)

@@ -1,8 +1,8 @@
-"""Many samples at once: the same answers as one at a time, in the right places, whatever the
-blocks and the workers.
+"""Many samples at once: the same answers as one at a time, whatever the blocks and workers.
 
-Tolerances: the same sample in other company takes another number of Newton passes, and differs by
-round-off times its condition: 1e-12. Solved alone it may begin elsewhere: 1e-9, as between methods.
+Tolerances: 1e-12 for a sample solved with other samples, because it takes another number of Newton
+passes and differs by round-off times its condition number; 1e-9, as between methods, for a sample
+solved alone, because it may start elsewhere.
 """
 
 import inspect
@@ -38,13 +38,13 @@ LIMIT_RING = "fgfbstts/limit_ring"
 
 
 def small_blocks(monkeypatch, samples: int) -> None:
-    """Take so many samples at a time, and one position after another."""
+    """Solve blocks of `samples` samples, and one position after another."""
     for module in (many, machine):
         monkeypatch.setattr(module, "JOB", JOB._replace(block=samples, together=samples))
 
 
 def named(rung) -> np.ndarray:
-    """What answered, by the names that the data set itself gives."""
+    """Return the rungs by the names that the data set itself gives."""
     assert rung.dtype == np.int8
     assert rung.flag_values.tolist() == list(range(len(RUNGS)))
     names = [name.replace("_", " ") for name in rung.flag_meanings.split()]
@@ -52,7 +52,7 @@ def named(rung) -> np.ndarray:
 
 
 def apart(one, other, name: str) -> float:
-    """Largest difference of a variable over its largest figure."""
+    """Return the largest difference of a variable over its largest figure."""
     a, b = one[name].values, other[name].values
     assert (np.isnan(a) == np.isnan(b)).all()
     size = np.nanmax(np.abs(a), initial=0.0) or 1.0
@@ -143,7 +143,7 @@ def test_a_case_file_will_do(tmp_path):
 @pytest.mark.parametrize("name", VARIED)
 @pytest.mark.quick(3)
 def test_each_sample_is_the_case_solved_alone(name):
-    """Torques, shares, floats, contact forces and what is determined, sample by sample."""
+    """Torques, shares, floats, contact forces and determined gears, sample by sample."""
     case, samples = varied(name, 4, seed=11)
     found = ls.solve_many(case, samples, positions=[1], keep=KEPT)
     ((_, group),) = samples_of(case, samples)
@@ -176,7 +176,7 @@ def test_each_sample_is_the_case_solved_alone(name):
 @pytest.mark.parametrize("name", VARIED)
 @pytest.mark.quick(3)
 def test_a_sample_alone_is_what_it_is_among_others(name):
-    """At all positions, though its situations come from its own train."""
+    """This holds at all positions, although its situations come from its own train."""
     case, samples = varied(name, 3, seed=12)
     among = ls.solve_many(case, samples, keep=KEPT)
     some = {key: values[1:2] for key, values in samples.items()}
@@ -192,8 +192,9 @@ def test_a_sample_alone_is_what_it_is_among_others(name):
 
 @pytest.mark.parametrize("engine", ["vectorised", "compiled"])
 def test_rings_that_hold_floats_by_next_to_no_force_need_no_search(tmp_path, engine):
-    """Two pinions roll far along lines of action that all but coincide: the forces of their rings
-    are a hundred-thousandth of the load."""
+    """Two pinions roll far along lines of action that nearly coincide: the forces of their rings
+    are 1e-5 of the load.
+    """
     path = tmp_path / "four.toml"
     path.write_text(starter_case("four", "four-branch"))
     radii = {"rings.pinion1.radius [um]": np.linspace(5.0, 60.0, 12)}
@@ -203,8 +204,8 @@ def test_rings_that_hold_floats_by_next_to_no_force_need_no_search(tmp_path, eng
 
 
 def test_a_gear_that_floats_freely_is_not_determined():
-    """Nothing holds gear 1 in its place; a rigid bearing does. Rings of up to 2 µm hold the others:
-    the pinions press on them (Fig. 14).
+    """Nothing holds gear 1 in its place, but a rigid bearing does. Rings of up to 2 µm hold the
+    others, because the pinions press on them (Fig. 14).
     """
     case = shipped(LIMIT_RING)
     samples = {key: [0.0, 2.0] for key in RINGS}
@@ -216,8 +217,8 @@ def test_a_gear_that_floats_freely_is_not_determined():
 
 
 def mixed() -> tuple[ls.Case, dict[str, list[float]]]:
-    """A ring dimensioned on the drawing whose idler comes too near by up to 30 µm; there is
-    room for 20.
+    """Return a ring dimensioned on the drawing whose idler comes too near by up to 30 µm, although
+    there is only room for 20.
     """
     case = shipped(LIMIT_RING).replace(
         {
@@ -251,7 +252,7 @@ def test_a_sample_whose_limits_contradict_is_refused_and_the_others_are_not():
 
 
 def test_a_train_without_a_path_for_the_torque_is_refused_with_a_message():
-    """The first wheels of both paths float freely: they yield to any push."""
+    """The first wheels of both paths float freely, so they give way to any push."""
     case = families.two_path("0 mrad").replace(
         {"gears.wheelA.support": "free", "gears.wheelB.support": "free"}
     )
@@ -267,7 +268,7 @@ def test_a_train_without_a_path_for_the_torque_is_refused_with_a_message():
 
 
 def test_a_law_that_drops_is_refused_sample_by_sample():
-    """S1 is given and the friction varies: where K_w S1 exceeds F_m there is no one equilibrium."""
+    """S1 is fixed and the friction varies: if K_w S1 exceeds F_m, the equilibrium is not unique."""
     case = shipped("fgfbstts/all_elements").replace({"splines.5.stick_limit": "0.5 um"})
     samples = {"splines.5.friction": [0.002, 1e-5, 0.01]}
     found = ls.solve_many(case, samples, positions=[1], keep=KEPT)
@@ -277,7 +278,7 @@ def test_a_law_that_drops_is_refused_sample_by_sample():
 
 
 def test_values_that_do_not_go_together_are_refused_sample_by_sample():
-    """Every value alone is allowed in a case; the pair of the second sample is not: S2 < S1."""
+    """Each value is valid in a case; the pair of the second sample is not: S2 < S1."""
     case = shipped("fgfbstts/spline_clearance").replace(
         {
             "splines.4.friction": None,
@@ -291,7 +292,7 @@ def test_values_that_do_not_go_together_are_refused_sample_by_sample():
         "splines.4.clearance [um]": [8.0, 3.0, 8.0],
     }
     with pytest.raises(CaseError, match="stick limit"):
-        # The smallest clearance with the largest stick limit is what the checks look at.
+        # The checks look at the smallest clearance with the largest stick limit.
         ls.solve(case.replace({"splines.4.stick_limit": "4 um", "splines.4.clearance": "3 um"}))
     found = ls.solve_many(case, samples, positions=[1], keep=KEPT)
     assert found.certified.values[:, 0].tolist() == [True, False, True]
@@ -318,7 +319,7 @@ def test_a_data_frame_will_do():
 
 
 def test_what_the_hot_path_leaves_climbs_and_says_so(monkeypatch):
-    """The engine declines the second of three samples: another rung answers it, all the same."""
+    """The engine declines the second of three samples; another rung gives the same answer."""
     from loadshare.solver.hot import contact_states, vectorised
 
     settle, declined = vectorised.settle, []
@@ -366,7 +367,7 @@ def floats(count: int) -> dict[str, np.ndarray]:
 
 
 def test_the_number_of_workers_does_not_matter(monkeypatch):
-    """Bit for bit: blocks are the same, whoever solves them."""
+    """They agree bit for bit: the blocks are the same, whoever solves them."""
     small_blocks(monkeypatch, 7)
     one, two, five = (
         ls.solve_many(shipped(LIMIT_RING), floats(40), positions=[1, 3], workers=w)
@@ -391,7 +392,7 @@ def test_the_size_of_blocks_does_not_matter(name, block, monkeypatch):
 
 
 def test_sets_in_uneven_surroundings_are_learned_of_at_one_position_too(monkeypatch):
-    """More samples than one block holds, all at one position: that was a traceback."""
+    """More samples than one block holds, all at one position, used to end in a traceback."""
     small_blocks(monkeypatch, 400)
     case = shipped("planetary/four_planets").replace({"gears.ring.support": ["1e9 N/m", "2e9 N/m"]})
     torques = {"operating.torque [N*m]": np.linspace(500.0, 1500.0, 1000)}
@@ -399,7 +400,7 @@ def test_sets_in_uneven_surroundings_are_learned_of_at_one_position_too(monkeypa
 
 
 def test_the_company_does_not_matter():
-    """The first ten of forty samples are the ten alone."""
+    """The first ten of forty samples equal the ten alone."""
     many_, few = floats(40), {key: v[:10] for key, v in floats(40).items()}
     one = ls.solve_many(shipped(LIMIT_RING), many_, positions=[1], keep=KEPT).isel(sample=slice(10))
     other = ls.solve_many(shipped(LIMIT_RING), few, positions=[1], keep=KEPT)
@@ -408,7 +409,7 @@ def test_the_company_does_not_matter():
 
 
 def test_samples_of_different_machines_come_back_in_their_places():
-    """A key that changes the machine: samples are solved by groups and keep their numbers."""
+    """If a key changes the machine, samples are solved in groups and keep their numbers."""
     case = shipped(LIMIT_RING)
     samples = {
         "rings.4.stiffness": ["rigid", "1e8 N/m", "rigid", "1e8 N/m"],
@@ -440,7 +441,7 @@ def test_a_backlash_that_follows_from_teeth_stands_beside_lengths():
 
 
 def test_gears_that_float_in_some_samples_only_are_all_reported():
-    """Whichever sample comes first."""
+    """This holds whichever sample comes first."""
     case = shipped("fgfbstts/both_errors")
     for order in (["rigid", "free"], ["free", "rigid"]):
         found = ls.solve_many(
@@ -478,7 +479,7 @@ def test_workers_run_ahead_by_a_block_each_and_no_more(monkeypatch):
 
 
 def test_memory_does_not_grow_with_the_blocks(monkeypatch):
-    """Twenty-four blocks take no more room at once than four, except the input's own columns."""
+    """Twenty-four blocks take no more memory at once than four, except for the input's columns."""
     small_blocks(monkeypatch, 100)
     case = shipped(LIMIT_RING)
 
@@ -492,7 +493,7 @@ def test_memory_does_not_grow_with_the_blocks(monkeypatch):
         finally:
             tracemalloc.stop()
 
-    # What is known of the sets that act is kept, of up to `STATICS.sets` of them.
+    # Data of up to `STATICS.sets` active sets are kept.
     peak(2400)
     # A sample's answer is some 70 numbers; its columns, in and out of SI, are 4 and their copies.
     few, more = peak(400), peak(2400)
@@ -546,7 +547,7 @@ def test_gears_keep_their_names_whichever_end_drives():
 
 
 def test_extremes_need_not_go_together():
-    """No sample is rigid, though b and c of some are none."""
+    """No sample is rigid, although b or c of some are zero."""
     case = shipped("star/floating_sun_3")
     mesh = next(iter(case.meshes))
     case = case.replace(
@@ -584,7 +585,7 @@ def test_shares_are_computed_when_they_are_read(tmp_path):
 
 
 def test_wide_trains_are_solved_in_smaller_blocks():
-    """Arrays larger than what glibc uses again would be fetched anew, page by page."""
+    """Larger arrays than glibc reuses would be allocated anew, page by page."""
     few, wide = (machine.Machine(build_train(families.split_torque(n))) for n in (8, 64))
     assert few.together == JOB.together
     places = 8 * 3 * len(wide.train.gears)

@@ -1,4 +1,4 @@
-"""BLAS works with one thread while contacts are solved, and as before afterwards."""
+"""BLAS uses one thread while contacts are solved, and its former number afterwards."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_hard_cases_and_marches_have_one_thread(monkeypatch) -> None:
         before = _threads()
         ls.solve(shipped("fgfbstts/limit_ring"), positions=[1], solver="clarabel")
         ls.march(shipped("fgfbstts/spline_clearance"), gear="4", revolutions=0.1, steps=1)
-        # Libraries may bring a BLAS of their own when they are imported.
+        # Libraries may load a BLAS of their own when they are imported.
         after = {name: threads for name, threads in _threads().items() if name in before}
     assert len(seen) >= 2
     assert all(threads == {1} for threads in seen)

@@ -11,7 +11,7 @@ TOOTHED = {"module": "3 mm", "face_width": "20 mm"}
 
 
 def pair() -> ls.Case:
-    """A pair named against the flow: its torque at the pinion is −T/2."""
+    """Return a pair named against the flow: its torque at the pinion is −T/2."""
     return ls.Case(
         {
             "operating": {"input": "w", "output": "p", "torque": "100 N*m"},
@@ -25,7 +25,7 @@ def pair() -> ls.Case:
 
 
 def two_sets(torque: object = "100 N*m") -> ls.Case:
-    """Two sets in series, 18/36/90: the first carrier brings 6 T to the second sun."""
+    """Return two sets in series, 18/36/90: the first carrier applies 6 T to the second sun."""
 
     def members(stage: int, height: str) -> dict[str, dict[str, object]]:
         centre = ["0 mm", "0 mm", height]
@@ -67,7 +67,7 @@ def two_sets(torque: object = "100 N*m") -> ls.Case:
 
 @pytest.mark.parametrize("torques", [[100.0, 50.0], [-100.0, -50.0], [0.0, 100.0, -40.0, 60.0]])
 def test_torques_of_any_sign_in_any_order(torques):
-    """Whatever was solved before of the same case."""
+    """This holds whatever was solved before for the same case."""
     case, keep = pair(), {}
     for some in (torques, torques[::-1], [-t for t in torques], torques):
         found = ls.solve_many(case, {"operating.torque [N*m]": some})
@@ -89,7 +89,7 @@ def test_a_sweep_from_zero_has_the_flanks_of_its_load():
 
 
 def test_torques_from_outside_press_other_flanks_of_sets():
-    """The sun of the second set takes 600 N·m and what acts on the carrier: a third a planet."""
+    """The sun of the second set takes 600 N·m and the torque on the carrier, a third per planet."""
     case = two_sets()
     external = [-50.0, -900.0, -475.0]
     found = ls.solve_many(case, {"operating.external.c1 [N*m]": external})
@@ -110,7 +110,7 @@ def test_positions_that_press_both_flanks_need_a_backlash():
 
 
 def two_branches(taken: float, soft: float = 1e6, **mesh: str) -> ls.Case:
-    """Idlers 2 and 2b between 1 and ring 3; `taken` leaves idler 2, whose meshes are `soft`."""
+    """Return idlers 2, 2b between 1 and ring 3; idler 2, its meshes `soft`, gives off `taken`."""
     gears = {"1": ("external", 47, 0), "2": ("external", 47, 100), "2b": ("external", 47, -100)}
     gears["3"] = ("internal", 141, 0)
     stiff = {"1-2": soft, "2-3": soft, "1-2b": 3e6, "2b-3": 3e6}
@@ -139,10 +139,10 @@ def test_a_mesh_on_neither_flank_is_warned_of():
     assert without.positions[0].torque == pytest.approx(exact, rel=1e-9)
     assert without.positions[0].validity.verdict == "small"
     (unknown,) = ls.solve(two_branches(60.0)).positions
-    # With much play, 2 gives all that is taken: 1-2 carries 60, and 2-3 opens.
+    # With much play, 2 gives off all that is taken: 1-2 carries 60, and 2-3 opens.
     assert unknown.torque == pytest.approx({"1-2": 60, "2-3": 0, "1-2b": 40, "2b-3": 40}, abs=1e-9)
     (measure,) = unknown.validity.warned.values()
-    # Opens by (60/k - 2 * 40/3k) r, k = 1e6; the median compression of a drive flank is 60/k r.
+    # It opens by (60/k - 2 * 40/3k) r, k = 1e6; the median compression of a drive flank is 60/k r.
     assert (measure.where, measure.refusal) == ("mesh 2-3", None)
     assert measure.value == pytest.approx(5 / 9, rel=1e-9)
     samples = {"operating.external.2": ["-60 N*m", "-20 N*m", "30 N*m"]}
@@ -160,7 +160,7 @@ def test_a_mesh_whose_flank_carries_is_not_warned_of():
 
 
 def test_planets_that_errors_unload_are_not_warned_of():
-    """Both loads reach the planets of the second set through its sun: they are one load there."""
+    """Both loads reach the planets of the second set through its sun, so they act as one load."""
     case = two_sets().replace({"errors.p21.pin.tangential": "300 um"})
     (found,) = ls.solve(case).positions
     assert found.torque["s2-p21"] == pytest.approx(0.0, abs=1e-6)
@@ -168,7 +168,7 @@ def test_planets_that_errors_unload_are_not_warned_of():
 
 
 def loop(stiffness: float, **mesh: str) -> ls.Case:
-    """Two sets that can only turn as a block: power may go round through both, either way."""
+    """Return two sets that turn only as one block: power may circulate through both, either way."""
     shafts = {"r1-s2": 1e6, "c1-c2": 1e6, "s1-r2": 1e6, "s1-c1": stiffness}
     case = two_sets().to_dict()
     for name in ("r1", "r2"):
@@ -181,8 +181,8 @@ def loop(stiffness: float, **mesh: str) -> ls.Case:
 
 @pytest.mark.parametrize(("stiffness", "wrong"), [(2e4, True), (1e9, False)])
 def test_power_that_goes_round_may_press_either_flank(stiffness, wrong):
-    """X and Y on the suns, -T - 5 X = Y, share the least energy; 3 planets yield 1 / 6e5 there."""
-    # Each part passes on a X + b T.
+    """X and Y on the suns, -T - 5 X = Y, minimise the energy; 3 planets yield 1 / 6e5 there."""
+    # Each part transmits a X + b T.
     sets, shafts = [(1, 0, 6e5), (5, 1, 6e5)], [(5, 1, 1e6), (30, 6, 1e6), (25, 5, 1e6)]
     parts = [*sets, *shafts, (24, 5, stiffness)]
     sun = -100.0 * sum(a * b / k for a, b, k in parts) / sum(a * a / k for a, _, k in parts)
@@ -191,14 +191,14 @@ def test_power_that_goes_round_may_press_either_flank(stiffness, wrong):
     assert abs(exact.torque["s2-p21"]) == pytest.approx(abs(100.0 + 5.0 * sun) / 3.0, rel=1e-6)
     (found,) = ls.solve(loop(stiffness)).positions
     assert bool(found.validity.warned) is wrong
-    # The first sun, joined to the carriers, turns with them, and pushes its planets that way.
+    # The first sun, joined to the carriers, turns with them and pushes its planets that way.
     expected = {"s1-p11": 100.0 / 15.0, "s2-p21": 0.0} if wrong else exact.torque
     for name in ("s1-p11", "s2-p21"):
         assert found.torque[name] == pytest.approx(expected[name], rel=1e-6, abs=1e-9)
 
 
 def one_set(force: str) -> ls.Case:
-    """A set 18/36/90 on rigid pins, its carrier driven; a force acts on the first planet in y."""
+    """Return a set 18/36/90 on rigid pins with driven carrier and a force on planet 1 along y."""
     case = two_sets().to_dict()
     loads = {"input": "c1", "output": "s1", "torque": "100 N*m", "forces": {"p11": ["0 N", force]}}
     first = {
@@ -210,7 +210,7 @@ def one_set(force: str) -> ls.Case:
 
 @pytest.mark.parametrize("force", [4.0, -1.0, -10.0])
 def test_a_force_on_a_planet_turns_its_carrier(force):
-    """Pins stand 81 mm from the axis, the carrier brings six times what the sun takes."""
+    """Pins are 81 mm from the axis; the carrier supplies six times the torque of the sun."""
     (found,) = ls.solve(one_set(f"{force} kN")).positions
     each = -(100.0 + 81.0 * force) / 18.0
     assert found.torque == pytest.approx(
@@ -228,13 +228,13 @@ def test_a_force_that_turns_a_carrier_both_ways_needs_a_backlash():
         ls.solve(case)
     (still,) = ls.solve(case.replace({"operating.forces.p11[1]": "-1 kN", "march": None})).positions
     turned = ls.solve(case.replace({"operating.forces.p11[1]": "-1 kN"})).positions
-    # At half a turn, the pin stands on the other side of the axis.
+    # After half a turn, the pin is on the other side of the axis.
     assert turned[0].torque["s1-p11"] == pytest.approx(still.torque["s1-p11"])
     assert turned[2].torque["s1-p11"] == pytest.approx(-(100.0 + 81.0) / 18.0)
 
 
 def pushed(force: str, **mesh: str) -> ls.Case:
-    """Two branches, with a force on idler 2, on an elastic bearing, in place of a torque."""
+    """Return two branches with a force on idler 2, on an elastic bearing, instead of a torque."""
     case = two_branches(0.0, **mesh)
     support = {"gears.2.support": "1e8 N/m"}
     return case.replace(
@@ -244,7 +244,7 @@ def pushed(force: str, **mesh: str) -> ls.Case:
 
 @pytest.mark.parametrize(("force", "wrong"), [("-20 kN", True), ("-0.5 kN", False)])
 def test_a_mesh_that_a_force_opens_is_warned_of(force, wrong):
-    """The force turns one idler on along its partners, and the other one back."""
+    """The force turns one idler forwards along its partners, and the other one backwards."""
     (without,) = ls.solve(pushed(force, backlash="0 um")).positions
     assert (min(without.torque.values()) < -1.0) is wrong
     (found,) = ls.solve(pushed(force)).positions
@@ -254,7 +254,7 @@ def test_a_mesh_that_a_force_opens_is_warned_of(force, wrong):
 
 
 def test_a_refusal_names_meshes_whose_other_flanks_would_hold():
-    """A sun of weight on planets that press it on one flank each, under next to no torque."""
+    """A heavy sun rests on planets that press it on one flank each, under almost no torque."""
     case = one_set("0 N").replace(
         {
             "operating": {

@@ -1,4 +1,4 @@
-"""What may be requested: a tolerance that certifies something, and positions that exist."""
+"""Valid requests: a tolerance that certifies something, and positions that exist."""
 
 import math
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""Cases of one shape share a machine, and their answers do not depend on it."""
+"""Cases of one shape share a machine, and their answers do not depend on that."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ CHANGES: list[tuple[str, dict[str, Any], bool]] = [
 def test_an_answer_does_not_depend_on_what_was_solved_before(
     name: str, changes: dict[str, Any], alike: bool, engine: str, monkeypatch: Any
 ) -> None:
-    """To the last bit, whether the machine is shared or its own."""
+    """They agree bit for bit, whether the machine is shared or their own."""
     case = shipped(name)
     changed = case.replace(changes)
     shapes = [shape_of(build_train(each)) for each in (case, changed)]
@@ -66,7 +66,7 @@ def test_only_the_last_shapes_are_kept(monkeypatch: Any) -> None:
 
 
 def test_what_was_made_may_be_looked_at_while_more_is_made() -> None:
-    """As two threads do that solve side by side."""
+    """Two threads that solve side by side do this."""
     case = shipped("fgfbstts/base")
     recent: Recent[int] = Recent()
     for k in range(2):

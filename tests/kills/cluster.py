@@ -1,4 +1,4 @@
-"""A Dask cluster on this machine, as the documentation says: a scheduler and two workers."""
+"""A Dask cluster on this computer, as in the documentation: a scheduler and two workers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 LIMIT = 120.0
-"""Seconds in which a process is there."""
+"""Time limit for a process to start [s]."""
 
 
 @dataclass(frozen=True)
@@ -24,10 +24,10 @@ class Cluster:
     Attributes
     ----------
     address : str
-        Of the scheduler.
+        Address of the scheduler.
     scheduler : subprocess.Popen
     workers : list of subprocess.Popen
-        Each starts its worker again when that one dies, unless it was told not to.
+        Each restarts its worker when that dies, unless it was told not to.
     """
 
     address: str
@@ -44,13 +44,13 @@ def cluster(
     Parameters
     ----------
     folder : Path
-        For logs.
+        Folder for logs.
     workers : int
-        Processes ``dask worker``.
+        Number of processes ``dask worker``.
     *more : str
-        Further words for each.
+        Further arguments for each.
     variables : dict, optional
-        Of the workers' environment.
+        Environment variables of the workers.
     """
     known = folder / "scheduler.json"
     own = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
@@ -91,7 +91,7 @@ def cluster(
 
 
 def _address(file: Path) -> str:
-    """Return the address that a scheduler writes to a file, when the file is whole."""
+    """Return the address that a scheduler writes to a file, once the file is complete."""
     end = time.monotonic() + LIMIT
     while time.monotonic() < end:
         with suppress(OSError, ValueError, KeyError):

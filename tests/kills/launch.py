@@ -1,4 +1,4 @@
-"""The command, with studies of few samples solved as studies of many are: part by part elsewhere.
+"""The command, but with small studies solved like large ones: part by part in other processes.
 
 ``python -m tests.kills.launch batch ...`` is ``loadshare batch ...``.
 """

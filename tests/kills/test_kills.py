@@ -1,4 +1,4 @@
-"""A slice of the kills; ``python -m tests.kills --count 200`` tries as many as one likes."""
+"""A sample of kills; ``python -m tests.kills --count 200`` tries any number of them."""
 
 import pytest
 from tests.kills.cluster import await_workers, cluster
@@ -7,14 +7,14 @@ from tests.kills.trial import KINDS, TARGETS, Bench, differences, trial
 
 @pytest.fixture
 def patient(monkeypatch):
-    """Beside other tests all takes longer; what is left for ever is still found."""
+    """Allow more time, because other tests run beside it; leftovers that stay are still found."""
     monkeypatch.setattr("tests.kills.trial.GONE", 60.0)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(len(TARGETS)))
 def test_what_is_killed_leaves_nothing_and_goes_on(tmp_path, patient, number):
-    """A batch, whose parent, group or worker is killed."""
+    """The parent, the group or a worker of a batch is killed."""
     bench = Bench.of(tmp_path, ("batch",))
     found = trial(bench, 1, number, ("batch",))
     assert (found.orphans, found.faults) == ((), ()), found

@@ -1,4 +1,4 @@
-"""One kill: a command is started, something of it is killed, and the command is given again."""
+"""One kill: a command is started, one of its processes is killed, and the command is run again."""
 
 from __future__ import annotations
 
@@ -47,34 +47,34 @@ deviation = "1 mrad"
 KINDS = ("batch", "local", "cluster")
 TARGETS = ("parent", "group", "worker")
 GONE = 5.0
-"""Seconds after which nothing may be left of a command that was killed."""
+"""Seconds after which nothing may be left of a killed command."""
 LIMIT = 600.0
-"""Seconds after which a command hangs."""
+"""Seconds after which a command counts as hanging."""
 MARK = "LOADSHARE_KILLS"
-"""Variable by which all that a command started is known."""
+"""Environment variable that marks all processes of a command."""
 DIED = (0, 143, -signal.SIGTERM, -signal.SIGKILL)
-"""Codes with which a command may end that was killed."""
+"""Exit codes that a killed command may have."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What became of one kill.
+    """The result of one kill.
 
     Attributes
     ----------
     number : int
     kind, target : str
-        Of `KINDS` and `TARGETS`.
+        One of `KINDS` and one of `TARGETS`.
     met : bool
-        Whether what was to be killed was there.
+        Whether the process to be killed existed.
     after : float
-        Seconds after the command was started.
+        Seconds from the start of the command to the kill.
     gone : float
-        Seconds until nothing was left of what was killed.
+        Seconds until no killed process was left.
     orphans : tuple of str
-        What was left after `GONE`.
+        Processes that were left after `GONE`.
     faults : tuple of str
-        What else must not be, differences among it.
+        Other faults, including differences.
     """
 
     number: int
@@ -89,18 +89,18 @@ class Trial:
 
 @dataclass(frozen=True)
 class Bench:
-    """What kills are tried on.
+    """The commands on which kills are tried.
 
     Attributes
     ----------
     folder : Path
-        Holds ``study.toml``, and what undisturbed commands wrote.
+        Contains ``study.toml``, and the output of undisturbed commands.
     cluster : Cluster or None
-        Where the kind of that name is solved.
+        Cluster that solves the kind of that name.
     seconds : dict
-        How long an undisturbed command takes, by kind.
+        Duration of an undisturbed command, by kind.
     outputs : dict
-        What it prints, by kind.
+        Its printed output, by kind.
     """
 
     folder: Path
@@ -110,7 +110,7 @@ class Bench:
 
     @classmethod
     def of(cls, folder: Path, kinds: tuple[str, ...], cluster: Cluster | None = None) -> Bench:
-        """Give each command once, undisturbed."""
+        """Run each command once, undisturbed."""
         shutil.copy(CASES / "two_path" / "clocking_error.toml", folder)
         (folder / "study.toml").write_text(STUDY, encoding="utf-8")
         bench = cls(folder, cluster, {}, {})
@@ -125,7 +125,7 @@ class Bench:
         return bench
 
     def output(self, kind: str, out: Path) -> str:
-        """Return what an undisturbed command of a kind says that writes to a folder."""
+        """Return the printed output of an undisturbed command of a kind that writes to a folder."""
         return self.outputs[kind].replace(str(self.folder / kind), str(out))
 
     def words(self, kind: str, out: Path) -> list[str]:
@@ -140,14 +140,14 @@ class Bench:
 
 
 def trial(bench: Bench, seed: int, number: int, kinds: tuple[str, ...] = KINDS) -> Trial:
-    """Kill one thing at one time, both of which follow from seed and number.
+    """Kill one process at one time; seed and number determine both.
 
     Parameters
     ----------
     bench : Bench
     seed, number : int
     kinds : tuple of str
-        Of which kind and target are taken in turn.
+        Kinds; kind and target are taken in turn.
     """
     random = np.random.default_rng([seed, number])
     kind = kinds[number % len(kinds)]
@@ -155,7 +155,7 @@ def trial(bench: Bench, seed: int, number: int, kinds: tuple[str, ...] = KINDS) 
     after = float(random.uniform(0.0, 0.95)) * bench.seconds[kind]
     out = bench.folder / f"{kind}-{number}"
     if kind == "cluster" and bench.cluster is not None:
-        # One that was killed before is there again after some seconds.
+        # A worker that was killed before is back after some seconds.
         await_workers(bench.cluster.address, len(bench.cluster.workers))
     faults: list[str] = []
     with _running(bench.words(kind, out)) as (process, mark):
@@ -164,7 +164,7 @@ def trial(bench: Bench, seed: int, number: int, kinds: tuple[str, ...] = KINDS) 
         crew = partial(_crew, process.pid, bench.cluster if kind == "cluster" else None)
         met, victim = _kill(process, target, crew, random)
         if target == "worker":
-            # One that dies takes nothing with it: the command goes on, whole.
+            # When a worker dies, the command must continue and give the complete result.
             victims = [victim] if victim is not None else []
             gone, orphans = _left(lambda: [one for one in victims if _alive(one)])
             faults += _ended(process, (0,))
@@ -173,7 +173,7 @@ def trial(bench: Bench, seed: int, number: int, kinds: tuple[str, ...] = KINDS) 
             faults += _ended(process, DIED)
         faults += [f"left at the end: {one}" for one in _left(lambda: _marked(mark))[1]]
     with _running(bench.words(kind, out)) as (process, mark):
-        # A batch says how long each case took.
+        # A batch prints the time of each case, so its output differs.
         faults += _ended(process, (0,), None if kind == "batch" else bench.output(kind, out))
         faults += [f"left after the second: {one}" for one in _left(lambda: _marked(mark))[1]]
     faults += differences(kind, bench.folder / kind, out)
@@ -183,9 +183,9 @@ def trial(bench: Bench, seed: int, number: int, kinds: tuple[str, ...] = KINDS) 
 
 
 def differences(kind: str, undisturbed: Path, out: Path) -> list[str]:
-    """Return in what two folders differ, byte by byte.
+    """Return the differences between two folders, byte by byte.
 
-    Only the summary of a batch may: it says how long each case took, and which were kept.
+    Only the summary of a batch may differ: it states the time of each case, and which were kept.
     """
     files = {file.relative_to(undisturbed) for file in undisturbed.rglob("*") if file.is_file()}
     found = {file.relative_to(out) for file in out.rglob("*") if file.is_file()}
@@ -212,7 +212,7 @@ def _summary(file: Path) -> dict[str, Any]:
 
 @contextmanager
 def _running(words: list[str]) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """Run a command in a session of its own; nothing of it outlives the block."""
+    """Run a command in a session of its own; none of its processes outlives the block."""
     mark = secrets.token_hex(8)
     variables = os.environ | {
         "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
@@ -244,7 +244,7 @@ def _kill(
     workers: Callable[[], list[psutil.Process]],
     random: np.random.Generator,
 ) -> tuple[bool, psutil.Process | None]:
-    """Kill what is to be killed; return whether it was there, and which worker it was."""
+    """Kill the target; return whether it existed, and which worker it was."""
     if target == "worker":
         while process.poll() is None:
             crew = workers()
@@ -294,7 +294,7 @@ def _alive(process: psutil.Process) -> bool:
 
 
 def _marked(mark: str) -> list[psutil.Process]:
-    """Return what a command started and is alive, itself included."""
+    """Return the processes of a command that are alive, including itself."""
     found = []
     for process in psutil.process_iter():
         with suppress(psutil.Error):
@@ -304,7 +304,7 @@ def _marked(mark: str) -> list[psutil.Process]:
 
 
 def _left(alive: Callable[[], list[psutil.Process]]) -> tuple[float, tuple[str, ...]]:
-    """Wait until nothing is alive; return how long that took, and what still is after `GONE`."""
+    """Wait until nothing is alive; return how long that took, and what is left after `GONE`."""
     start = time.monotonic()
     while True:
         left = alive()
@@ -317,7 +317,7 @@ def _left(alive: Callable[[], list[psutil.Process]]) -> tuple[float, tuple[str, 
 def _ended(
     process: subprocess.Popen[str], codes: tuple[int, ...], expected: str | None = None
 ) -> list[str]:
-    """Return what is wrong with how a command ends."""
+    """Return what is wrong with the end of a command."""
     try:
         out, err = process.communicate(timeout=LIMIT)
     except subprocess.TimeoutExpired:

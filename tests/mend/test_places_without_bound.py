@@ -1,4 +1,4 @@
-"""A result in which nothing bounds where gears are is written like any other."""
+"""A result in which some displacements have no bound is written like any other."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import loadshare as ls
 
 CASE = Path(__file__).with_name("places_without_bound.toml")
 SAME = ["8e7 N/m", "8e7 N/m"]
-"""The support of the ring as two stiffnesses, not as a matrix."""
+"""The support of the ring as two stiffnesses instead of a matrix."""
 
 
 @pytest.mark.parametrize("changes", [{}, {"gears.ring.support": SAME}], ids=["matrix", "two"])

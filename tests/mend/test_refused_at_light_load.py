@@ -1,7 +1,7 @@
-"""Light loads: torques of a hundred-millionth of what would wind the meshes by their gaps.
+"""Light loads: torques 1e-8 of those that would wind the meshes by their gaps.
 
-Compressions then are a millionth of the play that floats take up, so contacts close one after
-another, many exchanges from where the search begins.
+Compressions are then a millionth of the play that floats take up, so contacts close one after
+another, many exchanges from the start of the search.
 """
 
 from pathlib import Path
@@ -38,8 +38,8 @@ def test_every_load_is_certified(name, factor):
 
 
 def test_a_steep_ring_is_judged_by_its_place():
-    """Round-off of a place 10 µm out, times 3.6e9 N/m, is 1e-8 of such a load; a wrong place of a
-    thousandth of the deflection is refused all the same.
+    """Round-off of a place 10 µm out, times 3.6e9 N/m, is 1e-8 of such a load; a place that is
+    wrong by a thousandth of the deflection is still refused.
     """
     found = ls.explain(ls.load_case(HERE / "light_load.toml"))
     assert found.certificate.passed

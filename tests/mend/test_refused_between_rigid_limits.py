@@ -1,4 +1,4 @@
-"""Rigid limits that hold a float together: which forces they share is settled, and certified."""
+"""Rigid limits that hold a float between them: their forces are found and certified."""
 
 from pathlib import Path
 
@@ -15,17 +15,18 @@ HERE = Path(__file__).parent
 
 
 def inside(distance: str, **changes: object) -> ls.Case:
-    """Rigid rings without play whose pinion 4 stands inside the line of its idlers (497.5 mm)."""
+    """Return rigid rings without play; pinion 4 is inside the line of its idlers (497.5 mm)."""
     case = ls.load_case(HERE / "wedge.toml")
     return case.replace({"gears.4.centre.distance": distance, **changes})
 
 
 def meshes_agree(train: Train, found: Equilibrium, index: int = 1) -> bool:
-    """Whether every flank carries what it does in 50 digits."""
+    """Return whether every flank carries its force in 50 digits."""
     try:
         exact = reference(train, index, found)
     except NoReference:
-        # Where rigid limits share a force at will, an answer is no start in 50 digits.
+        # If rigid limits may share a force arbitrarily, an answer is no start for the 50-digit
+        # search.
         exact = reference(train, index)
     largest = max(exact.force[n] for n in found.flank_force)
     return all(abs(exact.force[n] - f) < 1e-9 * largest for n, f in found.flank_force.items())
@@ -41,7 +42,7 @@ def test_the_case_is_certified_at_every_position(name):
 
 
 def test_a_locked_pinion_is_a_rigid_one():
-    """A ring without play lets pinion 4 stand still, whatever its spline could do besides."""
+    """A ring without play keeps pinion 4 in place, whatever its spline does."""
     case = ls.load_case(HERE / "zero_play_spline.toml")
     rigid = case.replace({"gears.4.support": "rigid", "splines": None, "rings.4": None})
     locked, fixed = (ls.solve(c, positions=[1]).positions[0] for c in (case, rigid))
@@ -67,7 +68,7 @@ def test_splines_without_clearance_in_rings_of_little_play(friction, play):
 )
 @pytest.mark.quick(8)
 def test_a_pinion_in_a_wedge_of_its_idlers_is_held_by_both_arcs(nearer, play):
-    """It stands nearer to gear 10 by so many millimetres, and is pushed away from it."""
+    """It is closer to gear 10 by `nearer` millimetres, and is pushed away from it."""
     case = inside(f"{497.5 - nearer!r} mm", **{"rings.4.float": play})
     found = ls.explain(case)
     assert found.certificate.passed
@@ -75,7 +76,7 @@ def test_a_pinion_in_a_wedge_of_its_idlers_is_held_by_both_arcs(nearer, play):
     if play != "0 um":
         pushes = [found.equilibrium.ring_force[f"ring 4: arc {n}"] for n in ("6", "7")]
         assert min(pushes) > 0.0
-        # Both arcs pass through the place where the pinion is mounted.
+        # Both arcs pass through the nominal position of the pinion.
         assert np.abs(found.equilibrium.displacement["4"]).max() < 1e-12
 
 
@@ -93,8 +94,8 @@ def test_every_load(name, load):
 
 
 def test_a_wedge_is_certified_by_where_its_arcs_stand():
-    """1e-9 of the deflection off its place in a wedge of 1e-3 rad, the squeeze would hold another
-    load; a claim that is off by so much is refused.
+    """In a wedge of 1e-3 rad, a place that is off by 1e-9 of the deflection would mean a squeeze
+    that balances another load; a claim that is off by 1e-3 of the deflection is refused.
     """
     found = ls.explain(ls.load_case(HERE / "wedge.toml"))
     ring = found.train.rings["4"]

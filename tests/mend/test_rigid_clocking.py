@@ -1,4 +1,4 @@
-"""A rigid shaft that is clocked works: T·β belongs to the energies, whatever the stiffness."""
+"""A clocked rigid shaft does work: T·β is part of the energies, whatever the stiffness."""
 
 import math
 from pathlib import Path
@@ -22,7 +22,7 @@ def test_a_clocked_rigid_shaft_is_certified_like_a_very_stiff_one():
 @pytest.mark.parametrize("seed", range(25))
 @pytest.mark.quick(10)
 def test_random_split_paths_with_clocked_rigid_shafts(seed):
-    """All rigid shafts of a split are clocked, either way, so that a path may lose its contact."""
+    """All rigid shafts of a split are clocked, in either sense, so that a path may lose contact."""
     rng = np.random.default_rng(seed)
     base = ls.load_case(HERE / "rigid_clocking.toml")
     changes: dict[str, object] = {}
@@ -32,8 +32,8 @@ def test_random_split_paths_with_clocked_rigid_shafts(seed):
     case = base.replace({**changes, "operating.torque": f"{10.0 ** rng.uniform(-2, 3)} N*m"})
     found = ls.solve(case).positions[0]
     assert found.certificate.passed
-    # Torques of the two paths: either both flanks of a path touch, and their approaches differ by
-    # the clocking, or one path carries everything.
+    # Either both paths are in contact, and their approaches differ by the clocking, or one path
+    # carries everything.
     carried = found.torque["1-2"] + found.torque["1-3"]
     assert carried == pytest.approx(case.operating.input_torque[0], rel=1e-9)
     assert math.isfinite(found.certificate.worst)

@@ -1,8 +1,8 @@
 """A case in which the exclusion arc's inequality holds on both sides of a neighbour.
 
-The hot path once went past the neighbour and found no load on the branch; the whole scene stayed.
-Both passed. All ways must now give the place on the pinion's own side, and refuse it for its
-displacement.
+The hot path once moved past the neighbour and found no load on the branch; the whole scene did not.
+Both answers passed. All methods must now find the place on the pinion's own side, and refuse it
+because of its displacement.
 """
 
 from pathlib import Path
@@ -53,14 +53,14 @@ def test_the_hot_path_and_the_whole_scene_agree(name, engine):
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("reduce", [True, False])
 def test_its_displacement_is_refused(name, reduce):
-    """Teeth yield by more than their height: no answer of the linearised geometry has a meaning."""
+    """Teeth yield by more than their height: answers of linearised geometry are meaningless."""
     with pytest.raises(ls.Refused, match="displacements are too large") as refused:
         ls.solve(HERE / f"{name}.toml", reduce=reduce)
     assert refused.value.figures["compression"] > 10.0
 
 
 def test_samples_side_by_side_agree():
-    """Three hundred equal samples go through the compiled engine."""
+    """Three hundred equal samples are solved by the compiled engine."""
     train = train_of("two_answers")
     machine = Machine(train)
     one = machine.answer(machine.situations([1]), 1e-9, engine_named("vectorised", 1))

@@ -1,4 +1,4 @@
-"""A pinion whose branch carries nothing has no place: that is reported, with how far it may move.
+"""A pinion whose branch carries nothing has no determined place: this is reported, with its range.
 
 Sources: the closed forms in each test; formulation, sections 4 to 6.
 """
@@ -14,7 +14,7 @@ import loadshare as ls
 HERE = Path(__file__).parent
 FILES = ("undetermined_float", "undetermined_float_2", "undetermined_float_full")
 PLAY = 50e-6
-"""Clearance of the pinion's spline, or radius of its ring [m], in all three."""
+"""Clearance of the pinion's spline, or radius of its ring [m], in all three cases."""
 WAYS = {
     "hot path": {},
     "compiled": {"engine": "compiled"},
@@ -32,7 +32,7 @@ def case_of(name: str) -> ls.Case:
 
 @pytest.mark.parametrize("name", FILES)
 def test_the_unloaded_pinion_is_undetermined(name):
-    """Its place is the middle, and it may go as far as the clearance everywhere."""
+    """Its reported place is the centre, and its range is the clearance in every direction."""
     found = ls.solve(case_of(name)).positions[0]
     assert found.certificate.passed
     assert found.torque["q2-o"] == 0.0
@@ -63,8 +63,9 @@ def test_every_way_gives_the_same_place_and_ranges(name, way):
 
 @pytest.mark.parametrize("name", FILES[:2])
 def test_a_branch_without_contact_turns_from_flank_to_flank(name):
-    """The wheel is met by the input gear's drive flank behind it, its pinion by the output's before
-    it: r_w φ ≥ r_a (φ_a − a) and r_q φ ≤ |push| R + n·c_o, with n the push on the output gear.
+    """The drive flank of the input gear limits the wheel on one side, the flank of the output its
+    pinion on the other: r_w φ ≥ r_a (φ_a − a) and r_q φ ≤ |push| R + n·c_o, where n is the
+    direction of the push on the output gear.
     """
     case = case_of(name)
     found = ls.solve(case).positions[0]
@@ -85,7 +86,7 @@ def test_a_branch_without_contact_turns_from_flank_to_flank(name):
     pinion, output = (
         np.array([float(v.split()[0]) for v in data["gears"][g]["centre"]]) for g in ("q2", "o")
     )
-    # The input turns as `running` says, the wheel and its pinion the other way.
+    # The input turns in the sense of `running`, the wheel and its pinion in the other.
     sense = -1.0 if data["operating"]["running"] == "counter-clockwise" else 1.0
     internal = data["gears"]["o"].get("type") == "internal"
     radial = (output - pinion) / np.linalg.norm(output - pinion) * (-1.0 if internal else 1.0)
@@ -125,8 +126,8 @@ def test_it_is_reported_in_every_form(name, tmp_path):
 
 @pytest.mark.parametrize("name", FILES)
 def test_samples_say_so_too(name):
-    """Of three samples the last has its pinion loaded: its wheel's mesh is brought nearer."""
-    # A gap of the drive flank alone: that of a law would close the coast flank as well.
+    """In the last of three samples the pinion is loaded: its wheel's mesh is moved closer."""
+    # Only the gap of the drive flank changes: that of a law would close the coast flank as well.
     case = case_of(name).replace({"meshes.a-w2.law.a": None, "meshes.a-w2.gap": "0.6e-3 rad"})
     samples = {'meshes."a-w2".gap [rad]': [0.6e-3, 0.5e-3, -0.02]}
     found = ls.solve_many(case, samples, keep="displacement", least_norm=True)

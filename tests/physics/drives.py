@@ -1,4 +1,4 @@
-"""Drives written once for two readers: as a case, and as rigid bodies that touch."""
+"""Drives written once for two purposes: as a case, and as rigid bodies in contact."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ MODULE = 4e-3
 
 
 class Drive:
-    """A drive of gears by tooth numbers, all of one module, pressure angle 20 deg.
+    """A drive of gears by tooth numbers, all with one module and a pressure angle of 20 deg.
 
     Parameters
     ----------
     backlash : float or None
-        Normal backlash of all meshes [m]; without one the pressed flank is the only one.
+        Normal backlash of all meshes [m]; if None, only the pressed flank exists.
     """
 
     def __init__(self, backlash: float | None = None) -> None:
@@ -35,7 +35,7 @@ class Drive:
     def gear(
         self, name: str, teeth: int, at: tuple[float, float] = (0.0, 0.0), **keys: Any
     ) -> None:
-        """Add a gear; a negative number of teeth is an internal gear's."""
+        """Add a gear; a negative number of teeth means an internal gear."""
         self.teeth[name], self.places[name] = teeth, np.array(at, float)
         radius = 0.5 * MODULE * abs(teeth) * math.cos(ANGLE)
         kind = {"type": "internal"} if teeth < 0 else {}
@@ -62,20 +62,20 @@ class Drive:
         return found
 
     def mesh(self, first: str, second: str, stiffness: float = 4e8) -> None:
-        """Add a mesh [N/m]."""
+        """Add a mesh with a stiffness [N/m]."""
         self.meshes[f"{first}-{second}"] = first, second, stiffness
 
     def shaft(self, first: str, second: str, stiffness: float = 3e6) -> None:
-        """Add a shaft [N·m/rad]."""
+        """Add a shaft with a stiffness [N·m/rad]."""
         self.shafts[f"{first}-{second}"] = first, second, stiffness
 
     def support(self, name: str, stiffness: float) -> None:
-        """Let a gear yield on a bearing [N/m]."""
+        """Support a gear by a bearing of some stiffness [N/m]."""
         self.floats[name] = stiffness
         self.gears[name]["support"] = f"{stiffness:.17g} N/m"
 
     def case(self, driving: str, output: str, torque: float, **operating: Any) -> ls.Case:
-        """The drive as a case."""
+        """Return the drive as a case."""
         meshes: dict[str, Any] = {}
         for name, (first, _, stiffness) in self.meshes.items():
             radius = 0.5 * MODULE * abs(self.teeth[first]) * math.cos(ANGLE)
@@ -91,13 +91,13 @@ class Drive:
         )
 
     def machine(self, ways: dict[str, int] | None = None) -> Machine:
-        """The drive as rigid bodies.
+        """Return the drive as rigid bodies.
 
         Parameters
         ----------
         ways : dict of mesh to int, optional
-            1 where the flank with which the first gear pushes counter-clockwise touches at rest,
-            −1 where the other one; else both do.
+            1 if the flank with which the first gear pushes counter-clockwise touches at rest, −1 if
+            the other one does; otherwise both do.
         """
         rides = {n: g["carrier"] for n, g in self.gears.items() if g.get("carrier")}
         made = Machine(self.places, rides, self.floats)
@@ -105,7 +105,7 @@ class Drive:
             reach = 0.5 * MODULE * abs(self.teeth[first])
             ring = next((n for n in (first, second) if self.teeth[n] < 0), None)
             play = math.inf if self.backlash is None else self.backlash
-            # No play that matters, rather than infinite times zero.
+            # A large play instead of an infinite one, which would be multiplied by zero.
             play = min(play, 1.0)
             plays = {None: (0.0, 0.0), 1: (0.0, play), -1: (play, 0.0)}[(ways or {}).get(name)]
             made.mesh(name, first, second, ring, reach, ANGLE, stiffness, plays)

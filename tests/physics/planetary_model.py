@@ -1,8 +1,8 @@
-"""A planetary set written down a second time: bodies in the housing, springs, nothing else.
+"""An independent model of a planetary set: bodies in the housing and springs, nothing else.
 
-All angles count counter-clockwise, all displacements in the housing; a planet's is its own, not
-that from its pin. The equilibrium is the minimum of the energy, found by Newton's method with a
-line search on the elements that act. Nothing of the library is used.
+All angles are counter-clockwise, all displacements relative to the housing; a planet's is its own,
+not relative to its pin. The equilibrium is the minimum of the energy, found by Newton's method with
+a line search on the acting elements. Nothing of the library is used.
 """
 
 from __future__ import annotations
@@ -27,20 +27,20 @@ class Set:
     arm : float
         Distance of the pins from the axis [m].
     angles : ndarray, shape (n,)
-        Of the pins [rad].
+        Angles of the pins [rad].
     with_sun, with_ring : ndarray, shape (n,)
-        Stiffness of the meshes along their lines of action [N/m].
+        Stiffnesses of the meshes along their lines of action [N/m].
     gaps : ndarray, shape (2, n)
-        Of the meshes with sun and ring [m].
+        Gaps of the meshes with sun and ring [m].
     supports : dict of str to float
-        Stiffness [N/m] that holds sun, ring, carrier in the housing, and every planet on its pin;
-        a body that is missing is rigid.
+        Stiffness [N/m] that supports sun, ring and carrier in the housing, and every planet on its
+        pin; a missing body is rigid.
     clearance : float
-        Of the planets on their pins [m].
+        Clearance of the planets on their pins [m].
     pins : ndarray, shape (n, 2)
         Position errors of the pins [m].
     torsion : float
-        Of the ring's mount [N·m/rad].
+        Torsional stiffness of the ring's mount [N·m/rad].
     driven : int
         Sense in which the sun pushes the planets: 1 counter-clockwise, −1 clockwise.
     """
@@ -67,7 +67,9 @@ class Set:
                 self.names[body + axis] = len(self.names)
 
     def flanks(self) -> list[tuple[Row, float, float]]:
-        """Approach of every loaded flank per coordinate, its constant [m], its stiffness [N/m]."""
+        """Return the approach of every loaded flank per coordinate, its constant [m], its stiffness
+        [N/m].
+        """
         to = self.names
         sun_angle = np.arccos((self.sun + self.planet) / self.arm)
         ring_angle = np.arccos((self.ring - self.planet) / self.arm)
@@ -96,15 +98,15 @@ class Set:
         Parameters
         ----------
         member : str
-            On which the torque acts.
+            Member on which the torque acts.
         torque : float
             Counter-clockwise [N·m].
         held : set of str
             Members that cannot turn.
         """
         size, to = len(self.names), self.names
-        # Soft bearings beside stiff teeth: what double precision leaves of a flank's approach is
-        # not enough for what it is compared with.
+        # With soft bearings beside stiff teeth, a flank's approach in double precision is not
+        # accurate enough for the comparison.
         stiff, load = np.zeros((size, size), np.longdouble), np.zeros(size, np.longdouble)
         load[to[member + "t"]] = torque
         fixed = {to[name + "t"] for name in held}
@@ -164,13 +166,13 @@ class Set:
                 length = 1.0
             x = x + length * move
             if np.abs(slope[free]).max() <= 1e-9 * abs(torque):
-                # A few more for what rounding leaves.
+                # A few more steps reduce the remaining rounding.
                 near, left = True, min(left, 6)
         force = springs * np.maximum(rows @ x + start, 0.0)
         return x.astype(float), force.astype(float)
 
     def _seat(self, k: int) -> tuple[Array, Array]:
-        """A planet's way from its pin per coordinate, and the pin's error."""
+        """Return a planet's displacement from its pin per coordinate, and the pin's error."""
         to, angle = self.names, self.angles[k]
         matrix = np.zeros((2, len(to)))
         for row, axis in enumerate("xy"):

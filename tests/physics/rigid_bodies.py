@@ -1,8 +1,8 @@
-"""A machine of gears and carriers written down as rigid bodies whose points touch.
+"""A machine of gears and carriers as rigid bodies whose points touch.
 
-Every body has an angle counter-clockwise and a displacement, both in the housing. A flank is a
-point of two bodies and a direction; how near it comes follows from how its points move, and from
-nothing else: no base radius, no running sense, no rule for signs. Nothing of the library is used.
+Every body has a counter-clockwise angle and a displacement, both relative to the housing. A flank
+is a point of two bodies and a direction; its approach follows from the motion of its points alone:
+there is no base radius, no running sense, no rule for signs. Nothing of the library is used.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass
 class Touch:
-    """One flank: its row over the coordinates, what is between it at rest [m], its stiffness."""
+    """One flank: its row over the coordinates, its gap at rest [m], its stiffness."""
 
     name: str
     row: Array
@@ -37,7 +37,7 @@ class Machine:
     rides : dict of str to str
         Carrier of every planet; its pin is rigid.
     floats : dict of str to float
-        Stiffness of the bearings that yield [N/m]; all others are rigid.
+        Stiffness of the elastic bearings [N/m]; all others are rigid.
     """
 
     places: dict[str, Array]
@@ -51,14 +51,14 @@ class Machine:
         self.size = 3 * len(self.order)
 
     def velocity(self, body: str, point: Array) -> Array:
-        """How a point of a body moves per coordinate, shape (2, n)."""
+        """Return the motion of a point of a body per coordinate, shape (2, n)."""
         found = np.zeros((2, self.size))
         at, arm = self.order[body], point - self.places[body]
         found[:, at] = [-arm[1], arm[0]]
         found[0, at + 1] = found[1, at + 2] = 1.0
         carrier = self.rides.get(body)
         if carrier:
-            # The pin goes with its carrier; the planet turns on it by itself.
+            # The pin moves with its carrier; the planet turns on the pin independently.
             pin = self.places[body] - self.places[carrier]
             found[:, self.order[carrier]] += [-pin[1], pin[0]]
             found[0, self.order[carrier] + 1] += 1.0
@@ -82,7 +82,7 @@ class Machine:
         ----------
         name, first, second : str
         ring : str or None
-            Which of the two is the internal gear.
+            The internal gear, if any.
         reach : float
             Pitch radius of the first gear [m].
         angle : float
@@ -90,7 +90,7 @@ class Machine:
         stiffness : float
             [N/m]
         plays : (float, float)
-            What is between the flanks with which the first gear pushes the second, as it turns
+            Gaps at the flanks with which the first gear pushes the second when it turns
             counter-clockwise and clockwise [m].
         """
         between = self.places[second] - self.places[first]
@@ -99,7 +99,7 @@ class Machine:
             out = -out
         point = self.places[first] + reach * out
         round_it = np.array([-out[1], out[0]])
-        # Flanks press the bodies of the teeth apart.
+        # Flanks push the bodies of the teeth apart.
         apart = -out if ring == first else out
         for way, play, what in zip((1.0, -1.0), plays, ("ccw", "cw"), strict=True):
             push = way * math.cos(angle) * round_it + math.sin(angle) * apart
@@ -113,7 +113,7 @@ class Machine:
         self.springs.append((row, stiffness))
 
     def speeds(self, driving: str, held: set[str]) -> dict[str, float]:
-        """Speeds counter-clockwise over that of what drives, all flanks kept together."""
+        """Return counter-clockwise speeds over that of the driving body, all flanks in contact."""
         angles = np.arange(0, self.size, 3)
         rows = [touch.row[angles] for touch in self.touches]
         rows += [row[angles] for row, _ in self.springs]
@@ -127,12 +127,12 @@ class Machine:
         assert rank == len(angles)
         assert np.abs(matrix @ found - due).max() < 1e-6
         turning = dict(zip(order, found, strict=True))
-        # A planet's coordinate is what it turns in the housing.
+        # A planet's coordinate is its rotation relative to the housing.
         return {name: float(speed) for name, speed in turning.items()}
 
     def solve(self, torque: dict[str, float], held: set[str]) -> tuple[Array, dict[str, float]]:
         """Return coordinates and flank forces [N] under torques counter-clockwise [N·m]."""
-        # Soft bearings and shafts beside stiff teeth take more digits than double precision has.
+        # Soft bearings and shafts beside stiff teeth need more digits than double precision has.
         stiff, load = np.zeros((self.size, self.size), np.longdouble), np.zeros(self.size)
         fixed = {self.order[name] for name in held}
         for name, at in self.order.items():
@@ -160,7 +160,7 @@ class Machine:
             left -= 1
             value, slope, second = energy(x)
             here = second[np.ix_(free, free)].astype(float)
-            # What is loose is left where it is, but is moved on where it is pushed.
+            # Loose bodies stay where they are, but move if they are pushed.
             scale = 1e-13 * np.trace(here) / len(free)
             move = np.zeros(self.size)
             move[free] = np.linalg.solve(
@@ -174,7 +174,7 @@ class Machine:
                     break
             x = x + length * move
             if np.abs(slope[free]).max() < 1e-10 * max(map(abs, torque.values())):
-                # A few more for what rounding leaves.
+                # A few more steps reduce the remaining rounding.
                 left = min(left, 5)
         forces = k * np.maximum(rows @ x - gaps, 0.0)
         return x.astype(float), {

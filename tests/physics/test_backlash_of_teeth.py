@@ -1,4 +1,4 @@
-"""Backlash from thickness allowances and centre distance, against flanks brought to touch."""
+"""Backlash from thickness allowances and centre distance, against flanks moved into contact."""
 
 import math
 
@@ -17,7 +17,7 @@ def gear(teeth: int, **keys) -> dict:
 
 
 def pair(one: dict, two: dict, change: float = 0.0, **mesh) -> Case:
-    """Two gears in mesh, their centres further apart by a length [m] than without backlash."""
+    """Return two gears in mesh; `change` [m] is their extra centre distance."""
     data = {
         "operating": {"input": "a", "output": "b", "torque": "100 N*m"},
         "gears": {
@@ -33,10 +33,10 @@ def pair(one: dict, two: dict, change: float = 0.0, **mesh) -> Case:
 
 
 def play(one: Tooth, two: Tooth, distance: float) -> float:
-    """Angle by which the second gear turns from flank to flank [rad], from points of the flanks.
+    """Return the angle by which the second gear turns from flank to flank [rad], from flank points.
 
-    A tooth of the first gear stands in a space of the second, and both its flanks are followed by
-    points up to the tip: each gives by how much the second gear's flank next to it is off.
+    A tooth of the first gear is in a space of the second. Points of both its flanks, up to the tip,
+    give the distance of the second gear's adjacent flank.
     """
     inside = two.internal
     radius = np.linspace(one.base_radius, one.tip, 200_001)
@@ -45,7 +45,7 @@ def play(one: Tooth, two: Tooth, distance: float) -> float:
     )
     x, y = radius * np.cos(half), radius * np.sin(half)
     if inside:
-        # The pinion's centre stands at a distance from that of the ring, on the same side.
+        # The pinion's centre is at a distance from that of the ring, on the same side.
         at = np.hypot(x + distance, y), np.arctan2(y, x + distance)
         space = math.pi / two.teeth
     else:
@@ -64,7 +64,7 @@ def play(one: Tooth, two: Tooth, distance: float) -> float:
 @pytest.mark.parametrize("internal", [False, True])
 @pytest.mark.parametrize("change", [0.0, 2e-4, -3e-5])
 def test_backlash_is_the_play_between_flanks(internal: bool, change: float):
-    """Contact of one flank touches at one place: 2e5 points find it within 1e-8 of its play."""
+    """A flank touches at one point: 2e5 points find it within 1e-8 of its play."""
     kind = {"type": "internal"} if internal else {}
     one = gear(25, profile_shift=0.3, thickness_allowance="-60 um")
     two = gear(70, profile_shift=-0.1, thickness_allowance="-90 um", **kind)
@@ -79,7 +79,7 @@ def test_backlash_is_the_play_between_flanks(internal: bool, change: float):
 @pytest.mark.parametrize("helix", [0.0, 20.0])
 @pytest.mark.parametrize("internal", [False, True])
 def test_allowances_count_along_the_normal(helix: float, internal: bool):
-    """Closed form of ISO/TR 10064-2: j_bn = −(E_sn1 + E_sn2) cos α_n, at any helix.
+    """Closed form of ISO/TR 10064-2: j_bn = −(E_sn1 + E_sn2) cos α_n, at any helix angle.
 
     Along the line of action, in the transverse plane, it is j_bn / cos β_b.
     """
@@ -97,7 +97,9 @@ def test_allowances_count_along_the_normal(helix: float, internal: bool):
 
 @pytest.mark.parametrize("helix", [0.0, 15.0, 30.0])
 def test_gears_turn_by_the_circumferential_backlash(helix: float):
-    """Both ways, less what the mesh yields: j_wt / r_w at the driver, at any helix."""
+    """In both directions, less the deflection of the mesh: j_wt / r_w at the driver, at any helix
+    angle.
+    """
     one = gear(25, helix_angle=f"{helix} deg")
     case = pair(one, gear(70, helix_angle=f"{-helix} deg"), backlash="200 um")
     a, b = case.gears["a"].tooth, case.gears["b"].tooth
@@ -117,7 +119,7 @@ def test_gears_turn_by_the_circumferential_backlash(helix: float):
 
 
 def test_a_centre_distance_that_is_off_opens_the_flanks():
-    """To first order Δj = 2 Δa sin α_wt cos β_b; the rest is of the second order in Δa/a."""
+    """To first order Δj = 2 Δa sin α_wt cos β_b; the rest is of second order in Δa/a."""
     case = pair(gear(25), gear(70))
     one, two = case.gears["a"].tooth, case.gears["b"].tooth
     distance = distance_without_backlash(one, two)
@@ -126,7 +128,7 @@ def test_a_centre_distance_that_is_off_opens_the_flanks():
 
 
 def test_the_coast_flank_touches_where_the_play_is_used_up():
-    """A float that follows from backlashes, and a torque both ways, read it as any other."""
+    """A float that follows from backlashes, and torques of both signs, use it like any other."""
     word = pair(gear(25, thickness_allowance="-60 um"), gear(70))
     number = pair(gear(25), gear(70), backlash="60 um")
     assert build_train(word).meshes["a-b"].backlash == pytest.approx(

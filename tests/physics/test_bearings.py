@@ -1,4 +1,4 @@
-"""Bearings with radial clearance: closed forms, what they are without clearance, 50 digits.
+"""Bearings with radial clearance: closed forms, the limit of no clearance, 50 digits.
 
 Source: formulation, section 14.
 """
@@ -19,13 +19,13 @@ from loadshare.job.machine import Machine
 from loadshare.train import build_train
 
 FORCE = 100.0 / 0.05
-"""Torque of the pair over the base radius of its driver [N]."""
+"""Torque of the pair divided by the base radius of its driver [N]."""
 ALONG = np.array([-math.sqrt(1.0 - (150 / 160) ** 2), -150 / 160])
-"""Line of action, as the driven gear pushes the driver."""
+"""Line of action, in the direction in which the driven gear pushes the driver."""
 
 
 def pair(**bearing: object) -> ls.Case:
-    """Two gears, the first in a bearing with clearance."""
+    """Return two gears, the first in a bearing with clearance."""
     angle = f"{math.degrees(math.acos(150 / 160))!r} deg"
     return ls.Case(
         {
@@ -45,13 +45,13 @@ LAWS = [
     ("ball_stiffness", "6e10 N/m^1.5", 1.5),
     ("roller_stiffness", "2e9 N/m^(10/9)", 10.0 / 9.0),
 ]
-"""Keys, values, and powers of the way beyond the clearance."""
+"""Keys, values, and exponents of the distance beyond the clearance."""
 
 
 def planets_in_bearings(
     clearance: str, stiffness: str = "5e8 N/m", key: str = "stiffness"
 ) -> ls.Case:
-    """A star of four whose planets stand in bearings, and whose sun floats."""
+    """Return a star of four with planets in bearings and a floating sun."""
     case = families.star(4)
     planets = [g for g in case.gears if g.startswith("planet")]
     bearing = {"clearance": clearance, key: stiffness}
@@ -69,7 +69,7 @@ def planets_in_bearings(
 @pytest.mark.parametrize("stiffness", [1e7, 1e8, math.inf])
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (3.0, -4.0)])
 def test_a_loaded_gear_in_a_round_gap(stiffness, offset):
-    """It goes along its force to the end of the gap, and F / K further."""
+    """It moves along its force to the end of the gap, and by F / K further."""
     text = "rigid" if math.isinf(stiffness) else f"{stiffness!r} N/m"
     found = ls.solve(pair(stiffness=text, offset=[f"{v} um" for v in offset])).positions[0]
     expected = np.array(offset) * 1e-6 + (20e-6 + FORCE / stiffness) * ALONG
@@ -85,7 +85,7 @@ def test_a_loaded_gear_in_a_round_gap(stiffness, offset):
 @pytest.mark.parametrize(("key", "power"), [("ball_stiffness", 1.5), ("roller_stiffness", 10 / 9)])
 @pytest.mark.parametrize("clearance", [0.0, 20e-6])
 def test_a_loaded_gear_in_a_rolling_bearing(key, power, solver, engine, clearance):
-    """It goes on by (F / K)^(1/power) from the end of the gap."""
+    """It moves by (F / K)^(1/power) beyond the end of the gap."""
     unit = {1.5: "N/m^1.5"}.get(power, "N/m^(10/9)")
     bearing = {key: f"3e9 {unit}", "clearance": f"{clearance!r} m", "stiffness": None}
     case = pair().replace({f"bearings.a.{k}": v for k, v in bearing.items()})
@@ -123,7 +123,7 @@ def test_shares_of_planets_in_bearings_agree_with_50_digits(clearance, key, stif
 @pytest.mark.parametrize("clearance", [0, 10, 20, 40, 80])
 @pytest.mark.quick(8)
 def test_a_clearance_shifts_a_split_as_50_digits_say(law, clearance):
-    """The bearing with more clearance leaves its path less; alike they share alike."""
+    """The bearing with more clearance reduces the torque of its path; equal ones share equally."""
     key, stiffness, _ = law
     case = shipped("two_path/clocking_error")
     case = case.replace({'shafts."wheelA-pinionA".clocking': None})
@@ -177,7 +177,7 @@ def test_clearances_of_bearings_are_samples_of_one_machine():
 @pytest.mark.parametrize(("key", "stiffness", "power"), LAWS[1:])
 @pytest.mark.quick(2)
 def test_laws_of_rolling_bearings_are_samples_of_one_machine(key, stiffness, power, engine):
-    """Loads from next to nothing, where a bearing is soft, to ten times as much."""
+    """Loads range from almost zero, where a bearing is soft, to ten times as much."""
     case = planets_in_bearings("5 um", stiffness, key)
     torque = np.array([1e-3, 1.0, 30.0, 300.0, 3000.0])
     samples = {
@@ -219,7 +219,7 @@ def test_a_bearing_of_rollers_yields_as_palmgren_has_it():
 
 @pytest.mark.parametrize(("key", "stiffness", "power"), LAWS[1:])
 def test_a_rolling_bearing_yields_by_its_tangent(key, stiffness, power):
-    """Of δ = (F/K)^(1/power) by torque and by K; a set of elements keeps its rates."""
+    """The tangent of δ = (F/K)^(1/power) by torque and by K; a set of elements keeps its rates."""
     bearing = {"bearings.a.stiffness": None, f"bearings.a.{key}": stiffness}
     case = pair().replace(bearing)
     coefficient = case.bearings["a"].wall[0]
@@ -234,7 +234,7 @@ def test_a_rolling_bearing_yields_by_its_tangent(key, stiffness, power):
 
 
 def test_a_gear_moves_with_its_clearance():
-    """The sensitivity of the closed form: a micrometre of clearance is one of displacement."""
+    """By the closed form, a micrometre of clearance is a micrometre of displacement."""
     found = ls.sensitivity(pair(), "bearings.a.clearance")
     for side in ("rising", "falling"):
         rates = found.rates[1, "bearings.a.clearance", side]
@@ -275,7 +275,7 @@ def test_what_does_not_hold_is_reported(changes, message):
 TILT = math.radians(25.0)
 TURN = np.array([[math.cos(TILT), -math.sin(TILT)], [math.sin(TILT), math.cos(TILT)]])
 FULL = TURN @ np.diag([5e7, 3e8]) @ TURN.T
-"""A stiffness that is least and largest at 25 deg to x and y [N/m]."""
+"""A stiffness whose smallest and largest values are at 25 deg to x and y [N/m]."""
 
 
 def on_a_full_matrix(matrix: np.ndarray) -> ls.Case:
@@ -309,7 +309,7 @@ def test_a_full_matrix_of_two_directions_is_two_directions():
 
 
 def test_a_full_matrix_turns_with_the_train():
-    """Errors, sensitivities and shares of a train that is turned by 25 deg, its matrix with it."""
+    """Errors, sensitivities and shares of a train rotated by 25 deg together with its matrix."""
     aligned = pair().replace(
         {
             "bearings": {},
@@ -356,9 +356,9 @@ PLANETS = np.array([0, 21, 42, 63, 84]) * 2.0 * math.pi / 104.0 + 0.3
 
 
 def rounded_set(digits: int, torque: float) -> ls.Case:
-    """A set with its sun afloat and its carrier in a bearing with clearance, centres rounded.
+    """Return a set with floating sun, carrier in a bearing with clearance, and rounded centres.
 
-    The carrier may move with the sun: nothing but the rounding of the centres presses it.
+    The carrier may move with the sun: only the rounding of the centres presses it.
     """
     case: dict[str, Any] = {
         "operating": {"input": "s", "output": "c", "torque": f"{torque} N*m"},
@@ -399,7 +399,7 @@ def test_what_only_rounding_presses_rests_at_the_end_of_its_clearance(digits, en
         rounded_set(digits, 100.0), {"operating.torque [N*m]": torques}, engine=engine
     )
     assert found.certified.all()
-    # The same of a set whose centres are exact; rounding moves these by half of the last digit.
+    # The same set with exact centres; rounding moves these by half of the last digit.
     exact = ls.solve(rounded_set(14, 100.0)).positions[0].torque
     for i in range(5):
         part = found.torque.sel(mesh=f"s-p{i}").values[:, 0] / torques
@@ -411,7 +411,7 @@ CLEARANCE, OFF = 12e-6, np.array([-3e-6, 14e-6])
 
 
 def between_planets(key: str, stiffness: str, torque: float) -> ls.Case:
-    """A sun between two planets, in a bearing in which the place without displacement is not."""
+    """Return a sun between two planets, in a bearing that excludes zero displacement."""
     planet = {"base_radius": "50 mm", "support": "rigid"}
     offset = [f"{v!r} m" for v in OFF.tolist()]
     return ls.Case(
@@ -437,15 +437,15 @@ def between_planets(key: str, stiffness: str, torque: float) -> ls.Case:
 @pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
 @pytest.mark.parametrize("torque", [3.0, 100.0])
 def test_what_nothing_presses_rests_at_the_end_of_its_clearance(law, torque):
-    """A sun between two planets stands where the flanks share alike; aside it is free.
+    """A sun between two planets is where both flanks share equally; across that line it is free.
 
-    Its least place lies at the wall of its bearing, without force: a wall that is a power yields
-    there without end.
+    Its least place is at the wall of its bearing, without force; a wall with a power law has no
+    stiffness there.
     """
     found = ls.solve(between_planets(*law[:2], torque)).positions[0]
     assert found.torque["s-p0"] == pytest.approx(torque / 2.0, rel=1e-12)
     assert found.torque["s-p1"] == pytest.approx(torque / 2.0, rel=1e-12)
-    # The wall is taken to begin under 1e-12 of the load.
+    # The wall is taken to begin below 1e-12 of the load.
     assert found.certificate.proved < 1e-11
     cosine = 100.0 / 110.0
     along = np.array([math.sqrt(1.0 - cosine**2), cosine])
@@ -462,7 +462,7 @@ def test_what_nothing_presses_rests_at_the_end_of_its_clearance(law, torque):
 
 @pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
 def test_what_nothing_presses_finds_room_without_a_search(law):
-    """Room ends at the clearance, not where the tangent of a wall begins in which a gear stands."""
+    """Room ends at the clearance, not where the tangent of the wall at a pressed gear begins."""
     machine = Machine(build_train(between_planets(*law[:2], 100.0)))
     found = machine.answer(machine.situations([1]), 1e-9, engine_named("vectorised", 1))
     assert found.passed.all()

@@ -1,13 +1,13 @@
-"""Closed forms: what can be computed without a solver, the solver must find.
+"""Closed forms: the solver must find what can be computed without it.
 
 Sources: the seed's reconstruction, "Closed form for hand checks"; formulation, sections 2 to 4;
 Ligata, Kahraman, Singh, J. Mech. Des. 131, 021007 (2009), restated for the definitions here; NASA
 split-path tests, ADA314767.
 
 Tolerances: with linear springs and an identified active set an answer is exact up to the round-off
-of one small linear solve, 1e-12; 1e-9 is required. Where a case is written with rounded lengths,
-its own numbers enter the closed form, and only what the rounding cannot leave exact (equal spacing,
-equal angles) is allowed for.
+of one small linear solve, 1e-12; 1e-9 is required. If a case has rounded lengths, the closed form
+uses its own numbers, and the tolerance only allows for what rounding changes (equal spacing, equal
+angles).
 """
 
 import itertools
@@ -26,10 +26,9 @@ EXACT = 1e-9
 def four_branches(
     torque: float, k: dict[str, float], gap: dict[str, float], i12: float, i46: float
 ) -> dict[str, float]:
-    """Torques [N·m] of the four-branch train without floats, from the formulas of the
-    reconstruction.
+    """Return the torques [N·m] of the four-branch train without floats, by the reconstruction.
 
-    `k` holds K12, K46, K610 and K_T [N·m/rad], alike in both branches, `gap` the gaps at the
+    `k` contains K12, K46, K610 and K_T [N·m/rad], equal in both branches, `gap` the gaps at the
     drivers [rad].
     """
     c4 = 1 / k["46"] + i46**2 / k["610"]
@@ -63,7 +62,7 @@ STIFFNESS = {"12": 8.365e5, "46": 4.275e6, "610": 6.425e6, "T": 5e5}
 def test_the_hand_check_of_the_reconstruction():
     """T12 = 1081.975, T13 = 1093.225, Ω46 = 0.963454.
 
-    The last is one unit off in its sixth decimal: its own formula gives 0.9634527.
+    The sixth decimal of the last is off by one: its own formula gives 0.9634527.
     """
     torques = driver_torques(shipped("fgfbstts/rigid_closed_form"))
     assert torques["1-2"] == pytest.approx(1081.975, abs=5e-4)
@@ -82,7 +81,7 @@ def test_the_formulas_of_the_reconstruction():
 
 @pytest.mark.parametrize("seed", range(6))
 def test_any_gaps_and_stiffnesses(seed):
-    """Both branches alike, all ten gaps different; small enough that every contact carries."""
+    """Both branches are equal, all ten gaps differ, but so little that every contact carries."""
     rng = np.random.default_rng(seed)
     case = shipped("fgfbstts/rigid_closed_form")
     k = {n: v * rng.uniform(0.5, 2.0) for n, v in STIFFNESS.items()}
@@ -99,11 +98,10 @@ def test_any_gaps_and_stiffnesses(seed):
 
 
 def test_a_linear_train_keeps_the_excess_torque():
-    """With errors fixed and linear springs (Ω − 1)·T is constant while no contact is lost: Table 2,
-    Fig. 18.
+    """With linear springs, (Ω − 1)·T is constant while no contact is lost: Table 2, Fig. 18.
 
-    The first positions of load.toml (220 and 440 N·m) lose contact; the figures are pairwise,
-    within each pinion.
+    The errors are fixed. The first positions of load.toml (220 and 440 N·m) lose contact; the
+    figures are pairwise, within each pinion.
     """
     result = ls.solve(shipped("fgfbstts/load"))
     torques = [p.torque for p in result.positions]
@@ -122,7 +120,7 @@ def test_a_linear_train_keeps_the_excess_torque():
 
 
 def series_stiffness(case: ls.Case) -> float:
-    """Stiffness [N/m] of one planet's two meshes in series at the sun's base circle."""
+    """Return the stiffness [N/m] of one planet's two meshes in series at the sun's base circle."""
     train = build_train(case)
     (sun,) = train.meshes["sun-planet1"].laws
     (ring,) = train.meshes["planet1-ring"].laws
@@ -130,13 +128,13 @@ def series_stiffness(case: ls.Case) -> float:
 
 
 def star(n: int, floating: bool, torque: float, gaps: list[float]) -> ls.Case:
-    """A star with the gap `gaps[m]` [m at the base circle] in front of planet m."""
+    """Return a star with the gap `gaps[m]` [m at the base circle] in front of planet m."""
     case = families.star(n, floating)
     radius = build_train(case).gears["sun"].base_radius
     changes = {
         f"meshes.sun-planet{m + 1}.gap": f"{float(e) / radius!r} rad" for m, e in enumerate(gaps)
     }
-    # The generator rounds angles to 1e-9 deg and lengths to 1 nm: exact spacing is written out
+    # The generator rounds angles to 1e-9 deg and lengths to 1 nm, so exact spacing is written
     # instead.
     changes |= {
         f"gears.planet{m + 1}.centre": {"distance": "90 mm", "angle": f"{m / n!r} rev"}
@@ -152,8 +150,8 @@ def fractions(case: ls.Case) -> np.ndarray:
 
 
 def coefficients(n: int, floating: bool) -> np.ndarray:
-    """First row of n (I − projector on the sun's motions): on 1, cos ψ, sin ψ floating, on 1
-    alone fixed.
+    """Return the first row of n (I − projector on the sun's motions): on 1, cos ψ, sin ψ if it
+    floats, on 1 alone if it is fixed.
     """
     psi = 2 * np.pi * np.arange(n) / n
     motions = np.array([np.ones(n), np.cos(psi), np.sin(psi)] if floating else [np.ones(n)]).T
@@ -190,17 +188,17 @@ def test_four_planets_lose_contact_at_x_equal_to_one(x, carried):
     torque = series_stiffness(families.star(4)) * gap * radius / x
     found = fractions(star(4, True, torque, [gap, 0.0, 0.0, 0.0]))
     expected = [carried, 0.5 - carried, carried, 0.5 - carried]
-    # Near X = 1 the carried part is the small difference of large ones.
+    # Near X = 1 the carried part is the small difference of large numbers.
     assert found == pytest.approx(expected, rel=EXACT, abs=1e-10)
 
 
 def enumerated(n: int, k: float, force: float, gaps: np.ndarray, angle: float) -> np.ndarray:
-    """Load fractions of a floating sun by trying every set of contacts: an independent reference.
+    """Return load fractions of a floating sun by trying every set of contacts, as a reference.
 
-    Unknowns are the sun's turn u (at its base circle) and displacement (x, y). The planets'
+    The unknowns are the sun's turn u (at its base circle) and displacement (x, y). The planets'
     approaches are u + n_m·(x, y) − e_m with n_m turned by 90° − α from the planet's direction;
-    forces are k times the approach where in contact. A set is right when its forces push, what it
-    leaves out stays apart, and moments and forces balance.
+    forces are k times the approach where in contact. A set is right when its forces push, the other
+    contacts stay open, and moments and forces balance.
     """
     psi = 2 * np.pi * np.arange(n) / n + np.pi / 2 - angle
     rows = np.array([np.ones(n), np.cos(psi), np.sin(psi)]).T
@@ -227,8 +225,8 @@ def enumerated(n: int, k: float, force: float, gaps: np.ndarray, angle: float) -
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("n", [3, 4, 5, 6])
 def test_contact_loss_by_enumeration_of_all_contact_sets(n, seed):
-    """Gaps from a few to fifty times the mean deflection, so that from none to all but two
-    planets lose contact.
+    """Gaps range from hundredths to hundreds of mean deflections, so that between none and all but
+    two planets lose contact.
     """
     rng = np.random.default_rng(100 * n + seed)
     gaps = rng.uniform(0.0, 1.0, n) * 10.0 ** rng.uniform(-6, -3)
@@ -236,8 +234,7 @@ def test_contact_loss_by_enumeration_of_all_contact_sets(n, seed):
     train = build_train(case)
     force = 200.0 / train.gears["sun"].base_radius
     expected = enumerated(n, series_stiffness(case), force, gaps, np.radians(20.0))
-    # A sun that two planets hold has a lever near zero when they are not opposite: 1e-9 of its
-    # share.
+    # If two planets that hold a sun are not opposite, its lever is near zero: 1e-9 of its share.
     assert fractions(case) == pytest.approx(expected, rel=EXACT, abs=1e-9)
 
 
@@ -245,7 +242,7 @@ def test_contact_loss_by_enumeration_of_all_contact_sets(n, seed):
 
 
 def path_stiffness(case: ls.Case, path: str) -> float:
-    """Torsional stiffness [N·m/rad] of a path at its shaft."""
+    """Return the torsional stiffness [N·m/rad] of a path at its shaft."""
     train = build_train(case)
     wheel, pinion = train.gears[f"wheel{path}"], train.gears[f"pinion{path}"]
     first = train.meshes[f"in-wheel{path}"].laws[0].b / wheel.base_radius**2
@@ -256,9 +253,7 @@ def path_stiffness(case: ls.Case, path: str) -> float:
 @pytest.mark.parametrize("soft", [1.0, 0.3])
 @pytest.mark.parametrize("clocking", [-2e-3, 0.0, 1.2e-3])
 def test_the_two_path_split(clocking, soft):
-    """T_A = k_A T/(k_A + k_B) + k_A k_B β/(k_A + k_B): β > 0 loads path A, which is clocking < 0
-    here.
-    """
+    """T_A = k_A T/(k_A + k_B) + k_A k_B β/(k_A + k_B): β > 0, here clocking < 0, loads path A."""
     case = families.two_path(f"{clocking} rad")
     case = case.replace({"shafts.wheelB-pinionB.stiffness": f"{soft * 8e4} N*m/rad"})
     a, b = path_stiffness(case, "A"), path_stiffness(case, "B")
@@ -271,12 +266,12 @@ def test_the_two_path_split(clocking, soft):
 
 
 def test_the_boxes_of_nasa():
-    """At 367 N·m at most 53 % in one path, for clockings of −0.0012 ± 0.0007 and 0.0023 ± 0.0009
-    rad.
+    """At 367 N·m, at most 53 % of the torque is in one path.
 
-    The stiffnesses of the tested boxes are not in the source, so the shipped ones are assumed; the
-    measured clocking is taken at the shaft. Box 1 (0.0012 rad) then stays within 53 %. The sign of
-    the clocking says which path it is.
+    The clockings are −0.0012 ± 0.0007 and 0.0023 ± 0.0009 rad. The stiffnesses of the tested boxes
+    are not in the source, so the shipped ones are assumed; the measured clocking is taken at the
+    shaft. Box 1 (0.0012 rad) then stays within 53 %. The sign of the clocking decides which path it
+    is.
     """
     for clocking, path in ((-1.2e-3, "A"), (1.2e-3, "B")):
         torques = driver_torques(families.two_path(f"{clocking} rad"))
@@ -285,7 +280,7 @@ def test_the_boxes_of_nasa():
 
 
 def test_light_load_leaves_one_path():
-    """When the torque cannot wind the stiffer path by the clocking, the other carries nothing."""
+    """If the torque cannot wind up the stiffer path by the clocking, the other carries nothing."""
     case = loaded(families.two_path("1.2 mrad"), "10 N*m")
     torques = driver_torques(case)
     # The unloaded wheel between two closed gaps carries no more than round-off.

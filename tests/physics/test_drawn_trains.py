@@ -1,7 +1,7 @@
-"""Trains of the benchmark's own drawing, every element and size, against the 50-digit reference.
+"""Random trains of the benchmark, with all elements and sizes, against the 50-digit reference.
 
-Source: formulation, sections 1 to 7. The drawing is `benchmarks/random_trains`; the measurement
-runs thousands, this test the first of another seed.
+Source: formulation, sections 1 to 7. The trains are those of `benchmarks/random_trains`; the
+measurement runs thousands, this test the first ones of another seed.
 """
 
 import dataclasses
@@ -87,8 +87,8 @@ def test_drawn_loops_over_sets_are_solved_as_the_reference_has_them(numbers):
 
 @pytest.mark.parametrize("number", mostly_slow((2752, 2924), (2924,)))
 def test_a_rigid_ring_that_would_have_to_pull_lets_go(number):
-    """These were refused, after seconds: exchange ended with a ring that held a gear inward, or, of
-    the second train, nowhere as long as it changed several elements at a time.
+    """These used to be refused after seconds: exchange ended with a ring that held a gear inwards,
+    or, for the second train, did not end while it changed several elements at a time.
     """
     assert not faults([number], seed=1)
 
@@ -97,7 +97,9 @@ def test_a_rigid_ring_that_would_have_to_pull_lets_go(number):
 @pytest.mark.parametrize("number", [1002, 4395])
 @pytest.mark.quick(2)
 def test_errors_of_both_flanks_add_up(monkeypatch, number, engine):
-    """Meshes that their backlash holds from both sides: a torque is that of drive less coast."""
+    """Backlash holds these meshes from both sides: a torque is the drive flank's minus the coast
+    flank's.
+    """
     solve = ls.solve
     monkeypatch.setattr(ls, "solve", lambda case: solve(case, engine=engine))
     assert not faults([number], seed=1)
@@ -105,20 +107,20 @@ def test_errors_of_both_flanks_add_up(monkeypatch, number, engine):
 
 @pytest.mark.parametrize("number", mostly_slow([1651, 2119, 3551], {1651}))
 def test_gears_that_carry_nothing_leave_no_torque_unproved(number):
-    """Their contacts push with forces of rounding, in numbers, and are endlessly soft."""
+    """Their contacts push with forces of the size of rounding and are very soft."""
     assert not faults([number], seed=1)
 
 
 def test_a_search_that_goes_to_and_fro_is_reported():
-    """An idle gear on its ring, held and let go in turns: Clarabel was called, for two seconds."""
+    """An idle gear on its ring was held and released in turns; Clarabel then took two seconds."""
     assert not faults([4849], seed=1)
     assert ls.solve(draw(1, 4849)).positions[0].effort.rung in {HOT, SEARCHED}
 
 
 @pytest.mark.parametrize("number", mostly_slow((586, 902, 2529, 2914), (2914,)))
 def test_gears_without_load_are_put_where_there_is_room(number):
-    """Back-ends were tried for seconds, and one position was refused. Either a few of the contacts
-    without load closed in the way of others, or a gear rolled off the arc that it rested on.
+    """Back-ends used to be tried for seconds, and one position was refused. Either some unloaded
+    contacts closed and blocked others, or a gear rolled off the arc that it rested on.
     """
     assert not faults([number], seed=1)
     rungs = {p.effort.rung for p in ls.solve(draw(1, number)).positions}
@@ -126,7 +128,7 @@ def test_gears_without_load_are_put_where_there_is_room(number):
 
 
 def test_what_holds_an_idle_gear_does_not_pull_by_rounding():
-    """Of the train's forces 5e-13 were left to a spline, and no torque could be proved."""
+    """A force of 5e-13 was left to a spline, and no torque could be proved."""
     case = draw(1, 2119)
     result = ls.solve(case, engine="vectorised")
     assert {p.effort.rung for p in result.positions} == {HOT}
@@ -195,7 +197,7 @@ def test_a_run_goes_on_where_it_was_stopped(tmp_path):
     counts: list[int] = []
     first = run(range(2), SEED, path, 1, lambda done, total: counts.append(total))
     with path.open("a") as file:
-        file.write('{"seed": 7, "numb')  # cut off in the middle of a line
+        file.write('{"seed": 7, "numb')  # truncated in the middle of a line
     assert sorted(known(path, {"seed": SEED})) == [0, 1]
     again = run(range(3), SEED, path, 1, lambda done, total: counts.append(total))
     assert counts == [2, 2, 1]

@@ -1,4 +1,4 @@
-"""Forces from outside and gravity: closed forms, what pins pass on, 50 digits, frames that turn.
+"""External forces and gravity: closed forms, forces through pins, 50 digits, rotating frames.
 
 Source: formulation, sections 12 and 14.
 """
@@ -61,13 +61,13 @@ def test_light_loads_between_gravity_and_clearance_agree_with_50_digits():
 
 
 def pushed_set(**changes: object) -> ls.Case:
-    """A set of three planets whose sun floats, with masses."""
+    """Return a set of three planets with masses and a floating sun."""
     case = shipped("planetary/four_planets")
     return case.replace({f"gears.{g}.mass": "4 kg" for g in case.gears}).replace(changes)
 
 
 def test_pins_pass_weights_on_to_the_carrier():
-    """About its axis, a force on a planet is one on the carrier with the pin's arm."""
+    """A force on a planet acts on the carrier, about its axis, with the pin's arm."""
     case = pushed_set()
     planet = next(n for n, g in case.gears.items() if g.carrier)
     carrier = case.gears[planet].carrier
@@ -78,7 +78,7 @@ def test_pins_pass_weights_on_to_the_carrier():
         case.replace({"operating.forces": {planet: ["0 N", "1000 N"]}}), positions=[1]
     ).positions[0]
     moment = seat[0] * 1000.0
-    # All torques from outside and the moment of the force balance, as they did without it.
+    # All external torques and the moment of the force balance, as they did without it.
     senses = {n: g.sense for n, g in train.gears.items()}
     before, after = (sum(senses[n] * t for n, t in p.loads.gears.items()) for p in (plain, pushed))
     assert moment != 0.0
@@ -103,7 +103,7 @@ def test_forces_on_planetary_sets_agree_with_50_digits(seed):
 
 
 def test_gravity_goes_round_backwards_as_a_carrier_turns():
-    """A carrier in a marched set: its bearing, seen from the carrier, carries a turning weight."""
+    """In a marched set, the weight on a carrier's bearing rotates as seen from the carrier."""
     case = pushed_set(**{"operating.gravity": ["0 m/s^2", "-9.81 m/s^2"]})
     carrier = next(n for n, g in case.gears.items() if g.is_carrier)
     march = {"march": {"gear": carrier, "revolutions": 1.0, "steps": 4}}

@@ -1,4 +1,4 @@
-"""Gears from teeth: geometry and stiffness against a printed report, and by a second way."""
+"""Gears from teeth: geometry and stiffness against a printed report and another method."""
 
 import math
 
@@ -22,8 +22,8 @@ from loadshare.involute import (
 from loadshare.tooth import resolve
 from loadshare.tooth.law.iso6336 import MEASURED, blank_factor, formula_stiffness, mesh_stiffness
 
-# NREL 5 MW reference gearbox, KISSsoft reports of 2020: module, helix, face width, centre distance,
-# then of both gears teeth (negative: internal), shift, tip alteration and base diameter [mm, deg],
+# NREL 5 MW reference gearbox, KISSsoft reports of 2020: module, helix, face width, centre distance;
+# then for both gears teeth (negative: internal), shift, tip alteration and base diameter [mm, deg];
 # working pressure angle [deg], contact ratio, C_R, c' [N/(mm µm)].
 NREL = {
     "stage 1, sun": (45, 0, 491, 863, (19, 0.617, -10.861, 803.437), (17, 0.8021, -10.861, 718.865),
@@ -40,7 +40,7 @@ NREL = {
 
 
 def pair(module, helix, width, distance, *gears):
-    """A case of two gears in mesh, from their teeth."""
+    """Return a case of two gears in mesh, from their teeth."""
     made = {}
     for k, (name, (teeth, shift, altered, *_)) in enumerate(zip("ab", gears, strict=True)):
         hand = 1 if k == 0 or teeth < 0 else -1
@@ -72,7 +72,7 @@ def test_derived_geometry_is_that_of_the_report(row):
     line = line_of_action(case.meshes["a-b"], case.gears, case.centres())
     assert math.degrees(line.pressure_angle) == pytest.approx(angle, abs=1.1e-3)
     assert contact_ratio(a.tooth, b.tooth, distance) == pytest.approx(ratio, abs=6e-4)
-    # The shifts have four digits: at the printed distance there is no more play than they leave.
+    # The shifts have four digits: at the printed distance, they allow no more play than this.
     assert abs(normal_backlash(a.tooth, b.tooth, distance)) < 2e-4 * a.module.si
 
 
@@ -129,7 +129,7 @@ def test_a_thin_web_makes_a_gear_softer():
     st.booleans(),
 )
 def test_backlash_begins_where_both_flanks_touch(z1, z2, x1, x2, helix, internal):
-    """And grows with the centre distance by 2 sin α_wt cos β_b, inside a ring the other way."""
+    """It grows with the centre distance by 2 sin α_wt cos β_b; inside a ring, it decreases."""
     one, two = (
         Tooth(
             module=2e-3,
@@ -178,12 +178,12 @@ def test_a_star_from_teeth_is_the_one_from_typed_numbers():
         assert other.positions[0].torque[mesh] == pytest.approx(torque, rel=1e-12)
     for gear, turned in own.positions[0].rotation.items():
         assert other.positions[0].rotation[gear] == pytest.approx(turned, rel=1e-9, abs=1e-15)
-    # Three planets around a floating sun share evenly, wherever their pins are.
+    # Three planets around a floating sun share equally, wherever their pins are.
     assert own.omega["I"] == pytest.approx(1.0, abs=1e-9)
 
 
 def test_teeth_out_of_reach_are_reported_with_the_distance_at_which_they_mesh() -> None:
-    """A ring of 75 teeth about planets of 24 beside a sun of 24: 51 mm, where the sun has 48."""
+    """A ring of 75 teeth about planets of 24 and a sun of 24: they would need 51 mm, the sun 48."""
     centre = ["0 mm", "0 mm"]
     gears: dict[str, dict] = {
         "sun": {"teeth": 24, "centre": centre},
@@ -204,7 +204,7 @@ def test_teeth_out_of_reach_are_reported_with_the_distance_at_which_they_mesh() 
 
 @pytest.mark.parametrize("law", ["iso", "ltca"])
 def test_faces_side_by_side_carry_where_they_overlap(law: str):
-    """40 mm wide and 32 mm apart they are as 8 mm wide gears; the wider one may overhang."""
+    """At 40 mm wide and 32 mm apart they are like gears 8 mm wide; the wider one may overhang."""
 
     def stiffness(widths: tuple[int, int], height: int) -> float:
         centre = {"about": "a", "angle": "0 deg", "height": f"{height} mm"}

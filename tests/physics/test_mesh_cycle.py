@@ -1,8 +1,8 @@
-"""Where in its law a mesh is, whichever of its gears drives and on whichever flank.
+"""The position of a mesh in its law, whichever of its gears drives and on whichever flank.
 
-Half a turn about the line of centres puts the coast flanks of a pair in the place of its drive
-flanks and reverses both senses of rotation: a machine does not depend on which gear the name of a
-mesh puts first, and braking is driving with the cycle backwards.
+Half a turn about the line of centres exchanges coast and drive flanks of a pair and reverses both
+senses of rotation. So a machine does not depend on which gear a mesh's name puts first, and braking
+is driving with the cycle backwards.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from loadshare.train import build_train
 COUNT = 5
 RATIO = 2.0
 RADIUS = 0.5 * 0.003 * 25 * math.cos(math.radians(20.0))
-"""Of the idler, at the base circle [m]."""
+"""Radius of the idler at the base circle [m]."""
 PLAY = 50e-6
 """Backlash along the line of action [m]."""
 BEHIND = np.array([2.0 / RATIO, 1.0, 0.0]) * PLAY / RADIUS
-"""What the backlashes let r, p and w turn: of both meshes, of the second, none [rad]."""
+"""Rotation of r, p and w that backlash allows: of both meshes, of the second, none [rad]."""
 PLACES = ("together", "layout")
 SAMPLED = ("points", "means")
 
@@ -37,13 +37,13 @@ LAWS = {
     }
     for name in ("first", "second")
 }
-"""Laws at the gear nearer to the input, in the order in which it drives."""
+"""Laws at the gear nearer to the input, in the order of the torque path."""
 UNITS = {"a": "rad", "b": "rad/(N*m)", "c": "rad/(N*m)^(2/3)"}
 POWERS = {"a": 1.0, "b": 2.0, "c": 5.0 / 3.0}
 
 
 def written(law: dict[str, np.ndarray], ratio: float, sampling: str) -> dict[str, Any]:
-    """A law at a gear; of a radius `ratio` times that of the other, turned round for that one.
+    """Return a law at a gear, or reversed for the other gear, whose radius is smaller by `ratio`.
 
     Lengths and forces along the line of action are the same: δ = r Δφ, T = r F.
     """
@@ -57,11 +57,11 @@ def written(law: dict[str, np.ndarray], ratio: float, sampling: str) -> dict[str
 
 
 def idlers(swapped: bool = False, sampling: str = "points", **operating: Any) -> ls.Case:
-    """A wheel drives another through an idler; the meshes may be named against the torque."""
+    """Return a wheel driving another through an idler; meshes may be named against the torque."""
     wheel = {"module": "3 mm"}
     laws = [
         written(LAWS["first"], RATIO if swapped else 1.0, sampling),
-        # The second mesh is 25 on 40 teeth.
+        # The second mesh has 25 on 40 teeth.
         written(LAWS["second"], 25.0 / 40.0 if swapped else 1.0, sampling),
     ]
     names = ("p-r", "w-p") if swapped else ("r-p", "p-w")
@@ -83,7 +83,7 @@ def with_play(case: ls.Case) -> ls.Case:
 
 
 def turned(case: ls.Case) -> np.ndarray:
-    """Rotation of every gear at every position [rad]."""
+    """Return the rotation of every gear at every position [rad]."""
     found = ls.solve(case).positions
     return np.array([[p.rotation[gear] for gear in "rpw"] for p in found])
 
@@ -98,7 +98,7 @@ def test_a_machine_does_not_depend_on_the_names_of_its_meshes(sampling, phases, 
     for swapped in (False, True):
         case = idlers(swapped, sampling, phases=phases, torque=torque)
         way = -1.0 if torque.startswith("-") else 1.0
-        # Coast flanks come behind their backlash.
+        # Coast flanks touch after their backlash.
         behind = way * BEHIND if play and swapped == (way > 0.0) else 0.0 * BEHIND
         found.append(turned(with_play(case) if play else case) - behind)
     one, other = found
@@ -109,7 +109,7 @@ def test_a_machine_does_not_depend_on_the_names_of_its_meshes(sampling, phases, 
 @pytest.mark.parametrize("sampling", SAMPLED)
 @pytest.mark.parametrize("phases", PLACES)
 def test_coast_flanks_have_the_laws_of_the_teeth_behind_their_backlash(sampling, phases):
-    """With a backlash, braking turns the gears by it, and otherwise as without."""
+    """With a backlash, braking turns the gears by it; otherwise the answer is the same."""
     case = idlers(False, sampling, phases=phases, torque="-600 N*m")
     without, behind = turned(case), turned(with_play(case))
     np.testing.assert_allclose(behind, without - BEHIND, rtol=1e-9, atol=1e-15)
@@ -117,7 +117,7 @@ def test_coast_flanks_have_the_laws_of_the_teeth_behind_their_backlash(sampling,
 
 @pytest.mark.parametrize("play", [False, True])
 def test_where_torque_is_reversed_contact_passes_through_a_list_backwards(play):
-    """Closed form of one mesh: Δφ = −(a + b T + c T^(2/3)) at position −k, less the backlash."""
+    """Closed form for one mesh: Δφ = −(a + b T + c T^(2/3)) at position −k, less the backlash."""
     wheel = {"module": "3 mm"}
     case = ls.Case(
         operating={"input": "r", "output": "p", "torque": "-80 N*m", "positions": COUNT},
@@ -146,7 +146,7 @@ def test_a_gap_that_is_none_of_the_teeth_opens_the_drive_flank_only():
 
 
 def two_paths(sampling: str, phases: str) -> ls.Case:
-    """The same with a second idler, mirrored: how they share the load depends on every law."""
+    """Return the same with a mirrored second idler: the load sharing depends on every law."""
     teeth = {"r": 50, "p": 25, "q": 25, "w": 40}
     apart, reach = 112.5, 97.5
     x = 0.5 * (150.0 + (apart**2 - reach**2) / 150.0)
@@ -176,7 +176,7 @@ def two_paths(sampling: str, phases: str) -> ls.Case:
 
 
 def carried(case: ls.Case) -> np.ndarray:
-    """Torque of every mesh at every position [N·m]."""
+    """Return the torque of every mesh at every position [N·m]."""
     return np.array([list(p.torque.values()) for p in ls.solve(case).positions])
 
 
@@ -214,7 +214,7 @@ def test_means_hold_about_their_position_and_points_from_it_on():
             train = build_train(case.replace({'meshes."p-w".phase': phase}))
             for index in range(1, COUNT + 1):
                 place = train.mesh_positions(index)["p-w"]
-                # A half that is exact is the beginning of the next part.
+                # An exact half is the beginning of the next part.
                 expected = (index - 1 + (step * COUNT + early * 40) // 40) % COUNT
                 assert place == expected, (sampling, phase, index)
 
@@ -222,10 +222,10 @@ def test_means_hold_about_their_position_and_points_from_it_on():
 @pytest.mark.parametrize("running", ["counter-clockwise", "clockwise"])
 @pytest.mark.parametrize("angle", ["20 deg", "-14 deg"])
 def test_a_wheel_that_is_moved_along_a_helical_idler_meets_it_in_another_phase(running, angle):
-    """By Δz sin β over π m_n, the way along the axis over the axial pitch.
+    """The phase changes by Δz sin β over π m_n, the axial distance over the axial pitch.
 
-    A right-hand tooth stands further counter-clockwise the higher up: of an idler that runs that
-    way it is ahead there.
+    A right-hand tooth is further counter-clockwise the higher up: for an idler that runs in that
+    sense, it is ahead there.
     """
 
     def helical(height: float) -> ls.Case:
@@ -251,13 +251,13 @@ def test_a_wheel_that_is_moved_along_a_helical_idler_meets_it_in_another_phase(r
 
 
 def test_coast_flanks_are_a_tooth_thickness_behind():
-    """Half a pitch for teeth without profile shift, whatever comes before them."""
+    """Half a pitch for teeth without profile shift, whatever precedes them."""
     for mesh in build_train(with_play(idlers(phases="layout"))).meshes.values():
         assert (mesh.phase - mesh.coast_phase) % 1.0 == pytest.approx(0.5, abs=1e-9)
 
 
 def test_a_brake_is_where_its_coast_flanks_put_the_teeth():
-    """Thin teeth come to the pitch point later from mesh to mesh; named or not, it is one play."""
+    """Thin teeth reach the pitch point later from mesh to mesh; the play is that of any naming."""
     teeth, places = (20, 31, 40, 25), [(0.0, 0.0)]
     for one, other, angle in zip(teeth, teeth[1:], (0.3, -0.5, 0.4), strict=False):
         reach, (x, y) = 1.5 * (one + other), places[-1]
@@ -302,7 +302,7 @@ def test_a_brake_is_where_its_coast_flanks_put_the_teeth():
 
 @pytest.mark.parametrize("first", ["wheel", "sun"])
 def test_the_cycle_of_a_carrier_that_drives_is_that_of_its_planets(first):
-    """A pitch of the held ring, whatever gear of another pitch the file names before the set."""
+    """It is a pitch of the held ring, whatever other gear the file names before the set."""
     data = shipped("planetary/four_planets").to_dict()
     data["operating"] |= {"input": "carrier", "output": "wheel", "torque": "100 N*m"}
     wheel = {"base_radius": "50 mm", "teeth": 77, "centre": ["0 mm", "0 mm"]}
@@ -315,7 +315,7 @@ def test_the_cycle_of_a_carrier_that_drives_is_that_of_its_planets(first):
 
 @pytest.mark.parametrize("links", [("input-p", "input-q"), ("input-q", "input-p")])
 def test_of_two_gears_as_near_to_the_input_the_first_by_name_gives_the_cycle(links):
-    """Whichever of the two, here on shafts of an input without teeth, the file puts first."""
+    """The order in the file does not matter; here both are on shafts of a toothless input."""
     gears: dict[str, Any] = {"input": {"type": "carrier", "centre": ["0 mm", "0 mm"]}}
     for name, teeth, partner in (("q", 31, "b"), ("p", 20, "a")):
         gears[name] = {"module": "2 mm", "teeth": teeth, "centre": ["0 mm", "0 mm"]}

@@ -1,11 +1,11 @@
-"""What must not change the answer, does not; what must change it in a known way, changes it so.
+"""Changes that must not affect the answer do not, and others affect it in a known way.
 
 Source: mechanics alone (formulation, sections 1 to 6). Each relation is checked on cases that use
 every element.
 
 Tolerances: a relation that rewrites the numbers (other names, frames, units) leaves the equilibrium
-the same up to round-off times the condition of the case; 1e-9 of the largest force and of the
-deflection is required.
+the same up to round-off times the condition number of the case; 1e-9 of the largest force and of
+the deflection is required.
 """
 
 import math
@@ -55,7 +55,7 @@ every_case = pytest.mark.parametrize("name", CASES)
 
 
 def bare(case: ls.Case) -> dict[str, Any]:
-    """The plain data of a case without remarks, which may be rewritten."""
+    """Return the plain data of a case without remarks, which may be rewritten."""
     return {k: v for k, v in case.to_dict().items() if k != "assumed"}
 
 
@@ -72,7 +72,7 @@ def renamed(data: Any, names: Mapping[str, str]) -> Any:
 
 @every_case
 def test_names_and_their_order_do_not_matter(name):
-    """All gears, meshes and shafts renamed, and every section written backwards."""
+    """All gears, meshes and shafts are renamed, and every section is in reverse order."""
     case = CASES[name]()
     names = {gear: f"wheel {k}" for k, gear in enumerate(case.gears)}
     joints = {n: f"{names[m.driver]}-{names[m.driven]}" for n, m in case.meshes.items()}
@@ -89,10 +89,10 @@ def test_names_and_their_order_do_not_matter(name):
 
 
 def placed(case: ls.Case, q: np.ndarray) -> ls.Case:
-    """The same machine seen in a frame turned by `q`, or in a mirror where det q = −1.
+    """Return the same machine in a frame rotated by `q`, or in a mirror if det q = −1.
 
-    A mirror reverses what turns: with the axes mirrored as arrows, every sense changes, and "a
-    quarter turn counter-clockwise" of a drum ring too, which swapping its neighbours makes good.
+    A mirror reverses rotations: with the axes mirrored as arrows, every sense changes, and so does
+    "a quarter turn counter-clockwise" of a drum ring, which exchanging its neighbours compensates.
     """
     train, data = build_train(case), bare(case)
     mirrored = np.linalg.det(q) < 0.0
@@ -125,7 +125,7 @@ def placed(case: ls.Case, q: np.ndarray) -> ls.Case:
 
 
 def turn(about: tuple[float, float, float], angle: float) -> np.ndarray:
-    """Rotation (3, 3) about an axis, by Rodrigues' formula."""
+    """Return the rotation (3, 3) about an axis, by Rodrigues' formula."""
     a = np.array(about) / np.linalg.norm(about)
     k = np.cross(np.eye(3), -a)
     return np.eye(3) + math.sin(angle) * k + (1.0 - math.cos(angle)) * k @ k
@@ -143,7 +143,7 @@ FRAMES = {
 @every_case
 @pytest.mark.quick(3)
 def test_the_frame_does_not_matter(name, frame):
-    """Torques stay, displacements and reactions turn with the frame."""
+    """Torques do not change; displacements and reactions turn with the frame."""
     case, q = CASES[name](), FRAMES[frame]
     index = 2 if build_train(case).count > 1 else 1
     here, verdict = certified(case, index)
@@ -164,7 +164,7 @@ def test_the_frame_does_not_matter(name, frame):
 
 
 def reversed_load(case: ls.Case) -> dict[str, Any]:
-    """Plain data of the case under its load turned round, in the mirror sense of running.
+    """Return plain data of the case with reversed load and reversed sense of running.
 
     The torque is the same in space, and the same flanks touch; they have other names.
     """
@@ -178,7 +178,7 @@ def reversed_load(case: ls.Case) -> dict[str, Any]:
 
 @pytest.mark.parametrize("name", ["both errors", "drum ring", "spline stop", "lost contact"])
 def test_a_load_turned_round_presses_the_other_flanks(name):
-    """Torque and running sense both reversed push on the same teeth: every force is the same."""
+    """Torque and running sense, both reversed, push on the same teeth: every force is the same."""
     case = CASES[name]()
     one, _ = certified(case)
     other, _ = certified(ls.Case(reversed_load(case)))
@@ -189,7 +189,7 @@ def test_a_load_turned_round_presses_the_other_flanks(name):
 
 
 def test_with_backlash_a_load_turned_round_swaps_gap_and_backlash():
-    """The flank that touches under −T in the other sense has the backlash for its gap."""
+    """The gap of the flank that touches under −T in the other sense is the backlash."""
     case = with_backlash(shipped("fgfbstts/both_errors"), "0.2 mm")
     for number, mesh in enumerate(case.meshes):
         case = case.replace({f'meshes."{mesh}".gap': f"{5 * number} urad"})
@@ -208,14 +208,14 @@ def test_with_backlash_a_load_turned_round_swaps_gap_and_backlash():
 @pytest.mark.parametrize("backlash", [None, "0.1 mm"])
 @pytest.mark.parametrize("name", ["fgfbstts/both_errors", "fgfbstts/full_float"])
 def test_a_train_is_driven_from_its_other_end(name, backlash):
-    """Gear 10 drives what gear 1 drove: as with every mesh named the other way round."""
+    """Gear 10 drives what drove it, as if every mesh were named the other way round."""
     case = shipped(name)
     torque = build_train(case).input_torque[0] / build_train(case).gears["10"].ratio
     case = loaded(case, f"{torque!r} N*m")
     if backlash:
         case = with_backlash(case, backlash)
     case = case.replace({"operating.input": "10", "operating.output": "1"})
-    # A mesh b-a has its law at b, and its drive flank is what the mesh a-b calls its coast flank.
+    # A mesh b-a has its law at b, and its drive flank is the coast flank of the mesh a-b.
     radii = {n: g.acting_radius for n, g in case.gears.items()}
     data = bare(case)
     names = {m: f"{g.driven}-{g.driver}" for m, g in case.meshes.items()}
@@ -238,7 +238,7 @@ def test_a_train_is_driven_from_its_other_end(name, backlash):
 
 
 def test_loads_of_both_signs_are_solved_side_by_side():
-    """Meshes without a backlash press one flank, then the other, from sample to sample."""
+    """The pressed flank of meshes without a backlash changes from sample to sample."""
     case = loaded(shipped("fgfbstts/base"), "100 N*m")
     load = [-300.0, 0.0, 500.0]
     found = ls.solve_many(case, {"operating.torque [N*m]": load}, positions=[1])
@@ -267,7 +267,7 @@ OTHER_UNITS = {
 
 
 def converted(data: Any) -> Any:
-    """Plain data with every quantity in another unit."""
+    """Return plain data with every quantity in another unit."""
     if isinstance(data, dict):
         return {k: converted(v) for k, v in data.items()}
     if isinstance(data, list):
@@ -293,7 +293,7 @@ def test_units_do_not_matter(name):
 
 @pytest.mark.parametrize("torque", ["1 mN*m", "2 N*m", "50 kN*m"])
 def test_without_gaps_and_errors_a_linear_train_is_proportional(torque):
-    """c = 0, no errors, no gaps: every torque is proportional to the input torque."""
+    """With c = 0, no errors and no gaps, every torque is proportional to the input torque."""
     unit = {"1 mN*m": 1e-3, "2 N*m": 2.0, "50 kN*m": 5e4}[torque]
     for base in (shipped("fgfbstts/base"), shipped("branches/split_torque_6")):
         one = driver_torques(loaded(base, "1 N*m"))
@@ -314,7 +314,7 @@ def test_a_large_backlash_is_no_coast_flank(reduce):
 
 @pytest.mark.parametrize("reduce", [True, False], ids=["reduced", "whole"])
 def test_a_large_ring_is_no_ring(reduce):
-    """A drum with 10 mm to every side around an elastic pinion, a circle of 10 mm."""
+    """A drum with 10 mm on every side around an elastic pinion, and a circle of 10 mm."""
     soft = shipped("fgfbstts/limit_ring").replace(
         {"rings": None} | {f"gears.{g}.support": "1e6 N/m" for g in "45"}
     )
@@ -333,7 +333,7 @@ def test_a_large_ring_is_no_ring(reduce):
     ids=["no friction", "never overcome"],
 )
 def test_a_spline_without_clearance_is_an_elastic_support(friction):
-    """Clearance 0: the shaft bends from the start, whatever the friction."""
+    """With zero clearance, the shaft bends from the start, whatever the friction."""
     case = shipped("fgfbstts/both_errors")
     spline = {"bending_stiffness": "1.78e7 N/m", "clearance": "0 um", **friction}
     one, _ = answer(build_train(case.replace({"gears.4.support": "1.78e7 N/m"})))
@@ -355,12 +355,12 @@ def test_a_spline_without_friction_is_an_elastic_round_ring():
 
 
 def order(errors: list[float], factor: float) -> list[float]:
-    """Order of convergence between neighbours, the parameter falling by `factor` each time."""
+    """Return the order of convergence between neighbours; the parameter decreases by `factor`."""
     return [math.log(a / b) / math.log(factor) for a, b in pairwise(errors)]
 
 
 def test_friction_vanishes_to_first_order():
-    """The friction of a slipping spline acts as a force: what it does to the torques is
+    """The friction of a slipping spline acts as a force, so its effect on the torques is
     proportional to it.
     """
     case = shipped("fgfbstts/full_float")
@@ -371,13 +371,13 @@ def test_friction_vanishes_to_first_order():
 
     limit = torques(0.0)
     errors = [furthest(limit, torques(f)) for f in (50.0, 10.0, 2.0)]
-    # The direction of slip turns a little with the friction: 2 % in the order.
+    # The direction of slip turns slightly with the friction: 2 % in the order.
     assert order(errors, 5.0) == pytest.approx([1.0, 1.0], abs=0.02)
 
 
 @pytest.mark.parametrize("kind", ["drum", "circle"])
 def test_a_stiff_ring_becomes_rigid_to_first_order(kind):
-    """What an elastic ring yields is force over stiffness, so the error falls as 1/k."""
+    """An elastic ring yields by force over stiffness, so the error decreases as 1/k."""
 
     def torques(stiffness: str) -> dict[str, float]:
         if kind == "circle":
@@ -401,7 +401,7 @@ def test_positions_do_not_know_of_each_other(name):
     for index, position in zip(order_, together.positions, strict=True):
         (alone,) = ls.solve(case, positions=[index]).positions
         assert position.position == index
-        # Positions share matrix products, whose round-off depends on how many there are.
+        # Positions share matrix products, whose round-off depends on the number of positions.
         for mesh, torque in position.torque.items():
             assert torque == pytest.approx(alone.torque[mesh], rel=1e-12, abs=1e-9)
         for gear, moved in position.displacement.items():

@@ -1,4 +1,4 @@
-"""Drives whose power goes round in loops, and other odd ones, against rigid bodies that touch."""
+"""Drives with circulating power and other unusual ones, against rigid bodies in contact."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Built = tuple[Drive, str, str]
 
 
 def simple_set(drive: Drive, tag: str, sun: int, planet: int, planets: int = 3) -> None:
-    """A sun, planets and a ring."""
+    """Add a sun, planets and a ring."""
     drive.gear(f"s{tag}", sun)
     drive.gear(f"r{tag}", -(sun + 2 * planet))
     drive.carrier(f"c{tag}")
@@ -29,7 +29,7 @@ def simple_set(drive: Drive, tag: str, sun: int, planet: int, planets: int = 3) 
 
 
 def double_set(drive: Drive, tag: str) -> None:
-    """Two planets that mesh on every way from sun to ring."""
+    """Add a set with two planets in series on every path from sun to ring."""
     drive.gear(f"s{tag}", 30)
     drive.carrier(f"c{tag}")
     inner = 0.5 * MODULE * 50
@@ -43,13 +43,13 @@ def double_set(drive: Drive, tag: str) -> None:
         drive.gear(f"p{tag}{k}", 20, tuple(near), carrier=f"c{tag}")
         drive.gear(f"q{tag}{k}", 20, tuple(far), carrier=f"c{tag}")
     drive.gear(f"r{tag}", -round(2.0 * reach / MODULE) - 20)
-    # A radius that fits: the teeth are of no matter here.
+    # Any radius that fits: tooth numbers do not matter here.
     for k in range(3):
         way = drive.places[f"q{tag}{k}"] / reach
         where = 0.5 * MODULE * (-drive.teeth[f"r{tag}"] - 20) * way
         drive.places[f"q{tag}{k}"] = where
         drive.gears[f"q{tag}{k}"]["centre"] = [f"{v:.17g} m" for v in where]
-        # The inner planet stands where it meshes with both.
+        # The inner planet is where it meshes with both.
         out = float(np.hypot(*where))
         a, b = inner, 0.5 * MODULE * 40
         along = (out**2 + a**2 - b**2) / (2.0 * out)
@@ -63,7 +63,7 @@ def double_set(drive: Drive, tag: str) -> None:
 
 
 def simple_beside_double(backlash: float | None) -> Built:
-    """Suns on one shaft, rings on another: seen from the carriers they turn against each other."""
+    """Return suns on one shaft, rings on another: seen from the carriers, they turn oppositely."""
     drive = Drive(backlash)
     simple_set(drive, "1", 24, 24)
     double_set(drive, "2")
@@ -75,12 +75,12 @@ def simple_beside_double(backlash: float | None) -> Built:
 
 
 def layshaft(backlash: float | None) -> Built:
-    """A layshaft drives the ring in the sense of the sun's shaft: a power split."""
+    """Return a power split: a layshaft drives the ring in the sense of the sun's shaft."""
     drive = Drive(backlash)
     simple_set(drive, "1", 24, 24)
     drive.gear("in", 30)
     drive.gear("outer", 80)
-    # Both gears of the layshaft on one axis: as far from the centre either way.
+    # Both gears of the layshaft are on one axis, so their distances from the centre are equal.
     drive.gear("lay2", 30, (0.5 * MODULE * 110, 0.0))
     drive.gear("lay1", 80, (0.5 * MODULE * 110, 0.0))
     drive.mesh("in", "lay1")
@@ -94,7 +94,7 @@ def layshaft(backlash: float | None) -> Built:
 
 
 def recirculating(backlash: float | None) -> Built:
-    """A layshaft drives the carrier against the ring: more power goes round than comes in."""
+    """Return a layshaft driving the carrier against the ring: more power circulates than enters."""
     drive = Drive(backlash)
     simple_set(drive, "1", 24, 24, 4)
     drive.gear("in", 30)
@@ -111,7 +111,7 @@ def recirculating(backlash: float | None) -> Built:
 
 
 def simpson(backlash: float | None) -> Built:
-    """One shaft for both suns, first carrier with second ring: low gear of a Simpson set."""
+    """Return a Simpson set in low gear: both suns on one shaft, first carrier with second ring."""
     drive = Drive(backlash)
     simple_set(drive, "1", 30, 21)
     simple_set(drive, "2", 30, 21)
@@ -123,7 +123,7 @@ def simpson(backlash: float | None) -> Built:
 
 
 def behind_double(backlash: float | None) -> Built:
-    """Two branches behind a set whose ring turns one way, and the other way on the carrier."""
+    """Return two branches behind a set whose ring turns oppositely as seen from the carrier."""
     drive = Drive(backlash)
     double_set(drive, "1")
     drive.gears["s1"]["held"] = True
@@ -140,7 +140,7 @@ def behind_double(backlash: float | None) -> Built:
 
 
 def sun_with_layshaft(backlash: float | None) -> Built:
-    """A sun that meshes with its planets and, in the housing, with the layshaft of the ring."""
+    """Return a sun that meshes with its planets and, in the housing, with the ring's layshaft."""
     drive = Drive(backlash)
     simple_set(drive, "1", 24, 24)
     drive.gear("lay1", 80, (0.5 * MODULE * 104, 0.0))
@@ -206,7 +206,7 @@ def test_a_loop_over_sets_is_that_of_rigid_bodies(
     for body in drive.floats:
         at = 3 * list(drive.places).index(body)
         assert moved[body][:2] == pytest.approx(x[at + 1 : at + 3], abs=1e-12)
-    # What comes in goes out, and the housing takes the difference of the torques.
+    # The power that enters leaves again; the housing takes the difference of the torques.
     outside = found.loads.gears
     assert outside[driving] == pytest.approx(torque)
     power = sum(outside[n] * speeds[n] for n in outside if n not in held)
@@ -253,12 +253,12 @@ def test_meshes_of_a_loop_go_through_their_cycles_as_a_march_does(name: str) -> 
     some = np.arange(1, common.count + 1, max(common.count // 500, 1))
     one, other = common.mesh_positions(some), marched.mesh_positions(some)
     for mesh in one:
-        # A step that falls between two positions may round either way.
+        # A step between two positions may round either way.
         assert np.mean(one[mesh] == other[mesh]) > 0.98, mesh
 
 
 def ravigneaux(backlash: float | None) -> Drive:
-    """Short planets between a sun and long planets, which mesh with a sun and the ring."""
+    """Return short planets between a sun and long planets, which mesh with a sun and the ring."""
     drive = Drive(backlash)
     drive.gear("s1", 24)
     drive.gear("s2", 30)
@@ -289,7 +289,7 @@ def ravigneaux(backlash: float | None) -> Drive:
 def test_a_ravigneaux_set_has_its_gears(
     driving: str, output: str, held: str, ratio: float, backlash: float | None
 ) -> None:
-    """The last: both suns on one shaft, so that all goes round as one piece."""
+    """In the last, both suns are on one shaft, so that all turns as one piece."""
     drive = ravigneaux(backlash)
     if held:
         drive.gears[held]["held"] = True
@@ -343,14 +343,14 @@ i1-i2.stiffness = "1e4 N*m/rad"
     ("text", "expected"),
     [
         (ENGINES, {"e1-bull": 900.0, "e2-bull": -300.0}),
-        # The second rotor takes 3000 from its engine and gives 600 back over the shaft, at its
-        # gears 600·50/120.
+        # The second rotor takes 3000 from its engine and returns 600 through the shaft, 600·50/120
+        # at its gears.
         (ROTORS, {"e1-r1": 600.0, "e2-r2": 1000.0, "r1-i1": -600.0, "i2-r2": -250.0}),
     ],
     ids=["an engine that brakes", "power against the names"],
 )
 def test_torques_from_outside_press_the_flanks_that_statics_tells(text, expected):
-    """Flanks without a backlash, one for each mesh; with one both are there."""
+    """Without a backlash, each mesh has one flank; with a backlash, it has both."""
     case = ls.Case(tomllib.loads(text))
     assert ls.solve(case).positions[0].torque == pytest.approx(expected, rel=1e-12)
     both = case.replace({f'meshes."{name}".backlash': "20 um" for name in expected})

@@ -1,4 +1,4 @@
-"""Planetary sets against Willis, closed forms, a second model, and natural frequencies."""
+"""Planetary sets against Willis, closed forms, an independent model, and natural frequencies."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def planetary(
     **changes: Any,
 ) -> ls.Case:
     """Return a set of equal planets; `changes` are keys of the case with dots as `__`."""
-    # By radii: real teeth could not be put together in every number.
+    # Defined by radii: real teeth could not be assembled for every number of planets.
     radius = [
         f"{0.5 * MODULE * teeth * math.cos(math.radians(20.0)):.17g} mm"
         for teeth in (SUN, PLANET, RING)
@@ -67,7 +67,7 @@ def planetary(
 
 
 def fractions(case: ls.Case, member: str = "sun") -> np.ndarray:
-    """Share of every planet in the torque of the sun, or of the ring."""
+    """Return the share of every planet in the torque of the sun, or of the ring."""
     position = ls.solve(case).positions[0]
     names = [f"sun-p{k}" if member == "sun" else f"p{k}-ring" for k in range(len(position.torque))]
     torque = np.array([abs(position.torque[n]) for n in names if n in position.torque])
@@ -97,10 +97,10 @@ def test_speeds_are_those_of_willis_and_no_power_is_lost(load: str, output: str,
 
 
 def closed_form(planets: int, error: np.ndarray, floats: bool) -> np.ndarray:
-    """Shares where every branch has the compliance of its two meshes, some maybe without contact.
+    """Return shares if every branch has the compliance of its two meshes; some may lose contact.
 
-    A pin that lies e aside takes e (cos α_s + cos α_r) of its branch; what floats adds a cosine and
-    a sine of the planet's angle. Every set of planets that carry is tried.
+    A pin that is e out of place takes e (cos α_s + cos α_r) from its branch; a floating member adds
+    a cosine and a sine of the planet's angle. Every set of loaded planets is tried.
     """
     radius = 0.5e-3 * MODULE * np.array([SUN, PLANET, RING]) * math.cos(math.radians(20.0))
     stiffness = 1.0 / (radius[0] ** 2 / 2e7 + radius[1] ** 2 / 9e7)
@@ -131,7 +131,7 @@ def test_shares_are_the_closed_form(planets: int, floating: str, error: float) -
     if floating:
         case = case.replace({f"gears.{floating}.support": "free"})
     late = np.zeros(planets)
-    # A pin that lags comes later into contact; the sun runs counter-clockwise.
+    # A pin that lags makes contact later; the sun runs counter-clockwise.
     late[0] = error
     expected = closed_form(planets, late, bool(floating))
     found = fractions(case)
@@ -156,7 +156,7 @@ def test_natural_frequencies_are_those_of_lin_and_parker() -> None:
         | {"support": bearing},
         "carrier": {"type": "carrier", "centre": centre, "support": bearing},
         "housing": {"type": "carrier", "centre": centre, "held": True},
-        # The sun is free to turn: what drives it gives way.
+        # The sun is free to turn, because its drive yields.
         "drive": {"type": "carrier", "centre": centre},
         "load": {"type": "carrier", "centre": centre},
     }
@@ -191,7 +191,7 @@ def test_natural_frequencies_are_those_of_lin_and_parker() -> None:
             masses[turn.index] += inertia[gear[0] if gear[0] == "p" else gear] * unit**2
     for gear, where in structure.coordinates.displacement.items():
         masses[where] = mass[gear[0] if gear[0] == "p" else gear]
-    # A planet's coordinates are those from its pin: its mass moves with the pin as well.
+    # A planet's coordinates are relative to its pin: its mass moves with the pin as well.
     inert = np.diag(masses)
     for gear in ("p0", "p1", "p2"):
         moved = structure.coordinates.moved(gear)
@@ -206,7 +206,7 @@ def test_natural_frequencies_are_those_of_lin_and_parker() -> None:
 
 
 def drawn(seed: int) -> tuple[ls.Case, Set, str, float, set[str]]:
-    """Draw a set at random: as a case, and as the second model has it."""
+    """Draw a random set: as a case, and for the independent model."""
     dice = np.random.default_rng(seed)
     planets = int(dice.integers(2, 8))
     sun, planet = dice.uniform(0.02, 0.2, 2)
@@ -269,7 +269,8 @@ def drawn(seed: int) -> tuple[ls.Case, Set, str, float, set[str]]:
         shafts=shafts,
     )
     train = build_train(case)
-    # The sun pushes the planets in the sense of its torque, or against that of what else is driven.
+    # The sun pushes the planets in the sense of its torque, or against that of the other driven
+    # member.
     pressed = train.meshes["sun-p0"]
     driven = train.gears["sun"].sense * (1 if not pressed.turned else -1)
     second = Set(
@@ -309,7 +310,7 @@ def test_random_sets_are_those_of_a_second_model(seed: int) -> None:
 @pytest.mark.parametrize(("load", "output", "held"), CHOICES)
 @pytest.mark.quick(3)
 def test_a_set_that_turns_is_the_same_set_placed_anew(load: str, output: str, held: str) -> None:
-    """Seen from the carrier as the march does it, and in the housing as every step finds it."""
+    """As seen from the carrier, like the march, and in the housing, as every step is."""
     errors = {
         "sun": {"eccentricity": {"amount": "12 um", "direction": "20 deg"}},
         "ring": {
@@ -342,7 +343,7 @@ def test_a_set_that_turns_is_the_same_set_placed_anew(load: str, output: str, he
 
 
 def test_a_march_counts_the_turns_of_what_turns() -> None:
-    """A ring on an elastic mount stands; the carrier of a double set runs against its sun."""
+    """A ring on an elastic mount stands still; the carrier of a double set runs against its sun."""
     case = planetary().replace(
         {
             "gears.ring.held": None,

@@ -1,16 +1,16 @@
-"""Published figures of the seed paper, against the reconstructed model of its transmission.
+"""Published figures of the seed paper against the reconstructed model of its transmission.
 
 Source: the seed paper's Figs. 8, 10, 13, 14 as quoted in the seed's reconstruction (printed values
 P, model values D). The paper prints no radii, angles or error directions, so the model is a fit:
-agreement is required to what the fit's own table leaves open, not to round-off, and every
-tolerance says which.
+agreement is required within the differences of the fit's own table, not to round-off, and every
+tolerance states which.
 
 Frame: gear 10 at the origin, pinions 4 and 5 at +60° and −60°; a pinion's float is along the radial
 line through it. Sign of Fig. 13: the paper's overloaded branch of pinion 5 is 58–810, here it is
-59–910 (a sign convention of ΔA_y9 or a mirrored layout, reconstruction, point 6). The sizes are
-compared, not the branch.
+59–910 (a sign convention of ΔA_y9 or a mirrored layout, reconstruction, point 6). The magnitudes
+are compared, not the branch.
 
-Not reproduced: the sizes of Figs. 8, 9, 11 and 12 (reconstruction, points 7 and 8).
+Not reproduced: the magnitudes of Figs. 8, 9, 11 and 12 (reconstruction, points 7 and 8).
 """
 
 import math
@@ -24,7 +24,7 @@ from loadshare.certify import FloatState
 
 
 def in_rings(four: float, five: float) -> ls.Result:
-    """The transmission of Fig. 13 with the float ranges [µm] of pinions 4 and 5."""
+    """Return the transmission of Fig. 13 with the float ranges [µm] of pinions 4 and 5."""
     case = shipped("fgfbstts/limit_ring")
     changes = {"rings.4.float": f"{four!r} um", "rings.5.float": f"{five!r} um"}
     return ls.solve(case.replace(changes), positions=[1])
@@ -38,7 +38,7 @@ def stop_force(state: FloatState) -> float:
 
 
 def test_the_shares_of_fig_13_without_float():
-    """1.047 and 1.019 at zero clearance; the fit's own are 1.0474 and 1.0167, hence 0.005."""
+    """1.047 and 1.019 at zero clearance; the fit itself gives 1.0474 and 1.0167, hence 0.005."""
     (position,) = in_rings(0.0, 0.0).positions
     four = position.pair_share["7-10"]
     five = max(position.pair_share["8-10"], position.pair_share["9-10"])
@@ -62,8 +62,8 @@ def test_the_float_ranges_of_fig_13_at_which_the_stops_are_free(pinion, printed)
 
 
 def test_the_curve_of_fig_13_falls_to_full_float():
-    """Ω falls strictly until the stop is free and stays where it is after that, at 1 (printed:
-    1.004, 1.003).
+    """Ω decreases strictly until the stop is free and is constant after that, at 1 (printed: 1.004,
+    1.003).
     """
     ranges = [0.0, 1.0, 2.0, 4.0, 6.0, 8.0, 9.0, 12.0, 20.0]
     shares = [in_rings(r, r).positions[0].pair_share for r in ranges]
@@ -82,7 +82,7 @@ def test_the_curve_of_fig_13_falls_to_full_float():
 def test_the_balance_points_of_fig_14(pinion, printed, direction):
     """(0.00414, 0.00713) and (0.00137, −0.00237) mm, both on the ring's boundary.
 
-    The float ranges of the case are these points' radii; 0.15 µm and 0.5° leave the model its own
+    The float ranges of the case are these points' radii; 0.15 µm and 0.5° allow for the model's own
     direction.
     """
     (position,) = ls.solve(shipped("fgfbstts/limit_ring"), positions=[1]).positions
@@ -100,15 +100,15 @@ def test_the_balance_points_of_fig_14(pinion, printed, direction):
 
 
 def displaced(gear: str) -> tuple[float, float]:
-    """Ω_I and the pairwise Ω_II with `gear` 50 µm off along x."""
+    """Return Ω_I and the pairwise Ω_II with `gear` displaced by 50 µm along x."""
     errors = {gear: {"installation": ["50 um", "0 um"]}}
     found = ls.solve(shipped("fgfbstts/base").replace({"errors": errors}), positions=[1])
     return found.omega["I"], found.pair_omega["II"]
 
 
 def test_the_order_of_fig_8_in_stage_ii():
-    """Gear 6 matters most, 7 to 10 far less; the model's sizes as the reconstruction states
-    them, to its 0.01.
+    """Gear 6 has most influence, 7 to 10 far less; the model's values are those of the
+    reconstruction, to its 0.01.
     """
     omega = {gear: displaced(gear)[1] for gear in shipped("fgfbstts/base").gears}
     assert max(omega, key=omega.get) == "6"
@@ -118,7 +118,7 @@ def test_the_order_of_fig_8_in_stage_ii():
 
 
 def test_the_order_of_fig_8_in_stage_i():
-    """Among the gears of stage I, gear 1 matters most; gears 2 and 3 do half of it."""
+    """Among the gears of stage I, gear 1 has most influence; gears 2 and 3 have half of it."""
     one, two, three = (displaced(gear)[0] for gear in "123")
     assert one == pytest.approx(1.013, abs=0.001)
     # One flank of gear 2 against both of gear 1 by the same offset: half, up to round-off.
@@ -132,7 +132,7 @@ def test_the_order_of_fig_8_in_stage_i():
 def test_the_shares_of_fig_10():
     """50.88 % on branch 12, and 0.933, 1.067, 0.967, 1.033 within the pairs.
 
-    The error directions are assumed in whole degrees so that the shares come out to 0.002; 0.003 is
+    The error directions are assumed in whole degrees such that the shares agree to 0.002; 0.003 is
     required.
     """
     (position,) = ls.solve(shipped("fgfbstts/both_errors"), positions=[1]).positions

@@ -1,10 +1,9 @@
-"""Random trains: every element, every size, any load. Each has an equilibrium, and it must be
-found.
+"""Random trains with all elements, sizes and loads: each has an equilibrium, which must be found.
 
-Source: formulation, sections 1 to 7. What is generated cannot be a mechanism: a gear that floats is
-held by a ring, by a spline whose clearance ends, or by flanks that close around it. So a refusal is
-a failure of the solver, an uncaught exception all the more. Back-ends and methods must agree on
-what was certified. What would move further than its geometry holds is drawn again.
+Source: formulation, sections 1 to 7. The generated trains cannot be mechanisms: a floating gear is
+held by a ring, by a spline whose clearance ends, or by flanks that close around it. So a refusal,
+and even more an uncaught exception, is a failure of the solver. Back-ends and methods must agree on
+certified answers. A train that would move further than its geometry allows is drawn again.
 """
 
 import math
@@ -24,7 +23,7 @@ from loadshare.train import build_train
 
 AGREE = 1e-9
 DEFLECTION = 20.0
-"""Of the generated trains under their rated load [µm], roughly."""
+"""Approximate deflection of the generated trains under their rated load [µm]."""
 
 
 def scaled(value: float, unit: str) -> str:
@@ -32,20 +31,20 @@ def scaled(value: float, unit: str) -> str:
 
 
 sizes = st.sampled_from([0.0, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0])
-"""A length in deflections: nothing, something, ten times as much."""
+"""A length in deflections: from zero to ten."""
 factors = st.sampled_from([0.3, 0.5, 0.8, 1.0, 1.3, 2.0, 3.0])
 loads = st.sampled_from([1e-4, 1e-3, 0.01, 0.1, 0.3, 0.5, 1.0, 1.6])
 angles = st.integers(0, 359)
 
 
 def lengths(largest: float = 10.0) -> st.SearchStrategy[str]:
-    """A length of up to `largest` deflections."""
+    """Draw a length of up to `largest` deflections."""
     return sizes.filter(lambda s: s <= largest).map(lambda s: scaled(s * DEFLECTION, "um"))
 
 
 @st.composite
 def laws(draw: st.DrawFn, stiffness: float) -> dict[str, object]:
-    """A mesh law of about this stiffness [N·m/rad]: linear, b + c, pure Hertz, or a table."""
+    """Draw a mesh law of about this stiffness [N·m/rad]: linear, b + c, pure Hertz, or a table."""
     k = stiffness * draw(factors)
     kind = draw(st.sampled_from(["linear", "b and c", "c alone", "table"]))
     rated = 2e-4 * stiffness  # torque that winds a mesh by 0.2 mrad
@@ -68,7 +67,7 @@ def laws(draw: st.DrawFn, stiffness: float) -> dict[str, object]:
 
 @st.composite
 def splines(draw: st.DrawFn, kinds: tuple[str, ...]) -> dict[str, object]:
-    """A clearance spline: continuous, with a jump, frictionless, or following the torque."""
+    """Draw a clearance spline: continuous, with a jump, frictionless, or following the torque."""
     stiffness, clearance = 1.78e7 * draw(factors), draw(sizes) * DEFLECTION * 1e-6
     spline = {"bending_stiffness": scaled(stiffness, "N/m"), "clearance": scaled(clearance, "m")}
     kind = draw(st.sampled_from(kinds))
@@ -85,7 +84,7 @@ def splines(draw: st.DrawFn, kinds: tuple[str, ...]) -> dict[str, object]:
 
 @st.composite
 def circles(draw: st.DrawFn) -> dict[str, object]:
-    """A round limit ring that may be off centre."""
+    """Draw a round limit ring that may be off centre."""
     stiffness = draw(st.sampled_from(["rigid", "1e9 N/m"]))
     offset = ["0 um", draw(lengths(1.0))]
     return {"radius": draw(lengths()), "offset": offset, "stiffness": stiffness}
@@ -93,7 +92,7 @@ def circles(draw: st.DrawFn) -> dict[str, object]:
 
 @st.composite
 def drums(draw: st.DrawFn, neighbours: list[str]) -> dict[str, object]:
-    """A drum between two neighbours."""
+    """Draw a drum between two neighbours."""
     return {
         "neighbours": neighbours,
         "clearance": draw(lengths()),
@@ -110,14 +109,14 @@ def errors(draw: st.DrawFn) -> dict[str, object]:
 
 
 def some(draw: st.DrawFn, items: list[str], what: st.SearchStrategy[object]) -> dict[str, object]:
-    """The same kind of element on some of the gears or meshes."""
+    """Draw the same kind of element for some of the gears or meshes."""
     chosen = draw(st.lists(st.sampled_from(items), unique=True, max_size=4))
     return {item: draw(what) for item in chosen}
 
 
 @st.composite
 def stars(draw: st.DrawFn) -> ls.Case:
-    """A sun among planets: floating, elastic, on a spline, in a ring."""
+    """Draw a sun among planets: floating, elastic, on a spline, in a ring."""
     data = families.star(draw(st.integers(2, 6))).to_dict()
     for name in some(draw, list(data["meshes"]), st.none()):
         mesh = {k: v for k, v in data["meshes"][name].items() if k not in ("stiffness", "gap")}
@@ -142,7 +141,7 @@ def stars(draw: st.DrawFn) -> ls.Case:
 
 @st.composite
 def split_torques(draw: st.DrawFn) -> ls.Case:
-    """Two to eight branches; pinions rigid, elastic, on splines, in drums."""
+    """Draw two to eight branches; pinions rigid, elastic, on splines, in drums."""
     branches = draw(st.sampled_from([2, 4, 6, 8]))
     data = families.split_torque(branches).to_dict()
     for name in some(draw, list(data["meshes"]), st.none()):
@@ -173,14 +172,14 @@ def split_torques(draw: st.DrawFn) -> ls.Case:
 
 
 def undetermined(certificate: Certificate) -> set[str]:
-    """Forces that a certificate bounds by nothing; none of them is a flank's."""
+    """Return the forces without a bound in a certificate; none of them is a flank's."""
     names = {name for name, error in certificate.bound.force.items() if math.isinf(error)}
     assert not names & certificate.bound.torque.keys()
     return names
 
 
 def determined(found: Mapping[str, float], shared: Set[str]) -> dict[str, float]:
-    """Forces, or components of forces, except those that are shared."""
+    """Return forces, or components of forces, except those that are shared."""
     return {k: v for k, v in found.items() if not {k, k.rsplit(" ", 1)[0]} & shared}
 
 
@@ -216,7 +215,7 @@ def is_solved_and_agreed(case: ls.Case) -> None:
         verdict = certify(train, found)
         if verdict.passed:
             # Forces are unique, unless rigid parts share them: a spline without play in a drum
-            # without clearance. Displacements are not where a branch is unloaded.
+            # without clearance. Displacements are not unique if a branch is unloaded.
             shared = undetermined(known) | undetermined(verdict)
             one, other = (determined(forces(v), shared) for v in (expected, found))
             assert furthest(one, other) < AGREE, options
@@ -235,7 +234,7 @@ def test_a_random_train_is_solved(family):
 
 
 def split(branches: int, torque: str, **edits: dict[str, dict[str, object]]) -> ls.Case:
-    """A split-torque train with some of its elements changed or added."""
+    """Return a split-torque train with some of its elements changed or added."""
     data = families.split_torque(branches).to_dict()
     for section, elements in edits.items():
         for name, numbers in elements.items():
@@ -294,8 +293,8 @@ LIGHT = {
 
 @pytest.mark.parametrize("name", LIGHT)
 def test_what_carries_next_to_nothing(name):
-    """Refused once: idle branches carry the rounding of others, and a pinion that 3e-10 of the
-    load leads across its clearance was sought on the side where it began.
+    """These used to be refused: idle branches carry the rounding of others, and a pinion that 3e-10
+    of the load moves across its clearance was sought on the side where it started.
     """
     case = LIGHT[name]()
     is_solved_and_agreed(case)

@@ -22,7 +22,7 @@ def a_set(**changes: object) -> ls.Case:
 
 
 def test_a_thin_ring_under_two_opposite_forces():
-    """Eight harmonics have all but 0.2 % of it."""
+    """Eight harmonics give all but 0.2 % of it."""
     gear = a_set().gears["ring"]
     force, middle = 1000.0, gear.tooth.root + 0.0075
     bending = 206e9 * 0.06 * 0.015**3 / 12.0
@@ -43,7 +43,7 @@ def test_a_rim_follows_from_the_outside_diameter():
 
 
 def test_a_rim_that_contradicts_the_outside_diameter_is_told_the_one_that_follows():
-    """The rim counted, without a word."""
+    """The rim used to count, without a message."""
     ring = shipped("planetary/four_planets").gears["ring"]
     both = {"gears.ring.rim": "15 mm", "gears.ring.outside_diameter": "500 mm"}
     follows = f"contradicts the rim: with it the diameter is {2e3 * ring.tooth.root + 30.0:g} mm"
@@ -56,7 +56,7 @@ def test_a_rim_that_contradicts_the_outside_diameter_is_told_the_one_that_follow
 
 
 def test_amplitudes_are_what_the_meshes_push():
-    """Of every harmonic: forces times shapes over the stiffness, both written here again."""
+    """For every harmonic: forces times shapes over the stiffness, both computed here again."""
     case = a_set()
     train, at = build_train(case), ls.solve(case).positions[0]
     stiffnesses = case.gears["ring"].rim_stiffnesses
@@ -69,7 +69,7 @@ def test_amplitudes_are_what_the_meshes_push():
             place = train.gears[planet].centre - train.gears["ring"].centre
             turn = complex(place[0], place[1]) / abs(complex(place[0], place[1]))
             onto = complex(push[0], push[1]) / turn
-            # Approach grows with n·p of the driver, so the force on the ring is along the push.
+            # The approach grows with n·p of the driver, so the force on the ring is along the push.
             total += onto.real * turn**n + onto.imag * 1j * turn**n / n
         moved = at.displacement[f"ring: harmonic {n}"]
         assert complex(*moved) == pytest.approx(total / stiffness, rel=1e-9, abs=1e-18)
@@ -84,7 +84,7 @@ def test_shares_on_a_thin_rim_agree_with_50_digits(rim):
 
 
 def test_a_soft_rim_evens_out_what_a_fixed_sun_does_not():
-    """Of a pin out of place with everything else held; and a stiff one is as good as rigid."""
+    """A pin is out of place and everything else is held; a stiff rim is nearly rigid."""
 
     def spread(case: ls.Case) -> float:
         at = ls.solve(case).positions[0].torque

@@ -1,9 +1,9 @@
-"""What any equilibrium obeys, on every shipped case: signs, sums and energies.
+"""Signs, sums and energies that any equilibrium has, on every shipped case.
 
-Source: formulation, sections 2, 4 and 10. The sums are written from the gears' geometry here, not
+Source: formulation, sections 2, 4 and 10. The sums are computed here from the gears' geometry, not
 taken from the certificate.
 
-Tolerance: round-off of the answer over the load of the case, 1e-9 as the certificate asks.
+Tolerance: round-off of the answer over the load of the case, 1e-9 as the certificate requires.
 """
 
 import math
@@ -27,7 +27,7 @@ every_case = pytest.mark.parametrize("name", EVERY_SHIPPED)
 
 @cache
 def solved(name: str) -> tuple[Train, list[Equilibrium]]:
-    """The first two positions and the last."""
+    """Return the first two positions and the last."""
     train = build_train(shipped(name))
     indices = sorted({1, min(2, train.count), train.count})
     return train, [answer(train, index)[0] for index in indices]
@@ -58,8 +58,8 @@ def test_a_flank_does_not_push_both_ways_for_nothing(name):
         for mesh in train.meshes.values():
             if 0.0 < mesh.backlash < math.inf:
                 both = [found.flank_force[mesh.flank_name(d)] for d in (True, False)]
-                # Only eccentric gears pressed into each other could do it, which no shipped case
-                # does except the pinion that its ring presses into an idler.
+                # Only eccentric gears pressed into each other could do it. No shipped case has
+                # that, except for the pinion that its ring presses into an idler.
                 if min(both) > 0.0:
                     assert name == "fgfbstts/all_elements"
                     assert mesh.name == "4-6"
@@ -67,7 +67,7 @@ def test_a_flank_does_not_push_both_ways_for_nothing(name):
 
 @every_case
 def test_the_output_takes_the_sum_of_the_loads(name):
-    """Torque on the output gear: the input torque over the speed ratio, whatever the branches
+    """The torque on the output gear is the input torque over the speed ratio, whatever the branches
     carry.
     """
     train, answers = solved(name)
@@ -83,7 +83,7 @@ def test_the_output_takes_the_sum_of_the_loads(name):
         )
         taken += on_carrier(train, found, train.output)
         given = situation_of(train, found.index).torques[train.input] / output.ratio
-        # Radii are written with seven digits, so two paths' ratios differ in the seventh.
+        # Radii have seven digits, so two paths' ratios differ in the seventh.
         assert taken == pytest.approx(given, rel=1e-6)
 
 
@@ -100,7 +100,7 @@ def test_the_first_stage_takes_the_input_torque(name):
 
 
 def on_carrier(train: Train, found: Equilibrium, carrier: str) -> float:
-    """Moment of its planets' meshes on a carrier [N·m], in its running sense."""
+    """Return the moment of its planets' meshes on a carrier [N·m], in its running sense."""
     held, total = train.gears[carrier], 0.0
     for mesh in train.meshes.values():
         for drive in mesh.flanks:
@@ -114,7 +114,7 @@ def on_carrier(train: Train, found: Equilibrium, carrier: str) -> float:
 
 @every_case
 def test_forces_on_a_float_balance(name):
-    """Flanks, rings, splines and bearing on every gear that can move sum to nothing."""
+    """Forces of flanks, rings, splines and bearing on every gear that can move add up to zero."""
     train, answers = solved(name)
     for found in answers:
         load = max(found.flank_force.values())
@@ -126,7 +126,7 @@ def test_forces_on_a_float_balance(name):
                 for drive in mesh.flanks:
                     push = found.flank_force[mesh.flank_name(drive)] * mesh.direction(drive)[2]
                     for end, force in ((mesh.driver, -push), (mesh.driven, push)):
-                        # What pushes a planet reaches its carrier over the pin.
+                        # A force on a planet reaches its carrier through the pin.
                         if gear in (end, train.gears[end].carrier):
                             total = total + force
             for ring in train.rings.values():
@@ -137,7 +137,7 @@ def test_forces_on_a_float_balance(name):
 
 
 def ring_force(train: Train, found: Equilibrium, ring: object, gear: str) -> np.ndarray:
-    """Force of a drum ring on `gear` [N]: stops on the limited gear, arcs on both."""
+    """Return the force of a drum ring on `gear` [N]: stops on the limited gear, arcs on both."""
     total = np.zeros(3)
     if not isinstance(ring, DrumRing):
         return total
@@ -154,8 +154,8 @@ def ring_force(train: Train, found: Equilibrium, ring: object, gear: str) -> np.
 
 @every_case
 def test_coefficients_average_to_one(name):
-    """Ω over a stage averages to 1, the pairwise Ω over every group, and the largest is
-    reported.
+    """The mean of Ω over a stage is 1, that of the pairwise Ω over every group too, and the largest
+    is reported.
     """
     result = result_of(name)
     train = build_train(shipped(name))
@@ -200,8 +200,8 @@ RELAXED = {
 
 @pytest.mark.parametrize("change", RELAXED)
 def test_energy_falls_when_a_loaded_constraint_is_relaxed(change):
-    """An equilibrium is a minimum: with more freedom it lies lower, as the constraint carried
-    force.
+    """An equilibrium is a minimum of energy: with more freedom it is lower, because the constraint
+    carried force.
     """
     tight, loose = RELAXED[change]()
     energies = [potential(build_train(c), certified(c)[0]) for c in (tight, loose)]

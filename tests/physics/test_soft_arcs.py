@@ -1,8 +1,8 @@
-"""An arc that takes nearly all stiffness across it, in closed form.
+"""An arc that removes almost all stiffness across it, in closed form.
 
-An idler on the line between two gears is pressed on the arc of one of them, of radius d, with the
-force P. Along the arc its support of stiffness k acts against a side force s; the arc, which is
-curved away, takes P/d of it:
+An idler on the line between two gears is pressed onto the arc of one of them, of radius d, with the
+force P. Along the arc its support of stiffness k acts against a side force s; the arc, which curves
+away, reduces the stiffness by P/d:
 
     y = s / (k − P/d)  up to the stop at the float,   κ = P / (d k).
 
@@ -21,7 +21,8 @@ from loadshare.case import Case
 PRESSED, DISTANCE, FLOAT = 300.0, 0.1, 20e-6
 TORQUE, RADII = 18.89, (0.04, 0.05, 0.09)
 ACROSS = 2.0 * TORQUE / RADII[0] * (RADII[0] + RADII[1]) / DISTANCE
-"""Force of both meshes across the line of the gears [N]: both push the idler the same way."""
+"""Force of both meshes across the line of the gears [N]: both push the idler in the same direction.
+"""
 
 
 def idler(stiffness: float, side: float) -> Case:

@@ -20,7 +20,7 @@ HOUSING = {"operating.temperature": "70 K"}
 
 
 def teeth(case: ls.Case, name: str, scale: float) -> object:
-    """Teeth of a gear that is larger by a scale."""
+    """Return the teeth of a gear that is larger by a scale."""
     tooth = case.gears[name].tooth
     return replace(tooth, module=tooth.module * scale)
 
@@ -28,7 +28,7 @@ def teeth(case: ls.Case, name: str, scale: float) -> object:
 @pytest.mark.parametrize("internal", [False, True])
 @pytest.mark.parametrize("warm", [("sun",), ("planet",), ("sun", "planet")])
 def test_backlash_is_that_of_larger_teeth_at_larger_distances(internal, warm):
-    """To first order in the growth, and as far as half a pitch is tooth and half of it space."""
+    """To first order in the growth, as far as half a pitch is tooth and half of it space."""
     partner = "ring" if internal else "sun"
     warm = tuple(partner if name == "sun" else name for name in warm)
     away = "134.9 mm" if internal else "135.1 mm"
@@ -55,7 +55,7 @@ def test_backlash_is_that_of_larger_teeth_at_larger_distances(internal, warm):
         scales = [1.0 + 80.0 * STEEL * (g in warm) for g in (partner, "planet")]
         grown = [teeth(case, g, s) for g, s in zip((partner, "planet"), scales, strict=True)]
         plain = [teeth(case, g, 1.0) for g in (partner, "planet")]
-        # A pitch that has grown is more in one gear's spaces, and less in the other's.
+        # A grown pitch is larger in one gear's spaces, and smaller in the other's.
         change = 0.0
         for order in (1, -1):
             change += 0.5 * normal_backlash(*grown[::order], distance * (1.0 + housing * STEEL))
@@ -73,7 +73,7 @@ def test_what_is_warm_all_over_shares_as_if_it_were_cold():
 
 
 def test_a_ring_between_gears_that_are_warm_all_over_keeps_its_room():
-    """Also one that is dimensioned on the drawing: what grows with the housing is no error."""
+    """This includes a ring dimensioned on the drawing: growth with the housing is no error."""
     centres = {"a": ["-80 mm", "0 mm"], "p": ["0 mm", "0 mm"], "b": ["0 mm", "90 mm"]}
     case = ls.Case(
         {
@@ -89,7 +89,7 @@ def test_a_ring_between_gears_that_are_warm_all_over_keeps_its_room():
 
 
 def test_a_warm_planet_takes_more():
-    """Its teeth are thicker on both sides: it meets sun and ring sooner, by twice r tan α ε."""
+    """Its teeth are thicker on both sides, so it meets sun and ring sooner, by twice r tan α ε."""
     case = shipped("planetary/four_planets").replace({"errors": {}, "gears.sun.support": "rigid"})
     planet = next(n for n, g in case.gears.items() if g.carrier)
     rise = {f"gears.{planet}.temperature": "50 K"}
@@ -126,7 +126,7 @@ def test_degrees_are_not_a_rise():
 
 
 def test_a_warm_housing_grows_once_however_a_case_is_changed():
-    """A case made of one before, samples of it, and rates take over what has grown already."""
+    """A case made from another, samples of it, and rates must not apply the growth again."""
     case = shipped("two_path/from_teeth").replace(
         {
             "operating.temperature": "30 K",

@@ -1,4 +1,4 @@
-"""Sets that turn in surroundings which differ from direction to direction."""
+"""Sets that turn in surroundings that differ with direction."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ MOUNTED: dict[str, Any] = {
 
 
 def mounted(load: str = "sun", output: str = "carrier", held: str = "ring") -> ls.Case:
-    """A set with a support, a mount, a bearing and pins that have directions."""
+    """Return a set with a support, a mount, a bearing and pins that depend on direction."""
     return planetary(4, load, output, held, errors=ERRORS).replace(MOUNTED)
 
 
 def marched(case: ls.Case, **march: Any) -> ls.Case:
-    """The case over part of a revolution of its input."""
+    """Return the case over part of a revolution of its input."""
     assert case.operating is not None
     return case.replace(
         {"march": {"gear": case.operating.input, "revolutions": TURNS, "steps": STEPS} | march}
@@ -55,14 +55,14 @@ def marched(case: ls.Case, **march: Any) -> ls.Case:
 
 
 def turned(angle: float) -> np.ndarray:
-    """Turn a vector (2,)."""
+    """Return the matrix that rotates a vector (2,)."""
     return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
 
 
 @pytest.mark.parametrize(("load", "output", "held"), CHOICES)
 @pytest.mark.quick(2)
 def test_every_step_is_the_set_placed_anew(load: str, output: str, held: str) -> None:
-    """Explicitly: planets, what is on the carrier, and eccentricities where the step has them."""
+    """Explicitly: planets, parts on the carrier, and eccentricities are placed as in the step."""
     pin = {"radial": "3e9 N/m", "tangential": "8e8 N/m"}
     case = mounted(load, output, held).replace({"gears.p3.support": pin})
     if held == "carrier":
@@ -91,7 +91,7 @@ def test_every_step_is_the_set_placed_anew(load: str, output: str, held: str) ->
         assert position.torque == pytest.approx(again.torque, rel=1e-9)
         size = max(np.hypot(*p) for p in again.displacement.values())
         for name, moved in again.displacement.items():
-            # Given as seen from the carrier.
+            # Displacements are given as seen from the carrier.
             seen = goes.T @ moved
             assert position.displacement[name] == pytest.approx(seen, abs=1e-9 * size)
         for name, force in again.loads.bearings.items():
@@ -100,7 +100,7 @@ def test_every_step_is_the_set_placed_anew(load: str, output: str, held: str) ->
 
 
 def test_even_surroundings_placed_anew_are_those_seen_from_the_carrier() -> None:
-    """Both ways of solving, where both hold, thin rim and clearances included."""
+    """Both methods agree where both apply, including thin rim and clearances."""
     case = marched(
         shipped("planetary/four_planets").replace(
             {
@@ -128,7 +128,7 @@ def test_even_surroundings_placed_anew_are_those_seen_from_the_carrier() -> None
 
 
 def common_sun(**changes: Any) -> ls.Case:
-    """Two sets with one sun that floats, and carriers that turn at different speeds."""
+    """Return two sets with one floating sun, and carriers that turn at different speeds."""
     module = 5.0 * math.cos(math.radians(20.0))
     gears: dict[str, Any] = {"sun": {"base_radius": f"{9 * module} mm", "centre": ["0 mm", "0 mm"]}}
     meshes: dict[str, Any] = {}
@@ -189,7 +189,7 @@ OFFSETS = np.array([4.0, 0.0, -4.0])
 
 @pytest.fixture(scope="module")
 def alone() -> list[ls.Result]:
-    """One solve of a marched set for each torque and offset of its carrier."""
+    """Return one solution of a marched set for each torque and offset of its carrier."""
     case, load, place = marched(mounted()), "operating.torque", "bearings.carrier.offset[0]"
     values = zip(TORQUES, OFFSETS, strict=True)
     return [ls.solve(case.replace({load: f"{t} N*m", place: f"{x} um"})) for t, x in values]
@@ -213,7 +213,7 @@ def test_batches_have_it(alone: list[ls.Result], engine: str) -> None:
 
 
 def test_studies_have_it() -> None:
-    """Rates against differences; the critical value is where the answer before and after differ."""
+    """Rates agree with differences; the answers before and after a critical value differ."""
     case = marched(mounted())
     key = "bearings.carrier.offset[0]"
     rates = ls.sensitivity(case, key, positions=[3]).rates[3, key, "rising"]
@@ -251,7 +251,7 @@ def test_results_are_kept_and_judged_again(tmp_path: Any) -> None:
 
 @pytest.mark.parametrize("mount", ["1e9 N/m", ["1e9 N/m", "3e8 N/m"]])
 def test_a_slip_is_handed_from_step_to_step(mount: Any, tmp_path: Any) -> None:
-    """Seen from the carrier it turns back, in the housing it stays; either is found when loaded."""
+    """Seen from the carrier it turns back, in the housing it stays; a loaded file has either."""
     case = shipped("planetary/four_planets").replace(
         {
             "gears.sun.support": None,

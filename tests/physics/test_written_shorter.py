@@ -15,7 +15,7 @@ def torques(path: str) -> dict[str, float]:
 
 
 def test_the_split_path_box_from_its_teeth():
-    """The same box except for digits: its angles are written to 1e-10 deg, its centres to 10 nm."""
+    """The boxes agree except for digits: angles are given to 1e-10 deg, centres to 10 nm."""
     given, teeth = torques("two_path/clocking_error.toml"), torques("two_path/from_teeth.toml")
     names = {
         "in-wheelA": "in-wheel1",
@@ -42,7 +42,7 @@ def test_the_seeds_drive_with_each_branch_written_once():
 
 
 def test_a_differential_halves_the_torque():
-    """Each sun takes half of the carrier's torque, shared by three planets as 21 teeth have it."""
+    """Each sun of 21 teeth takes half of the carrier's torque, shared by three planets."""
     result = ls.solve(CASES / "planetary/differential.toml")
     assert result.positions[0].loads.gears["left"] == pytest.approx(-500.0, rel=1e-12)
     meshes = result.positions[0].torque
@@ -53,7 +53,7 @@ def test_a_differential_halves_the_torque():
 
 @pytest.mark.parametrize("first", ["right", "first"])
 def test_flanks_that_go_round_with_a_carrier_hang_on_no_order(first):
-    """Where nothing rolls, no speed tells which flank is the drive flank."""
+    """If no mesh rolls, no speed determines which flank is the drive flank."""
     case = shipped("planetary/differential")
     gears = case.to_dict()["gears"]
     before = [name for name in gears if name.startswith(first)]
@@ -64,7 +64,7 @@ def test_flanks_that_go_round_with_a_carrier_hang_on_no_order(first):
 
 @pytest.mark.parametrize("sun", ["left", "right"])
 def test_a_sun_that_goes_round_with_its_carrier_drives_a_wheel_outside(sun):
-    """With the flank that the name says, whose contact no backlash takes away."""
+    """Its drive flank is the one that the name implies, whose contact no backlash removes."""
     place = {"left": "-24.6 mm", "right": "24.6 mm"}[sun]
     case = ls.load_case(CASES / "planetary/differential.toml").to_dict()
     case["gears"]["wheel"] = {

@@ -1,4 +1,4 @@
-"""A small program that uses the whole public interface, as its users write it, with types."""
+"""A small typed program that uses the whole public interface as users do."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def refused_and_read(folder: Path, result: ls.Result) -> None:
 
 
 def main(folder: Path) -> None:
-    """Use everything, and leave a picture."""
+    """Use the whole interface, and save a picture."""
     result, figure = solved()
     figure.save(folder / "floats.svg")
     studied(result.case)

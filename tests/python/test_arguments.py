@@ -1,4 +1,4 @@
-"""Odd values in every place where one may be given: the message names it and what is allowed."""
+"""Odd values wherever one may be given: the message names the value and what is allowed."""
 
 import numpy as np
 import pytest
@@ -96,7 +96,7 @@ def test_what_no_study_is(case, name):
     ],
 )
 def test_what_no_file_can_hold(case, key, given):
-    """It was read, and the case could not be written."""
+    """Such values used to be accepted, and the case could not be written afterwards."""
     with pytest.raises(ls.CaseError) as caught:
         case.replace({key: given})
     (problem,) = caught.value.problems

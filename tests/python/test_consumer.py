@@ -1,4 +1,4 @@
-"""A typed program against the package, run and checked."""
+"""A typed program that uses the package: it is run and type-checked."""
 
 import importlib.util
 import os
@@ -31,7 +31,7 @@ def test_the_program_names_all_that_is_public():
 
 @pytest.mark.slow
 def test_its_types_are_those_that_a_user_sees(tmp_path):
-    """Checked without the project's own settings, in a folder of its own."""
+    """The program is checked without the project's own settings, in a folder of its own."""
     program = tmp_path / "program.py"
     wrong = "\nwrong: int = ls.solve(ls.examples('star/floating_sun_4'))\nls.no_such_thing\n"
     program.write_text(PROGRAM.read_text(encoding="utf-8") + wrong, encoding="utf-8")

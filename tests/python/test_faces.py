@@ -1,4 +1,4 @@
-"""What a Python user meets: what is listed, how things show themselves, tables, pictures joined."""
+"""What a Python user sees: public names, representations, tables, joined pictures."""
 
 import html.parser
 import pickle
@@ -144,7 +144,7 @@ def test_what_was_found_is_equal_to_its_pickle_and_to_nothing_else(ring, studies
 
 
 def test_studies_that_found_something_else_are_not_equal(ring, studies):
-    """Also where they asked the same."""
+    """This holds even if they asked the same question."""
     more = ring.case.replace({"operating.power": "2100 kW"})
     found = ls.sweep(more, {"rings.*.float": "0 um:10 um:12"}, positions=[1])
     assert found.points == studies["sweep"].points

@@ -15,37 +15,37 @@ from loadshare.report.page import Chapter, chapter_of_file
 
 @pytest.fixture(scope="module")
 def browser(chrome) -> Any:
-    """A headless Chromium without a network."""
+    """Return a headless Chromium without a network."""
     return as_new(chrome, offline=True)
 
 
 @pytest.fixture(scope="session")
 def limit_ring() -> ls.Result:
-    """Two floating pinions on their rings; the same at all five positions."""
+    """Return two floating pinions on their rings; all five positions are the same."""
     return ls.solve(shipped("fgfbstts/limit_ring"))
 
 
 @pytest.fixture(scope="session")
 def all_elements() -> ls.Result:
-    """Every element, at positions that differ."""
+    """Return a result with every element, at positions that differ."""
     return ls.solve(shipped("fgfbstts/all_elements"), positions=[1, 2, 7, 10])
 
 
 @pytest.fixture(scope="session")
 def full_float() -> ls.Result:
-    """Pinions on clearance splines that slip."""
+    """Return pinions on clearance splines that slip."""
     return ls.solve(shipped("fgfbstts/full_float"), positions=[1])
 
 
 @pytest.fixture(scope="session")
 def pressed_sun() -> ls.Result:
-    """A sun on a round ring that is off centre."""
+    """Return a sun on a round ring that is off centre."""
     return ls.solve(round_ring())
 
 
 @pytest.fixture(scope="session")
 def picture(request) -> Callable[..., Any]:
-    """A picture of one of the results above by their names, drawn once."""
+    """Return a function that draws a picture of one of the results above, once."""
 
     @cache
     def drawn(result: str, kind: str, *settings: str) -> Any:
@@ -56,24 +56,24 @@ def picture(request) -> Callable[..., Any]:
 
 @pytest.fixture(scope="session")
 def drawing() -> Callable[[str], Any]:
-    """The drawing of a shipped case, made once."""
+    """Return a function that draws a shipped case, once."""
     return cache(lambda name: train(shipped(name)))
 
 
 @pytest.fixture(scope="session")
 def ring_chapter() -> Chapter:
-    """Chapter of a page: two floating pinions on their rings."""
+    """Return the chapter of a page: two floating pinions on their rings."""
     return chapter_of_file(CASES / "fgfbstts/limit_ring.toml")
 
 
 class Spec:
-    """A specification, with methods for what it shows."""
+    """A specification, with methods to read its content."""
 
     def __init__(self, spec: dict[str, Any]) -> None:
         self.spec = spec
 
     def units(self) -> Iterator[dict[str, Any]]:
-        """Every mark with its rows."""
+        """Yield every mark with its rows."""
         yield from self._units(self.spec, {})
 
     def _units(self, part: dict[str, Any], data: dict[str, Any]) -> Iterator[dict[str, Any]]:
@@ -89,11 +89,11 @@ class Spec:
         return [u for u in self.units() if u["mark"]["type"] == kind]
 
     def rows(self, kind: str, field: str) -> list[dict[str, Any]]:
-        """Rows of all marks of a kind that have a field."""
+        """Return the rows of all marks of a kind that have a field."""
         return [r for u in self.marks(kind) for r in u["rows"] if field in r]
 
     def words(self) -> str:
-        """All words: texts, titles, subtitles."""
+        """Return all words: texts, titles, subtitles."""
         found: list[str] = [str(r["text"]) for r in self.rows("text", "text")]
 
         def walk(part: Any) -> None:
@@ -116,5 +116,5 @@ class Spec:
 
 @pytest.fixture(scope="session")
 def read() -> type[Spec]:
-    """Reader of a figure's specification."""
+    """Return the reader of a figure's specification."""
     return Spec

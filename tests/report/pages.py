@@ -1,4 +1,4 @@
-"""Pages that several tests look at."""
+"""Pages that several tests use."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections import Counter
 from html.parser import HTMLParser
 
 EVIL = "</script><script>window.pwned=1</script><img src=x onerror=\"window.pwned=1\"> & 'ok'"
-"""What a case file must not be able to do."""
+"""Text in a case file that must not be able to do any harm."""
 
 EVIL_CASE = f"""
 title = '''{EVIL}'''

@@ -1,4 +1,4 @@
-"""Pictures of torque, share and law show what the result holds."""
+"""Pictures of torque, share and law show the content of the result."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_no_share_without_stages_or_load():
 
 
 def test_a_position_without_load_is_not_like_the_others(read):
-    """Its Ω is none: the lines are broken there, and nothing is the same at all positions."""
+    """It has no Ω: lines are interrupted there, and nothing is called the same at all positions."""
     torque = ["1000 N*m", "0 N*m", "1000 N*m"]
     changes = {"operating.torque": torque, "operating.positions": 3}
     spec = read(ls.solve(shipped("star/floating_sun_3").replace(changes)).plot.share().spec)
@@ -109,7 +109,7 @@ def test_law_points_lie_on_the_law_of_the_case(all_elements, read, picture):
 
 
 def test_the_law_is_followed_by_the_torque_of_every_flank(read):
-    """Where the coast flank pushes back, the drive flank carries more than the mesh transmits."""
+    """If the coast flank carries as well, the drive flank carries more than the mesh transmits."""
     result = ls.solve(coasting(), positions=[1])
     p = result.positions[0]
     squeezed = [m for m, t in p.coast_torque.items() if t > 0.0]
@@ -123,7 +123,7 @@ def test_the_law_is_followed_by_the_torque_of_every_flank(read):
 
 
 def test_a_brake_follows_the_law_on_its_coast_flanks(read):
-    """The backlash that they cross first is no part of it."""
+    """The backlash that they cross first is not part of the law."""
     case = shipped("fgfbstts/all_elements").replace({"operating.power": "-2000 kW"})
     result = ls.solve(case, positions=[1])
     rows = read(result.plot.law().spec).rows("point", "angle")
@@ -138,7 +138,7 @@ def test_a_brake_follows_the_law_on_its_coast_flanks(read):
 
 def test_curves_are_drawn_once_for_each_law(read, picture):
     spec = read(picture("limit_ring", "law").spec)
-    # The case has three constant stiffnesses: one for each of the three panels.
+    # The case has three constant stiffnesses, one for each of the three panels.
     curves = [{r["curve"] for r in u["rows"]} for u in spec.marks("line")]
     assert curves == [{0}, {0}, {0}]
 

@@ -1,4 +1,4 @@
-"""The page in a browser: opens offline without a complaint, shows figures, sorts tables."""
+"""The page in a browser: it opens offline without errors, shows figures and sorts tables."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ return table.tHead.rows[0].cells[arguments[1]].getAttribute("aria-sort");
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory, ring_chapter):
-    """A report of a good case, a bad one, and one whose texts are hostile."""
+    """Write a report of a good case, a bad one, and one with hostile texts."""
     folder = tmp_path_factory.mktemp("page")
     (folder / "evil.toml").write_text(EVIL_CASE, encoding="utf-8")
     (folder / "bad.toml").write_text("title = 'bad'\n", encoding="utf-8")
@@ -36,7 +36,7 @@ def page(tmp_path_factory, ring_chapter):
 
 @pytest.fixture
 def opened(browser, page):
-    """The page as it opens, with all figures drawn."""
+    """Open the page, and wait until all figures are drawn."""
     visit(browser, page)
     figures = browser.execute_script(PLACES)
     assert figures >= 8
@@ -90,7 +90,7 @@ def test_tables_sort_by_figures_and_by_words(opened):
     assert [float(v) for v in opened.execute_script(COLUMN, heading, 2)] == sorted(torques)[::-1]
     assert opened.execute_script(CLICK, heading, 0) == "ascending"
     meshes = opened.execute_script(COLUMN, heading, 0)
-    # Numbers within names count as numbers: 10 after 9.
+    # Numbers within names are sorted as numbers: 10 after 9.
     assert meshes == sorted(meshes, key=lambda m: [int(n) for n in m.split("-")])
     assert opened.get_log("browser") == []
 
@@ -135,7 +135,7 @@ setTimeout(() => {
 
 
 def test_no_script_runs_but_those_of_the_page(browser, page):
-    """Its policy names them by their hashes, and lets nothing be compiled. Leaves complaints."""
+    """Its policy lists them by hash, and forbids compilation. The test leaves errors in the log."""
     visit(browser, page)
     browser.execute_script(INTRUDER)
     compiling = waiting(browser, 60).until(lambda b: b.execute_script("return window.compiling"))

@@ -46,7 +46,7 @@ def test_draw_shows_what_does_not_fit(command):
 
 
 def test_draw_nothing_of_a_case_that_could_not_be_read_just_then(command, monkeypatch):
-    """A file that is there again for the second look would give half a picture, or another."""
+    """If the file is back at the second read, the picture would be incomplete, or another one."""
     from loadshare.errors import CaseError, Problem
 
     def missing(file, **_):
@@ -61,7 +61,7 @@ def test_draw_nothing_of_a_case_that_could_not_be_read_just_then(command, monkey
 
 
 def test_draw_a_train_that_locks(command):
-    """A case whose values are right one by one, and whose train cannot turn."""
+    """Each value of the case is valid, but the train cannot turn."""
     mesh = '{pressure_angle = "20 deg", stiffness = "1e6 N*m/rad"}'
     result = command("draw", STAR, "--set", f'meshes."planet1-planet2"={mesh}')
     assert result.exit_code == 2

@@ -1,4 +1,4 @@
-"""Several cases on a page: what differs comes first, and nothing else is shown as different."""
+"""Several cases on a page: differences come first, and nothing else is shown as different."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_a_case_beside_itself_differs_in_nothing(star):
 
 
 def test_twice_the_load_is_twice_every_torque():
-    """Linear springs without gaps: nothing depends on the size of the load but the forces."""
+    """Linear springs without gaps: only the forces depend on the size of the load."""
     case = shipped("fgfbstts/rigid_closed_form").replace({"meshes.4-6.gap": "0 rad"})
     torque = max(case.operating.input_torque)
     more = case.replace({"operating.torque": f"{2 * torque!r} N*m"})
@@ -44,7 +44,7 @@ def test_twice_the_load_is_twice_every_torque():
 
 
 def test_round_off_is_no_difference():
-    """A bearing that carries 3e-8 N in one case and nothing in the other is not among them."""
+    """A bearing that carries 3e-8 N in one case and nothing in the other is not a difference."""
     results = [ls.solve(shipped(f"fgfbstts/{n}")) for n in ("limit_ring", "installation_error")]
     _, figures, *_ = comparison(["a", "b"], results)
     rows = [r for r in figures.rows if [c.text for c in r[:2]] == [BEARING, "gear 5"]]
@@ -82,7 +82,7 @@ def test_the_page_opens_on_what_differs(star):
 
 
 def test_a_negative_figure_that_becomes_smaller_changes_downwards():
-    """−100 to −50 N·m is −50 %, as of the force's size."""
+    """−100 to −50 N·m is −50 %, like the change of a force's size."""
     case = shipped("fgfbstts/rigid_closed_form").replace({"meshes.4-6.gap": "0 rad"})
     torque = max(case.operating.input_torque)
     brakes = [case.replace({"operating.torque": f"{-k * torque!r} N*m"}) for k in (1.0, 0.5)]

@@ -1,4 +1,4 @@
-"""The picture of the floats shows what the result holds."""
+"""The picture of the floats shows the content of the result."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ def test_the_enlargement_is_the_one_drawn(picture, read):
         low, high = panel.marks("point")[0]["encoding"]["x"]["scale"]["domain"]
         enlarged = next(line for line in panel.words().splitlines() if line.startswith("enlarged"))
         factor = float(enlarged.split()[2].replace(",", ""))
-        # Given with two digits.
+        # The factor is given with two digits.
         assert factor == pytest.approx(75e-3 / ((high - low) * 1e-6), rel=0.05)
-        # 75 mm at 96 px an inch.
+        # 75 mm at 96 px per inch.
         assert panel.spec["width"] == pytest.approx(75.0 / 25.4 * 96.0, abs=1.0)
 
 
@@ -82,7 +82,7 @@ def test_the_arrow_is_the_reaction(limit_ring, picture, read):
         [1e6 * v for v in limit_ring.positions[0].displacement["4"]], rel=1e-6
     )
     for k in (0, 1):
-        # Rows hold seven digits.
+        # Rows contain seven digits.
         assert (tip[k] - start[k]) / length == pytest.approx(rest.reaction[k] / size, abs=1e-5)
 
 

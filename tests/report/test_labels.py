@@ -1,4 +1,4 @@
-"""Labels keep off each other and off what is drawn."""
+"""Labels do not overlap each other or the drawing."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_the_preferred_side_is_taken_when_it_is_free():
 
 
 def leader(labels):
-    """Ends of the line that leads to the one label that was placed; none for a label beside it."""
+    """Return the ends of the leader of the one placed label; empty for a label beside its point."""
     for layer in labels.layers({}, {}):
         if layer["mark"]["type"] == "line":
             return [(row["x"], row["y"]) for row in layer["data"]["values"]]
@@ -69,7 +69,7 @@ def test_a_line_leads_to_what_stands_further_away():
     (box,) = boxes(labels)
     start, end = leader(labels)
     assert start == (150.0, 150.0)
-    # It ends on the rim of the label; what is drawn has seven digits.
+    # It ends on the edge of the label; drawn coordinates have seven digits.
     assert box[0] - 1e-4 <= end[0] <= box[2] + 1e-4
     assert box[1] - 1e-4 <= end[1] <= box[3] + 1e-4
     beside = Labels((0.0, 0.0), (300.0, 300.0), 1.0)
@@ -78,7 +78,7 @@ def test_a_line_leads_to_what_stands_further_away():
 
 
 def test_a_label_does_not_seem_to_name_another_point():
-    """Two points 24 px above one another: without the other, the wish for "up" would be met."""
+    """Two points are 24 px apart vertically: without the other, the label would be above."""
     own, other = (150.0, 150.0), (150.0, 174.0)
     alone, beside = (Labels((0.0, 0.0), (300.0, 300.0), 1.0) for _ in range(2))
     alone.place("name", [own], towards=(0.0, 1.0), gap=7.0)

@@ -1,4 +1,4 @@
-"""What a page and its pictures look like, as far as it can be judged without an eye."""
+"""The look of a page and its pictures, as far as it can be judged without an eye."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ CASE_FILES = [p for p in sorted(CASES.rglob("*.toml")) if p.parent.name != "pair
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory, ring_chapter):
-    """A report of one case, or of two cases, made once."""
+    """Write a report of one case, or of two cases, once."""
     folder = tmp_path_factory.mktemp("page")
 
     @cache
@@ -54,7 +54,7 @@ SCREENS = [(name, width) for name in ("one.html", "two.html") for width in (390,
 
 @pytest.mark.parametrize(("name", "width"), mostly_slow(SCREENS, [SCREENS[1]]))
 def test_a_report_fits_every_screen(browser, page, name, width):
-    """Nothing needs scrolling sideways but within its own box; no words overlap or are cut."""
+    """Nothing needs horizontal scrolling outside its own box; no words overlap or are cut off."""
     opened(browser, page(name), width, dark=width == 1280)
     assert too_wide(browser, width) <= 0
     pictures = browser.find_elements(By.CSS_SELECTOR, ".figure svg.marks")
@@ -75,7 +75,7 @@ def test_the_verdict_is_on_the_first_screen(browser, page):
 
 
 def test_letters_on_a_phone_are_large_enough(browser, page):
-    """Those of pictures have at least 8 pixels."""
+    """Letters in pictures have at least 8 pixels."""
     opened(browser, page("one.html"), 390)
     sizes = browser.execute_script(
         """return [...document.querySelectorAll(".figure svg text")].map((text) => {
@@ -121,7 +121,7 @@ def test_no_words_overlap_in_a_picture_of_the_docs(browser, tmp_path, file):
 
 
 def test_every_committed_picture_is_judged():
-    """A bitmap is the twin of a drawing that is judged, or the screen of a page that is."""
+    """A bitmap is the counterpart of a drawing that is judged, or a screenshot of such a page."""
     bitmaps = [f for f in (CASES.parent / "docs").rglob("*.png") if f.parent.name != "screens"]
     assert bitmaps
     assert [f.name for f in bitmaps if not f.with_suffix(".svg").exists()] == []

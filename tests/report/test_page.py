@@ -1,4 +1,4 @@
-"""The report page: complete, self-contained, and nothing in a case can break it."""
+"""The report page: complete, self-contained, and safe against any text in a case."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def test_the_whole_case_is_on_the_page(ring_page, ring_chapter):
 
 
 def test_every_figure_is_on_the_page_twice(ring_page, ring_chapter):
-    """As a specification for the browser, and as SVG for one without scripts."""
+    """It is there as a specification for the browser, and as SVG for one without scripts."""
     specs = re.findall(r'<script type="application/json" class="spec">(.*?)</script>', ring_page)
     wanted = [*ring_chapter.figures, ring_chapter.drawing]
     assert [json.loads(s) for s in specs] == [f.spec for f in wanted]
@@ -112,7 +112,7 @@ def test_assumed_inputs_are_marked(ring_chapter):
 
 @pytest.mark.parametrize("name", ["fgfbstts/all_elements", "branches/split_torque_6"])
 def test_every_input_is_shown(name):
-    """Each text that a case holds below its sections is in some cell."""
+    """Each text that a case contains below its sections is in some cell."""
     case = shipped(name)
     cells = "\n".join(c.text for t in input_tables(case) for row in t.rows for c in row)
 
@@ -135,7 +135,7 @@ def test_every_input_is_shown(name):
 
 def test_text_of_a_case_stays_text(evil_page):
     reader = Reader(evil_page)
-    # One JSON block for each figure of the two chapters, two scripts with code.
+    # One JSON block for each figure of the two chapters, and two scripts with code.
     figures = len(re.findall(r'class="spec"', evil_page))
     assert figures >= 8
     assert reader.tags["script"] == figures + 2

@@ -1,4 +1,4 @@
-"""Looks: the same gear everywhere the same, apart from others in colour and in grey."""
+"""Looks: a gear looks the same everywhere, and differs from others in colour and in grey."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BRANCHES = {
 
 
 def luminance(colour: str) -> float:
-    """Relative luminance of a colour by WCAG 2."""
+    """Return the relative luminance of a colour by WCAG 2."""
     parts = [int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)]
     linear = [v / 12.92 if v <= 0.03928 else ((v + 0.055) / 1.055) ** 2.4 for v in parts]
     return sum(w * v for w, v in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
@@ -38,7 +38,7 @@ def test_seventy_looks_differ_and_neighbours_differ_in_everything():
 
 
 def test_colours_are_dark_enough_on_white():
-    # 2.2:1 is what a line of 1.5 px needs to be followed; words are never in these colours.
+    # A line of 1.5 px needs 2.2:1 to be followed by eye; text never has these colours.
     assert all(1.05 / (luminance(c) + 0.05) > 2.2 for c in COLOURS)
 
 

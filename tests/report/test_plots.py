@@ -1,4 +1,4 @@
-"""Who draws: results and studies offer pictures, and `loadshare.plot` draws them."""
+"""The interface of drawing: results and studies offer pictures, and `loadshare.plot` draws them."""
 
 import pytest
 

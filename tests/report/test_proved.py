@@ -1,4 +1,4 @@
-"""What a result says is proved of its torques."""
+"""The statement of a result on the proved accuracy of its torques."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from loadshare.report.records import proved
 
 
 def pair(positions: int) -> ls.Result:
-    """A pair of gears whose stiffness varies through the cycle, solved."""
+    """Return the result for a pair of gears whose stiffness varies through the cycle."""
     stiffness = [f"{1e6 + 1e4 * k} N*m/rad" for k in range(positions)]
     return ls.solve(
         ls.Case(

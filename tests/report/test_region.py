@@ -26,7 +26,7 @@ def ring_of(**values):
 
 
 def exact_margin(train, gear, point, displacement, position=1):
-    """Smallest distance of a displacement to the ring's boundaries [m], from the train's arcs."""
+    """Return the smallest distance of a displacement from the ring's boundaries [m]."""
     ring, frame = train.rings[gear], train.gears[gear].frame
     moved = np.array(point) @ frame
     situation = situation_of(train, position)
@@ -39,7 +39,7 @@ def exact_margin(train, gear, point, displacement, position=1):
 
 
 def inside(polygon, point):
-    """Whether a point lies in a closed polygon (even–odd rule)."""
+    """Return whether a point is in a closed polygon (even–odd rule)."""
     x, y = point
     crossings = False
     for (x0, y0), (x1, y1) in pairwise(polygon):
@@ -62,7 +62,7 @@ def test_the_width_of_a_drum_without_clearance_is_the_chords_closed_form():
         v = float(start @ across)
         u = math.sqrt(float(start @ start) - v**2)
         expected += u - math.sqrt(float(start @ start) - (y + v) ** 2)
-    # 0.9 µm as differences of 0.17 m: round-off leaves a few 1e-17 m.
+    # 0.9 µm is a difference of lengths of 0.17 m, whose round-off is a few 1e-17 m.
     assert width == pytest.approx(expected, abs=1e-15)
     # With the gear on the line of its neighbours (v = 0) these are two sagittas, y²/a.
     assert expected == pytest.approx(y**2 / 0.169654, rel=1e-3)
@@ -99,8 +99,8 @@ def test_the_outline_holds_exactly_what_the_exact_arcs_admit(reach, clearances, 
     points = np.random.default_rng(seed).uniform(-90e-6, 90e-6, (60, 2))
     for point in points:
         margin = exact_margin(train, "4", point, displacement)
-        # The outline joins points on the arcs by straight lines: 120 lines over 120 µm leave a
-        # sagitta below 1e-15 m, round-off of half a chord 1e-16 m.
+        # The outline joins points on the arcs by straight lines: 120 lines over 120 µm have a
+        # sagitta below 1e-15 m; round-off of half a chord is 1e-16 m.
         if abs(margin) > 1e-13:
             assert (margin > 0.0) == any(inside(piece, point) for piece in found.pieces)
 
@@ -158,7 +158,7 @@ def test_a_gear_without_a_ring_has_no_region():
 
 
 def test_a_bearing_inside_a_ring_is_drawn_beside_it():
-    """Both outlines, and no area: where both let the centre be is less than either gives."""
+    """Both outlines are drawn, but no area: the centre may only be in their intersection."""
     bearing = {"clearance": "3 um", "stiffness": "2e8 N/m"}
     case = shipped("fgfbstts/limit_ring").replace({"bearings": {"4": bearing}})
     found = ls.solve(case, positions=[1])

@@ -1,4 +1,4 @@
-"""Rules across a panel: words are on the side that has room, and never over one another."""
+"""Lines across a panel: their labels are on the side that has room, and never overlap."""
 
 from itertools import pairwise
 
@@ -11,12 +11,13 @@ from loadshare.report.figures.marks import BREADTH, rules
 
 
 def sides(places: list[float]) -> list[str]:
-    """Side of the words of each rule [px], "" for a rule without words."""
+    """Return the side of the label of each line [px], "" for a line without a label."""
     named = [{"x": place, "text": f"{k}"} for k, place in enumerate(places)]
     found = dict.fromkeys(range(len(places)), "")
     for layer in rules(named, {}, 1.0):
         if layer["mark"]["type"] == "text":
-            # By its baseline: words below it run on the left of a rule, turned as they are.
+            # It follows from the baseline: text below it is on the left of a line, as it is
+            # rotated.
             side = {"bottom": "left", "top": "right"}[layer["mark"]["baseline"]]
             for row in layer["data"]["values"]:
                 found[int(row["text"])] = side

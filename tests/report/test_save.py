@@ -1,4 +1,4 @@
-"""Pictures on disk: the format follows from the ending, and HTML needs no network."""
+"""Pictures on disk: the file name's ending gives the format, and HTML needs no network."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ EVIL = "</script><script>window.pwned = true</script><img src=x onerror=alert(1)
 
 
 def without_scripts(page):
-    """A page with its script elements emptied."""
+    """Return a page with its script elements emptied."""
     return re.sub(r"(<script[^>]*>).*?(</script>)", r"\1\2", page, flags=re.DOTALL)
 
 
@@ -120,8 +120,8 @@ def test_an_altair_chart_keeps_its_rows_and_its_selection_beside_a_picture(pictu
 
 @pytest.mark.parametrize("more", ["", "print(type(beside.begin('', None).exception()).__name__)"])
 def test_what_is_interrupted_as_the_thread_of_pictures_starts_comes_to_its_end(more):
-    # Ctrl-C is met where the main thread waits for the new one to run. The pool does not know that
-    # one yet, and the interpreter would wait for it. What begins afterwards has another.
+    # Ctrl-C arrives while the main thread waits for the new one to start. The pool does not have
+    # that thread yet, and the interpreter would wait for it. Later drawings get another one.
     script = f"""
 import threading
 from loadshare.report import beside

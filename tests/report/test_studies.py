@@ -1,4 +1,4 @@
-"""Pictures of sweeps and tolerance studies, on made-up data of the documented form."""
+"""Pictures of sweeps and tolerance studies, from made-up data in the documented form."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from loadshare.report.figures.tolerance import tolerance
 
 @pytest.fixture
 def line() -> xr.Dataset:
-    """Five points over one parameter, the last one refused."""
+    """Return five points over one parameter; the last one is refused."""
     grid = np.array([0.0, 2.0, 4.0, 6.0, 8.0])
     share = np.column_stack([np.ones(5), 1.05 - 0.005 * grid, 1.05 - 0.005 * grid])
     share[-1] = np.nan
@@ -47,7 +47,7 @@ def line() -> xr.Dataset:
 
 @pytest.fixture
 def plane() -> xr.Dataset:
-    """A grid of three by two points, one of them refused."""
+    """Return a grid of three by two points; one of them is refused."""
     values = np.array([[1.0, 1.1], [1.2, 1.3], [1.4, np.nan]])
     status = np.where(np.isfinite(values), "certified", "refused")
     return xr.Dataset(
@@ -79,7 +79,7 @@ def test_lines_over_one_parameter(line, read):
 
 
 def test_words_of_an_event_keep_clear_of_the_lines(line, read):
-    """Both lines fall from the upper left, so words near it begin below them."""
+    """Both lines fall from the upper left, so a label near it starts below them."""
     spec = read(sweep(line, events=[(1.0, "an event"), (7.0, "another event")]).spec)
     (rule,) = spec.marks("rule")
     first, second = (r["top"] for r in rule["rows"])
@@ -99,14 +99,14 @@ def test_names_and_positions_can_be_chosen(line, read):
 
 
 def test_round_off_does_not_look_like_a_result(line, read):
-    """A pinion on its stop has no margin; that of another lies a fraction of an atom beside."""
+    """A pinion on its stop has no margin; that of another is a fraction of an atom."""
     margin = np.array([3e-17, -2e-17, 0.0, 1e-16, 0.0]).reshape(5, 1, 1).repeat(2, axis=1)
     attrs = {"units": "m", "long_name": "margin"}
     data = line.assign(margin=(("rings.4.float", "position", "float"), margin, attrs))
     spec = read(sweep(data, "margin").spec)
     assert "margin, largest over positions [µm]" in spec.words()
     low, high = spec.marks("point")[0]["encoding"]["y"]["scale"]["domain"]
-    # A nanometre at least, in µm, with its margin on both sides.
+    # At least a nanometre, in µm, with a margin on both sides.
     assert high - low == pytest.approx(1.16e-3)
     assert low < 0.0 < high
 
@@ -151,14 +151,14 @@ def test_a_map_over_two_parameters(plane, read):
         (1.0, 20.0): 1.3,
         (3.0, 10.0): 1.4,
     }
-    # Cells meet half way between grid values.
+    # Cells meet half-way between grid values.
     assert (cells[1.0, 10.0]["x"], cells[1.0, 10.0]["x2"]) == (0.5, 2.0)
     assert [(r["a"], r["b"]) for u in refused for r in u["rows"]] == [(3.0, 20.0)]
     assert "q [N·m]" in spec.words()
 
 
 def test_a_sweep_of_the_seeds_ring(read):
-    """The real thing: the study's own dataset."""
+    """This uses the study's own data set."""
     from tests.support import shipped
 
     from loadshare.study.sweep import sweep as run
@@ -172,7 +172,7 @@ def test_a_sweep_of_the_seeds_ring(read):
 
 @pytest.fixture
 def scattered() -> xr.Dataset:
-    """Samples of Ω and indices of three inputs."""
+    """Return samples of Ω and indices of three inputs."""
     omega = 1.0 + np.abs(np.random.default_rng(5).normal(0.02, 0.01, (2000, 2)))
     order = np.array([[0.1, 0.6, 0.2]] * 2)
     return xr.Dataset(
@@ -207,7 +207,7 @@ def test_the_distribution_holds_every_sample(scattered, read):
     marks = {r["text"]: r["x"] for r in spec.rows("rule", "text")}
     assert set(marks) == {"50 %", "95 %", "limit"}
     assert marks["limit"] == 1.045
-    # Half of the samples lie below the median, to the width of a bin.
+    # Half of the samples are below the median, to the width of a bin.
     below = max(r["p"] for r in spec.rows("line", "p") if r["x"] <= marks["50 %"])
     assert below == pytest.approx(0.5, abs=0.05)
 

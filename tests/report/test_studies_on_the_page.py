@@ -1,4 +1,4 @@
-"""Studies on the page: those that a case holds, those handed in, and those that have no answer."""
+"""Studies on the page: those of the case, those given, and those without an answer."""
 
 from __future__ import annotations
 
@@ -65,13 +65,13 @@ def scatter(case):
 
 @pytest.fixture(scope="module")
 def bare(case):
-    """Chapter without studies."""
+    """Return a chapter without studies."""
     return chapter(case)
 
 
 @pytest.fixture(scope="module")
 def one(case, bare, scatter):
-    """Chapter with all studies of the case but the long one, which is handed in."""
+    """Return a chapter with all studies of the case; the long one is given."""
     made = replace(bare, studies=[study_part("scatter", scatter, case)])
     parts = [run_part(case, name) for name in quick_studies(case)]
     return replace(made, studies=[*parts, *made.studies])
@@ -173,7 +173,7 @@ def test_the_command_runs_what_is_requested(case, tmp_path):
 
 
 def test_a_folder_without_samples_is_reported_before_anything_is_solved(tmp_path):
-    """A slip in its name began the whole study, in a folder of that name."""
+    """A typing error in its name used to start the whole study, in a folder of that name."""
     file = tmp_path / "case.toml"
     file.write_text("", encoding="utf-8")
     folder = tmp_path / "samlpes"

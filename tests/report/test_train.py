@@ -1,4 +1,4 @@
-"""The drawing: circles that touch, lines that are tangent, what does not fit in red."""
+"""The drawing: circles that touch, lines that are tangent, misfits in red."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from loadshare.train import build_train
 
 @pytest.fixture
 def moved_idler(tmp_path):
-    """A case whose gear 6 stands 3.17 degrees off its place."""
+    """Write a case whose gear 6 is 3.17 degrees out of place."""
     base = (CASES / "fgfbstts/limit_ring.toml").as_posix()
     file = tmp_path / "wrong.toml"
     centre = '{ about = "10", distance = "525.6314 mm", angle = "38 deg" }'
@@ -30,7 +30,7 @@ def moved_idler(tmp_path):
 
 @pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_pitch_circles_touch_in_every_case(name):
-    """The two pitch circles meet at the pitch point, whichever gear it is seen from."""
+    """The two pitch circles meet at the pitch point, from whichever gear it is computed."""
     case = shipped(name)
     layout = layout_of(case, build_train(case))
     assert len(layout.pairs) == len(case.meshes)
@@ -43,8 +43,8 @@ def test_pitch_circles_touch_in_every_case(name):
             kinds = {layout.bodies[n].kind for n in (pair.driver, pair.driven)}
             if "face" in kinds and body.kind != "face":
                 continue
-            # Cases give base radii and centres with four decimals of a millimetre: 1e-3 is the
-            # misfit that a case may have, what is shipped fits to 1e-5.
+            # Cases give base radii and centres with four decimals of a millimetre: a case may have
+            # a misfit of 1e-3, the shipped ones fit to 1e-5.
             assert np.linalg.norm(arm) == pytest.approx(radius, rel=2e-5)
 
 
@@ -57,7 +57,7 @@ def test_lines_of_action_are_tangent_to_both_base_circles(name, drawing, read):
     for unit in spec.marks("line"):
         if unit["mark"].get("color") == "#1f2933":
             for row in unit["rows"]:
-                # Lines that lead from a name to its centre are ink as well, and are no mesh.
+                # Leaders from a name to a centre also have the ink colour, but are no mesh.
                 if "part" in row:
                     lines[row["part"]].append((row["x"], row["y"]))
     seen = 0
@@ -78,7 +78,7 @@ def test_lines_of_action_are_tangent_to_both_base_circles(name, drawing, read):
 
 
 def test_arrows_of_a_result_are_those_of_the_flanks_that_carry(read):
-    """A push on the coast flank is tangent to the same base circles, and turns the other way."""
+    """A push on the coast flank is tangent to the same base circles, but turns the other way."""
     case = shipped("fgfbstts/all_elements").replace({"operating.power": "-2000 kW"})
     built, result = build_train(case), ls.solve(case, positions=[1])
     drive = layout_of(case, built).pairs
@@ -92,7 +92,7 @@ def test_arrows_of_a_result_are_those_of_the_flanks_that_carry(read):
             arm = one.pitch_point - body.centre
             turns = [float(body.axis @ np.cross(arm, m)) for m in (*one.pushes, *other.pushes)]
             assert abs(turns[0]) == pytest.approx(body.base_radius, rel=1e-3)
-            # Of a jammed mesh both flanks push, the coast flank last.
+            # Both flanks of a jammed mesh push; the coast flank comes last.
             assert turns[-1] == pytest.approx(-turns[0], rel=1e-3)
         seen += 1
     assert seen == 8
@@ -190,7 +190,7 @@ def test_views_are_to_scale(drawing, read):
 
 
 def test_a_path_keeps_its_corners_and_where_it_turns_back():
-    """A circle from the side goes there and back along one line; a circle has corners only."""
+    """A circle seen from the side is one line there and back; a circle has only corners."""
     round_ = circle((3.0, -2.0), 40.0)
     assert corners(round_) == round_
     flat = [(x, 0.3 * x + 1.0) for x, _ in round_]

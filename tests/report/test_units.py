@@ -52,7 +52,7 @@ def test_no_negative_zero():
 def test_significant_digits_round_trip(value, digits):
     text = significant(value, digits)
     assert "e" not in text
-    # Half a unit of the last digit kept, relative to the leading one.
+    # Half a unit of the last digit kept, relative to the leading digit.
     assert float(text) == pytest.approx(value, rel=0.5000001 * 10.0 ** (1 - digits))
 
 

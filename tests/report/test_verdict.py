@@ -1,4 +1,4 @@
-"""The first screen: the largest forces are those of flanks, and K_γ is of all positions."""
+"""The first screen: the largest forces are those of flanks, and K_γ is over all positions."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from loadshare.results.share import load_factors
 
 @pytest.mark.parametrize("power", ["20 kW", "0 kW", "-2000 kW"])
 def test_the_largest_force_of_a_flank_is_no_difference_of_flanks(power):
-    """Where a mesh is jammed, each flank carries more than the mesh transmits."""
+    """In a jammed mesh, each flank carries more than the mesh transmits."""
     case = shipped("fgfbstts/all_elements").replace({"operating.power": power})
     result = ls.solve(case, positions=[1, 5, 11])
     forces = [(f, name) for p in result.positions for name, f in p.equilibrium.flank_force.items()]
@@ -43,7 +43,7 @@ def test_it_is_called_k_gamma_where_all_positions_are_there(all_elements, limit_
 
 @pytest.mark.parametrize(("size", "shown"), [(1.4e-6, 0.0), (1.4e-2, 1.4e-2)])
 def test_a_reaction_of_round_off_is_none(size, shown):
-    """A billionth of the load is what the certificate calls contact."""
+    """Below a billionth of the load, the certificate does not count a force as contact."""
     position = SimpleNamespace(
         certificate=SimpleNamespace(load=4e3), floats={"5": SimpleNamespace(reaction=(0.0, size))}
     )
@@ -51,7 +51,7 @@ def test_a_reaction_of_round_off_is_none(size, shown):
 
 
 def test_torques_of_drivers_of_two_sizes_are_not_called_k_gamma():
-    """The forces are as 2 to 1 where the torques are alike."""
+    """The forces are in the ratio 2 : 1 where the torques are equal."""
     gears = {
         "a": {"base_radius": "30 mm", "centre": ["120 mm", "0 mm"]},
         "b": {"base_radius": "60 mm", "centre": ["0 mm", "150 mm"]},
@@ -101,7 +101,7 @@ def test_a_load_is_that_of_its_position(all_elements):
 
 @pytest.mark.parametrize(("force", "told"), [(1e-5, False), (1.0, True)])
 def test_a_reaction_that_is_as_good_as_none_is_not_told_beside_a_margin(force, told):
-    """A margin of a float that is inside elsewhere is no bound of its reaction."""
+    """The margin of a float that is inside at another position is no bound of its reaction."""
     ways = [("inside", 2e-6, 0.0), ("on boundary", 0.0, force)]
     rests = [
         FloatState(

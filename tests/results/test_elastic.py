@@ -21,7 +21,7 @@ RADII = {"1": 30.0, "2": 60.0, "3": 20.0, "4": 50.0}
 
 
 def chain(torque: float, laws: tuple[dict, dict], shaft: str = "rigid", **operating) -> ls.Case:
-    """Two stages in a row on rigid bearings, radii in mm; laws at the drivers."""
+    """Return two stages in series on rigid bearings, radii in mm; laws at the drivers."""
     places = {"1": 0.0, "2": 100.0, "3": 100.0, "4": 180.0}
     return ls.Case(
         {
@@ -44,7 +44,7 @@ def elastic(case: ls.Case, position: int = 1):
 
 
 def test_a_chain_yields_by_the_sum_of_what_is_in_it() -> None:
-    """φ = a₁ + b₁T + c₁T^⅔ + i (wind + i₁… the second stage at twice the torque)."""
+    """φ = a₁ + b₁T + c₁T^⅔ + i (wind-up + i₁…, the second stage at twice the torque)."""
     a, b, c, k, ks, t = 2e-5, 1e-7, 3e-6, 4e6, 5e6, 100.0
     first = {"law": {"a": f"{a} rad", "b": f"{b} rad/(N*m)", "c": f"{c} rad/(N*m)^(2/3)"}}
     found = elastic(chain(t, (first, {"stiffness": f"{k} N*m/rad"}), f"{ks} N*m/rad"))
@@ -52,7 +52,7 @@ def test_a_chain_yields_by_the_sum_of_what_is_in_it() -> None:
     mesh = a + b * t + c * t ** (2 / 3)
     error = mesh + ratio**2 * t * (1 / ks + 1 / k)
     speed = RADII["1"] / RADII["2"] * RADII["3"] / RADII["4"]
-    # To what the radii of the input are rounded by.
+    # The tolerance is the rounding of the radii of the input.
     assert found.transmission_error["input"] == pytest.approx(error, rel=1e-12)
     assert found.transmission_error["output"] == pytest.approx(error * speed, rel=1e-12)
     tangent = b + 2 / 3 * c * t ** (-1 / 3)
@@ -92,7 +92,7 @@ MACHINES = {
 
 
 def slipping(friction: dict, clearance: str = "60 um") -> ls.Case:
-    """A star of four, one of them softer, whose sun is pushed over its spline."""
+    """Return a star of four, one planet softer, whose sun is pushed across its spline."""
     spline = {"bending_stiffness": "1e8 N/m", "clearance": clearance, **friction}
     case = shipped("star/floating_sun_4")
     soft = next(iter(case.meshes))
@@ -123,15 +123,15 @@ def test_stiffness_is_the_slope_of_solved_cases(name) -> None:
         for s in (-step, step)
     ]
     low, high = (e.transmission_error["input"] for e in ends)
-    # Rotations are found to some 1e-15, their difference to 1e-10 of itself; central differences
-    # of a Hertz law leave some (step)² besides.
+    # Rotations are found to some 1e-15, their difference to a relative 1e-10; central differences
+    # of a Hertz law add an error of some (step)².
     slope = 2.0 * step * torque / (high - low)
     assert elastic(case).torsional_stiffness["input"] == pytest.approx(slope, rel=1e-8)
 
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_errors_of_meshes_and_shafts_make_up_that_of_the_train(name) -> None:
-    """Virtual work, T φ = Σ F e + Σ T_s w: from the moments of all gears, whatever the laws."""
+    """Virtual work, T φ = Σ F e + Σ T_s w, from the moments of all gears, whatever the laws."""
     case = MACHINES[name]()
     here = ls.solve(case, positions=[1]).positions[0]
     train, phi = here.train, here.rotation

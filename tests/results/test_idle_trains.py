@@ -1,7 +1,8 @@
-"""Trains that carry little or nothing, drawn at random: what forces leave open survives its file.
+"""Random trains that carry little or nothing: undetermined displacements survive in a file.
 
-A result is read by computing the ranges again from the claimed place, which is another point of the
-same set with other last digits: they agree if they are those of the set, and not of the point.
+Reading a result computes the ranges again from the claimed place, which is another point of the
+same set with other last digits. They agree if they are ranges of the set, and do not depend on the
+point.
 """
 
 import random
@@ -15,7 +16,7 @@ EVERY = [name for name in SHIPPED if not name.endswith("from_geometry")]
 
 
 def drawn(chance: random.Random) -> ls.Case:
-    """A shipped case with play, floats and stiffnesses of any size, half of them without a load."""
+    """Return a shipped case with play, floats and stiffnesses of any size; half are unloaded."""
     case = shipped(chance.choice(EVERY))
     changes: dict[str, str] = {}
     if chance.random() < 0.5:
@@ -47,7 +48,7 @@ def test_what_is_open_survives_its_file(part, tmp_path):
         try:
             result = ls.solve(drawn(chance), positions=[1])
         except ls.LoadshareError:
-            # Two values that do not fit together, or no equilibrium; that is reported.
+            # Two values that do not fit together, or no equilibrium; the error reports it.
             continue
         result.to_json(file)
         again = ls.load_result(file).positions[0]

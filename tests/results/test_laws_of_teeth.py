@@ -1,4 +1,4 @@
-"""A law that was computed from teeth is not taken for that of other teeth, on any way back in."""
+"""A law that was computed from teeth is not used for other teeth, however the case is read back."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def stiffness(result: ls.Result) -> float:
 
 
 def test_light_loads_of_several_meshes_are_one_warning(found) -> None:
-    """Of a set of thirteen meshes they were as many warnings."""
+    """A set of thirteen meshes used to give as many warnings."""
     meshes = "meshes sun-planet2, sun-planet4, planet2-ring, planet4-ring, each"
     assert [line for line in law_lines(found.laws) if line.startswith("WARNING")] == [
         f"WARNING: {meshes}: 172.1 to 344.2 N·m lies below the 270 to 540 N·m from which the law "
@@ -77,7 +77,7 @@ def test_a_saved_result_refuses_other_teeth(found, tmp_path) -> None:
 
 
 def test_what_no_law_follows_from_may_change(found, tmp_path) -> None:
-    """Loads and allowances do not; nor does a train that is turned as a whole."""
+    """Loads and allowances do not change the law; nor does turning the whole train."""
     found.to_json(tmp_path / "found.json")
     case = ls.load_result(tmp_path / "found.json").case
     torque = case.operating.torque.si
@@ -91,7 +91,7 @@ def test_what_no_law_follows_from_may_change(found, tmp_path) -> None:
 
 
 def test_what_teeth_have_anyway_may_be_written_out(found, tmp_path) -> None:
-    """And laws that were marked with what was written out stay those of their teeth."""
+    """Laws that were marked with explicit defaults also remain those of their teeth."""
     found.to_json(tmp_path / "found.json")
     case = ls.load_result(tmp_path / "found.json").case
     usual = {"pressure_angle": "20 deg", "profile_shift": 0.0, "dedendum": 1.25}

@@ -1,4 +1,4 @@
-"""A mesh says the same with a backlash of a nanometre and without, whichever way it is loaded."""
+"""A mesh gives the same with a backlash of a nanometre and without, whichever way it is loaded."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def pair(torque: float, name: str = "a-b", backlash: str = "") -> ls.Case:
 @pytest.mark.parametrize("torque", [-100.0, 100.0])
 @pytest.mark.parametrize("name", ["a-b", "b-a"])
 def test_force_error_and_flank_with_and_without_backlash(torque: float, name: str) -> None:
-    """F = T/r and r₁φ₁ − r₂φ₂ = ±F/k of the gear named first, r²k its stiffness."""
+    """F = T/r and r₁φ₁ − r₂φ₂ = ±F/k of the gear named first; its stiffness is r²k."""
     radius = 0.05 if name == "a-b" else 0.06
     sign = np.sign(torque) * (1.0 if name == "a-b" else -1.0)
     for backlash in ("", "1 nm"):

@@ -26,7 +26,7 @@ def result(request):
 
 
 def without_bounds(result):
-    """The text of a result except its bounds, which loading finds again by another way."""
+    """Return the text of a result without its bounds, which loading computes by another method."""
     document = result.to_dict()
     del document["digest"]
     for position in document["positions"]:
@@ -47,7 +47,7 @@ def test_a_result_survives_its_file_bit_for_bit(result, ending, tmp_path):
 
 
 def test_a_file_that_an_editor_saved_again_is_still_read(tmp_path):
-    """With a mark of UTF-8 at its beginning and other ends of lines, as on Windows."""
+    """The file has a UTF-8 byte order mark and other line ends, as on Windows."""
     result = ls.solve(shipped("star/floating_sun_3"))
     text = result.to_json().replace("\n", "\r\n")
     (tmp_path / "saved.json").write_bytes(text.encode("utf-8-sig"))
@@ -135,7 +135,7 @@ def test_a_file_that_holds_no_result_is_refused(tmp_path):
 
 
 def test_coefficients():
-    """Ω is the torque over the mean of its group; a group that carries nothing has none."""
+    """Ω is the torque over the mean of its group; a group without load has none."""
     net = np.array([[1.0, 3.0, 0.0, 0.0, 2.0, -2.0 + 1e-15]])
     stages = [Stage(pair, tuple(pair), (tuple(pair),)) for pair in ("ab", "cd", "ef")]
     found = shares(MeshTorques(tuple("abcdef"), net, np.array([3.0])), stages)
@@ -154,7 +154,7 @@ def test_an_unloaded_train_has_no_coefficients(tmp_path):
 
 
 def test_stages_that_carry_next_to_nothing_have_no_coefficients():
-    """Branches brace one another where no torque passes: Ω is not their round-off."""
+    """Branches brace one another where no torque passes; Ω must not be their round-off."""
     power = ["2000 kW"] * 3 + ["0 kW"] + ["2000 kW"] * 16
     case = shipped("fgfbstts/all_elements").replace({"operating.power": power})
     result = ls.solve(case)
@@ -182,7 +182,7 @@ def test_a_result_prints_on_a_few_lines(result):
 
 
 def test_a_result_that_was_pickled_says_the_same_to_the_last_digit():
-    """Also what is computed when it is first read: loads of bearings, on axes that turn."""
+    """Also values that are computed on first access: loads of bearings, on axes that turn."""
     turning = {"operating.positions": 3, "gears.ring.support": ["1e9 N/m", "2e9 N/m"]}
     found = ls.solve(shipped("planetary/four_planets").replace(turning))
     again = pickle.loads(pickle.dumps(found))
@@ -214,7 +214,7 @@ def test_samples_have_the_names_and_units_of_results():
 )
 @pytest.mark.parametrize("engine", ["vectorised", "compiled"])
 def test_what_is_all_but_rigid_is_certified_again(tmp_path, key, stiffness, engine):
-    """Rounding of its length, times its stiffness, is no energy that anybody claims."""
+    """The rounding of its length, times its stiffness, must not count as a claimed energy."""
     case = ls.load_case(CASES / "fgfbstts" / "base.toml").replace({key: stiffness})
     ls.solve(case, positions=[1], engine=engine).to_json(tmp_path / "found.json")
     assert ls.load_result(tmp_path / "found.json").passed

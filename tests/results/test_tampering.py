@@ -1,4 +1,4 @@
-"""Files that were changed: each is refused by name, or gives the very result that was saved."""
+"""Files that were changed: each is refused by name, or gives exactly the result that was saved."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from loadshare.study.memory.step import stepped
 from loadshare.train import build_train
 
 METADATA = ("effort", "stop", "input")
-"""For readers: no figure follows from them. Of the input, what bears on the mechanics is
-hashed; the rest is titles and notes."""
+"""For readers only: no figure follows from them. The part of the input that affects the mechanics
+is hashed; the rest is titles and notes."""
 WORDS = ("version", "case", "solver", "method", "reduce", "rung", "kind", "where")
-"""Words for readers, which may be any, but nothing other than words."""
+"""Words for readers, which may be any text, but nothing other than text."""
 
 CASES = {
     "rings": lambda: ls.solve(shipped("fgfbstts/limit_ring"), positions=[1]),
@@ -85,7 +85,7 @@ def without(document: dict[str, Any], path: tuple[str | int, ...]) -> dict[str, 
 
 
 def loads(document: dict[str, Any]) -> ls.Result | None:
-    """The result of a document, or None if it is refused by name."""
+    """Return the result of a document, or None if it is refused by name."""
     with suppress(ls.ResultError):
         return read_document(json.dumps(document), "file.json")[0]
     return None
@@ -96,7 +96,7 @@ def is_metadata(path: tuple[str | int, ...]) -> bool:
 
 
 def harmless(document: dict[str, Any], result: ls.Result) -> bool:
-    """Whether a document is refused, or gives the very result that was saved."""
+    """Return whether a document is refused, or gives exactly the result that was saved."""
     found = loads(document)
     return found is None or found == result
 
@@ -135,15 +135,15 @@ def test_no_figure_can_be_something_else_or_missing(result):
 
 @pytest.mark.quick(1)
 def test_every_claim_is_looked_at(result):
-    """The quick twin of the slow tests: claims and derived figures of the first position."""
+    """The quick version of the slow tests: claims and derived figures of the first position."""
     document = json.loads(result.to_json())
     for field in ("claim", "torque", "share", "floats", "displacement", "rotation"):
         paths = leaves(document["positions"][0][field], ("positions", 0, field))
         figures = [p for p in paths if isinstance(at(document, p), float) and at(document, p)]
-        # Figures that follow from the claim are judged alike, whatever they are of.
+        # All figures that follow from the claim are judged in the same way.
         for path in figures if field == "claim" else figures[::3]:
             assert harmless(changed(document, path, at(document, path) * 1.5), result), path
-        # Whatever the name of a gear or mesh is, it is read in the same way.
+        # Reading does not depend on the name of a gear or mesh.
         for path in figures[::4]:
             assert loads(changed(document, path, math.nan)) is None
             assert loads(without(document, path)) is None
@@ -220,7 +220,7 @@ def test_text_that_is_no_plain_json_is_refused(small):
 
 
 def test_results_of_other_cases_are_not_taken_for_this_one(small):
-    """Claims of one case under the other's input and stamp."""
+    """Claims of one case under the input and stamp of another."""
     other = ls.solve(
         shipped("fgfbstts/limit_ring").replace({"rings.4.float": "4.1 um"}), positions=[1, 2]
     )
@@ -236,7 +236,7 @@ def test_a_march_begins_where_the_step_before_ended():
     path = ("positions", 2, "claim", "slip")
     assert harmless(changed(document, path, at(document, ("positions", 1, *path[2:]))), found)
     assert loads(changed(document, path, None)) is None
-    # An equilibrium of the same step from another slip, which the march never had.
+    # An equilibrium of the same step from a different slip, which the march never had.
     train = build_train(found.case).remembering({"4": [1e-5, 0.0, 0.0], "5": np.zeros(3)})
     step = stepped(train, 3)
     claim = as_data(claim_of(train, step.equilibrium))
@@ -250,7 +250,7 @@ def test_a_march_begins_where_the_step_before_ended():
 
 
 def test_a_meaningless_equilibrium_is_refused_on_loading_too(small):
-    """An answer that `solve` refuses for its displacements cannot come in by a file."""
+    """An answer that `solve` refuses for its displacements is refused in a file as well."""
     soft = shipped("fgfbstts/base").replace({"gears.10.support": "1e5 N/m"})
     train = build_train(soft)
     found, _ = answer(train, 1)
@@ -329,7 +329,7 @@ def test_arrays_that_another_program_wrote_again_are_refused(small, tmp_path):
 )
 @pytest.mark.quick(2)
 def test_a_small_file_of_many_mistakes_takes_a_moment_and_little_memory(tmp_path, change, wanted):
-    """A million empty positions, 4 MB, took more than 5 GB and ended the process."""
+    """A million empty positions (4 MB) used to take more than 5 GB and ended the process."""
     document = json.loads(ls.solve(shipped("star/floating_sun_3")).to_json())
     file = tmp_path / "result.json"
     file.write_text(json.dumps({**document, **change}), encoding="utf-8")

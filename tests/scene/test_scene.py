@@ -1,5 +1,4 @@
-"""A scene: what becomes a coordinate or a row, what does not, and why; and the programme that
-follows.
+"""A scene: which quantities become coordinates or rows, which do not, and why; and its programme.
 
 Source: formulation, sections 4 and 11.
 """
@@ -70,9 +69,7 @@ def test_a_rigid_shaft_joins_two_rotations():
 
 @pytest.mark.parametrize("clocking", ["0 rad", "0.3 mrad"])
 def test_a_stiff_shaft_becomes_rigid_to_first_order(clocking):
-    """Clocking included: the shaft yields its torque over its stiffness, 1e-3 of the meshes at
-    1e9.
-    """
+    """Clocking included: a shaft of 1e9 yields its torque over its stiffness, 1e-3 of meshes."""
 
     def torques(stiffness: str) -> dict[str, float]:
         changes = {f"shafts.wheel{p}-pinion{p}.stiffness": stiffness for p in "AB"}
@@ -89,8 +86,8 @@ def test_a_stiff_shaft_becomes_rigid_to_first_order(clocking):
     "name", ["fgfbstts/limit_ring", "fgfbstts/all_elements", "star/floating_sun_4"]
 )
 def test_a_programme_is_dimensionless_with_rows_of_unit_norm(name):
-    """Numbers near 1 for any solver: rows of norm 1, the median compliance of a drive flank of
-    order 1.
+    """Numbers are near 1 for any solver: rows have norm 1, and the median compliance of a drive
+    flank is of order 1.
     """
     scene = scene_of(name)
     written, units = programme(scene, Plan.full(scene), at_rest(scene))
@@ -129,7 +126,7 @@ def test_no_more_model_than_the_scene_needs(name, kind):
 
 
 def test_what_was_removed_is_reported_with_its_margin():
-    """Every coast flank that stays open is left out, with how far it is open."""
+    """Every coast flank that stays open is left out and reported with its gap."""
     train = build_train(with_backlash(shipped("fgfbstts/both_errors"), "1 mm"))
     found, record = answer(train)
     removed = dict(record.removed)
@@ -152,7 +149,7 @@ def test_a_round_that_was_too_lean_is_repeated():
 
 @pytest.mark.parametrize("name", ["fgfbstts/all_elements", "two_path/clocking_error"])
 def test_a_scene_is_what_the_train_says(name):
-    """Approaches by the one expression of the mesh, forces by shafts and supports, one by one."""
+    """Approaches follow from the mesh's expression, forces from shafts and supports one by one."""
     train = build_train(shipped(name))
     rng = np.random.default_rng(5)
     for index in (1, train.count):

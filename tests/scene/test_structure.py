@@ -1,7 +1,7 @@
-"""The force method: statics of sets of elements, and the numbers that vary.
+"""The force method: statics of active sets, and the numbers that vary between samples.
 
-Source: formulation, section 11. The judge of the numbers is the scene of the revised case, which
-`assemble` writes on its own.
+Source: formulation, section 11. The numbers are compared with the scene of the revised case, which
+`assemble` writes independently.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ DIGITS = 1e-12
 
 
 def sets(structure: Structure, index: int = 1) -> list[np.ndarray]:
-    """The first set, everything, nothing, and some at random."""
+    """Return the first set, all elements, none, and some random sets."""
     first = first_sets(structure, loading_of(structure, situation_of(structure.train, index)))[0]
     rng = np.random.default_rng(structure.switches)
     some = rng.integers(0, 2, (4, structure.switches)).astype(np.int8)
@@ -36,7 +36,7 @@ def sets(structure: Structure, index: int = 1) -> list[np.ndarray]:
 @pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_the_statics_of_a_set(name):
     """P carries every load that the set can carry, N carries none; together they span all forces,
-    and what no element resists is loose.
+    and directions that no element resists are loose.
     """
     structure = structure_of(build_train(shipped(name)))
     for states in sets(structure):
@@ -57,7 +57,7 @@ def test_the_statics_of_a_set(name):
 
 @pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_the_elements_are_the_scene(name):
-    """Rows and radials by name and direction; springs give the scene's stiffness."""
+    """Rows and radials agree in name and direction; springs give the scene's stiffness."""
     train = build_train(shipped(name))
     scene = assemble(train, 1)
     structure = structure_of(train)
@@ -83,7 +83,7 @@ def test_a_branched_train_has_a_redundant_per_branch_but_one(branches, redundant
 
 
 def test_the_seed_has_three_redundants_and_a_floating_pinion_takes_one():
-    """A pinion that floats freely halves its torque by itself."""
+    """A pinion that floats freely divides its torque equally by itself: one redundant less."""
     counts = {}
     for support in ("rigid", "free"):
         case = shipped("fgfbstts/base").replace({"gears.4.support": support})
@@ -100,7 +100,7 @@ def test_a_set_is_reduced_once():
 
 
 def test_opposed_arcs_are_known_where_neighbours_stand_firm():
-    """Ring 4 lies on the line between its idlers: a squeeze would be sham. Elastic idlers give."""
+    """Ring 4 is on the line between its idlers, so a squeeze would be sham. Elastic ones yield."""
     structure = structure_of(build_train(shipped("fgfbstts/limit_ring")))
     pairs = [tuple(structure.row_names[k] for k in pair) for pair in structure.opposed]
     assert pairs == [
@@ -117,7 +117,7 @@ def test_opposed_arcs_are_known_where_neighbours_stand_firm():
 @pytest.mark.parametrize("name", VARIED)
 @pytest.mark.quick(3)
 def test_the_numbers_of_a_sample_are_those_of_its_scene(name):
-    """Gaps, compliances, loads and radial laws of random samples, in the units of the elements."""
+    """Gaps, compliances, loads and radial laws of random samples agree in the elements' units."""
     case, samples = varied(name, 6, seed=7)
     ((_, group),) = samples_of(case, samples)
     structure = Machine(group.train).structure
@@ -177,7 +177,7 @@ def test_the_numbers_of_a_sample_are_those_of_its_scene(name):
     "name", ["fgfbstts/both_errors", "star/floating_sun_4", "two_path/clocking_error"]
 )
 def test_an_answer_is_in_balance_and_compatible(name):
-    """A^T μ = f, N^T (g + δ) = 0 and x = P^T (g + δ), where all laws are linear."""
+    """Aᵀ μ = f, Nᵀ (g + δ) = 0 and x = Pᵀ (g + δ), if all laws are linear."""
     train = build_train(shipped(name))
     structure = structure_of(train)
     loading = loading_of(structure, situation_of(train, 1))

@@ -1,4 +1,4 @@
-"""What no forces can balance is reported before anything is searched for.
+"""A load that no forces can balance is reported before any search.
 
 Source: formulation, section 6: a load along a move that nothing resists has no equilibrium.
 """
@@ -36,7 +36,7 @@ def test_what_a_ring_alone_holds_is_not_reported_as_free():
 
 @pytest.mark.parametrize("number", range(24))
 def test_what_is_reported_as_free_moves_without_end(number):
-    """The linear programme names what moves, and none of these is solved."""
+    """The linear programme names what moves, and none of these cases is solved."""
     case = draw(11, number)
     scene = assemble(build_train(case), 1)
     if is_unbalanced(structure_of(scene.train), scene.load):
@@ -46,7 +46,7 @@ def test_what_is_reported_as_free_moves_without_end(number):
 
 
 def test_nothing_is_searched_for_without_balance(monkeypatch):
-    """A stepped star whose sun drifts away from its planets."""
+    """The sun of a stepped star drifts away from its planets."""
     case = draw(11, 1)
     scene = assemble(build_train(case), 1)
     assert is_unbalanced(structure_of(scene.train), scene.load)
@@ -57,7 +57,7 @@ def test_nothing_is_searched_for_without_balance(monkeypatch):
 
 @pytest.mark.parametrize("off", ["1e-5 mm", "1e-7 mm"])
 def test_a_load_that_rounded_centres_alone_do_not_balance_is_told(off):
-    """Sun, ring and carrier float, and the sun is not quite in the middle."""
+    """Sun, ring and carrier float, and the sun is slightly off centre."""
     case = shipped("planetary/four_planets")
     free = {f"gears.{gear}.support": "free" for gear in ("sun", "ring", "carrier")}
     with pytest.raises(Refused, match=r"rounding in the geometry only.* float of gear sun, carr"):
@@ -67,9 +67,9 @@ def test_a_load_that_rounded_centres_alone_do_not_balance_is_told(off):
 @pytest.mark.parametrize("given", ["1 N*m", "-7000 N*m"])
 @pytest.mark.parametrize("running", ["counter-clockwise", "clockwise"])
 def test_torques_that_do_not_cancel_are_told_what_would(running, given):
-    """A sun in, the carrier out: the ring of z teeth takes z/z_sun of the sun's torque.
+    """The sun drives, the carrier is the output: the ring takes z_ring/z_sun of the sun's torque.
 
-    A torque of the wrong sense presses flanks of meshes without backlash that cannot hold.
+    A torque of the wrong sense presses flanks of meshes without backlash, which cannot hold it.
     """
     case = shipped("planetary/four_planets").replace({"operating.running": running})
     sun, ring = (case.gears[g].teeth for g in ("sun", "ring"))
@@ -100,7 +100,7 @@ def test_what_would_balance_a_differential_has_the_sign_of_its_key():
 
 
 def test_a_soft_spring_beside_stiff_ones_holds():
-    """A shaft of twelve decades less than what it leads to, and the same without it."""
+    """A shaft twelve decades softer than the adjacent stiffness, and the same without the shaft."""
     for soft, held in ((1.0, True), (0.0, False)):
         stiffness = np.array([[soft, -soft, 0.0], [-soft, soft + 1e11, 1e11], [0.0, 1e11, 2e11]])
         problem = ContactProblem(("x", "y", "z"), stiffness, np.array([1.0, 0.0, 0.0]))
@@ -108,7 +108,7 @@ def test_a_soft_spring_beside_stiff_ones_holds():
 
 
 def freed(gear: str) -> ls.Case:
-    """A pinion, an idler and a ring that is not about the pinion, of which one is free."""
+    """Return a pinion, an idler and a ring eccentric to the pinion; one of them is free."""
     places = {"a": ("0, 0", 0.6), "b": ("1.525, 1.328", 1.37), "c": ("-0.1, -0.642", 3.68)}
     gears: dict[str, dict[str, object]] = {
         name: {"centre": [f"{x} m" for x in centre.split(", ")], "base_radius": f"{r} m"}
@@ -123,7 +123,9 @@ def freed(gear: str) -> ls.Case:
 
 @pytest.mark.parametrize(("gear", "stops"), [("b", True), ("c", False)])
 def test_a_backlash_is_asked_for_where_it_stops_what_moves(gear, stops):
-    """Pinion and ring hold an idler between their flanks; an idler pushes a ring away with all."""
+    """Pinion and ring hold an idler between their flanks; an idler pushes a ring away with all its
+    flanks.
+    """
     case = freed(gear)
     with pytest.raises(Refused, match=f"nothing limits the float of gear {gear}") as caught:
         ls.solve(case)

@@ -1,9 +1,9 @@
 """Every back-end, method and reduction gives the same equilibrium, on every shipped case.
 
-Source: formulation, sections 7 and 11. What is compared are all forces (over the largest) and all
-displacements that the equilibrium determines (over the deflection of the case). The exact solve on
-the identified active set leaves round-off times the condition of the case, about 1e-12; 1e-9
-between back-ends and methods and 1e-10 with and without reduction are required.
+Source: formulation, sections 7 and 11. All forces are compared (over the largest), and all
+displacements that the equilibrium determines (over the deflection of the case). The error of the
+exact solve on the identified active set is round-off times the condition number of the case, about
+1e-12; 1e-9 between back-ends and methods and 1e-10 with and without reduction are required.
 """
 
 from functools import cache
@@ -20,7 +20,7 @@ from loadshare.train.equilibrium import Equilibrium
 AGREE = 1e-9
 REDUCED = 1e-10
 BARE = 1e-5
-"""What a power-cone solver's own answer is worth (formulation, section 7)."""
+"""Accuracy of a power-cone solver's own answer (formulation, section 7)."""
 
 
 @cache
@@ -34,7 +34,7 @@ def reference(case: str, index: int) -> Equilibrium:
 
 
 def ends(case: str) -> list[int]:
-    """First and last position, and every position of a short case."""
+    """Return the first and last position, and every position of a short case."""
     count = train_of(case).count
     return list(range(1, count + 1)) if count <= 5 else [1, count]
 
@@ -67,7 +67,7 @@ def test_back_ends_and_methods_agree(case, solver, method, reduce):
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
 @pytest.mark.quick(4)
 def test_the_first_order_method_agrees_or_declines(case, reduce):
-    """OSQP solves quadratic programmes; where a cone is in play it must say so, not answer."""
+    """OSQP solves quadratic programmes; if a cone is in play, it must refuse, not answer."""
     for index in ends(case):
         conic = bool(assemble(train_of(case), index).radials)
         if conic:
@@ -94,10 +94,10 @@ def test_the_polished_power_cone_agrees(case):
 @pytest.mark.parametrize("case", [p for p in EVERY_SHIPPED if p.values != ("fgfbstts/tolerance",)])
 @pytest.mark.quick(12)
 def test_the_bare_power_cone_is_near(case):
-    """One programme, no loop, no exact solve: an independent check of laws and assembly.
+    """One programme, without loop or exact solve: an independent check of laws and assembly.
 
-    The tolerance study's nominal case has no errors: its rings stand on the verge of contact, where
-    an interior point is known to be good for four digits only.
+    The tolerance study's nominal case has no errors: its rings are on the verge of contact, where
+    an interior-point method is known to give only four digits.
     """
     train = train_of(case)
     for index in ends(case):

@@ -1,4 +1,4 @@
-"""What forces leave open: closed forms, a second way for every range, and all engines alike.
+"""What forces leave undetermined: closed forms, a second method for every range, all engines.
 
 Source: formulation, sections 4 to 6; the norm and the set are those of the theory page.
 """
@@ -33,11 +33,11 @@ from loadshare.train.train import Train
 
 AGREE = 1e-9
 EXACT = 1e-11
-"""Residual below which places are compared: what is out of balance by more has other forces."""
+"""Residual below which places are compared: with a larger imbalance, forces differ."""
 
 
 def two_path(**changes: object) -> ls.Case:
-    """Two paths under 10 N·m, of which B is so far behind that it carries nothing."""
+    """Return two paths under 10 N·m; B has so large a gap that it carries nothing."""
     late = {'meshes."in-wheelB".gap': "30 mrad", "operating.torque": "10 N*m"}
     return families.two_path("0 mrad").replace({**late, **changes})
 
@@ -50,14 +50,15 @@ def two_path(**changes: object) -> ls.Case:
 @pytest.mark.parametrize("gap", [0.0, 30.0])
 @pytest.mark.quick(6)
 def test_an_unloaded_wheel_turns_by_its_backlash_over_its_base_radius(shaft, backlash, gap):
-    """Both flanks of its mesh with the input gear limit it, and nothing else: what they leave along
-    the line of action, over its base radius. If they leave nothing, it is determined.
+    """Only the two flanks of its mesh with the input gear limit it: its range is their play along
+    the line of action, over its base radius. Without play, it is determined.
     """
     changes = {
         'shafts."wheelB-pinionB".stiffness': shaft,
         'meshes."in-wheelB".gap': f"{gap} mrad",
         'meshes."in-wheelB".backlash': f"{backlash} mm",
-        # Gear A is first, so that its path carries, and B's second mesh is far from contact.
+        # The gap puts A in contact first, so that its path carries; B's second mesh is far from
+        # contact.
         'meshes."pinionB-out".gap': "100 mrad",
     }
     case = two_path(**changes)
@@ -79,8 +80,8 @@ def test_an_unloaded_wheel_turns_by_its_backlash_over_its_base_radius(shaft, bac
 
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (12.0, -16.0), (60.0, 80.0)])
 def test_an_unloaded_pinion_in_a_round_ring(offset):
-    """It may go from m − R to m + R in each direction; its least place is the ring's point nearest
-    to the middle, which lies inside as long as the ring holds it.
+    """It may move from m − R to m + R in each direction; its least place is the ring's point
+    nearest to the centre, which is inside as long as the ring contains it.
     """
     radius = 50.0
     ring = {"radius": f"{radius} um", "offset": [f"{v} um" for v in offset]}
@@ -98,9 +99,9 @@ def test_an_unloaded_pinion_in_a_round_ring(offset):
 
 
 def test_an_unloaded_pinion_in_a_slit():
-    """Arcs that touch at rest leave the way across the line to the neighbours, all of the float.
+    """Arcs that touch at rest leave all of the float free across the line to the neighbours.
 
-    So it is from wherever it is looked at, up to the last digits.
+    The range does not depend on the last digits of the place from which it is computed.
     """
     case = shipped("fgfbstts/limit_ring").replace({"operating.power": "0 kW"})
     train = build_train(case)
@@ -125,7 +126,7 @@ def test_an_unloaded_pinion_in_a_slit():
 
 def test_a_spline_on_its_friction_bound_slips_anywhere_along_its_force():
     """One mesh pushes with F = T/r_b, friction holds up to τ T/radius: at radius = τ r_b they are
-    the same under any load. The pinion lies anywhere from S1 to S2 along that force.
+    equal under any load. The pinion may be anywhere from S1 to S2 along that force.
     """
     radius = build_train(two_path()).gears["pinionA"].base_radius
     spline = {
@@ -153,7 +154,7 @@ def test_a_spline_on_its_friction_bound_slips_anywhere_along_its_force():
 
 @st.composite
 def regions(draw: st.DrawFn) -> tuple[Region, np.ndarray]:
-    """A region around a point, and that point; bounded, or not."""
+    """Draw a region around a point, and that point; bounded or not."""
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     size, rows, rounds = draw(st.integers(2, 4)), draw(st.integers(0, 6)), draw(st.integers(0, 2))
     point = rng.normal(size=size) * draw(st.sampled_from([0.0, 0.3, 1.0]))
@@ -169,7 +170,7 @@ def regions(draw: st.DrawFn) -> tuple[Region, np.ndarray]:
 
 
 def polygon(region: Region, sides: int = 720) -> tuple[np.ndarray, np.ndarray]:
-    """Half-planes that hold the region: each disc within a polygon around it."""
+    """Return half-planes that enclose the region: each disc is replaced by a polygon around it."""
     ways = 2.0 * np.pi * np.arange(sides) / sides
     rows, bounds = [region.limits], [region.bounds]
     for disc in region.discs:
@@ -193,7 +194,7 @@ def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
         assert outer.status == 0, outer.message
         assert region.beyond(found) < 1e-9
         reached = float(direction @ found)
-        # A polygon of 720 sides stands off its circle by a hundred-thousandth of the radius.
+        # A polygon of 720 sides is off its circle by 1e-5 of the radius.
         assert reached <= -outer.fun + 1e-9 * max(1.0, abs(outer.fun))
         assert reached >= -outer.fun - 1e-2 * max(1.0, abs(outer.fun))
 
@@ -201,7 +202,7 @@ def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
 @settings(TRAINS, max_examples=examples(60, 150))
 @given(regions())
 def test_the_least_point_is_nearer_than_all_others(given_region):
-    """Least in a convex region: (v − u)·u ≥ 0 for all of its v."""
+    """The least point u of a convex region satisfies (v − u)·u ≥ 0 for all its points v."""
     region, point = given_region
     least = region.least()
     assert region.beyond(least) < 1e-9
@@ -218,7 +219,7 @@ def test_the_least_point_is_nearer_than_all_others(given_region):
 
 @st.composite
 def with_lost_branches(draw: st.DrawFn) -> ls.Case:
-    """A random train of which some meshes stand so far apart that branches carry nothing."""
+    """Draw a random train with some meshes so far apart that branches carry nothing."""
     data = draw(st.one_of(stars(), split_torques())).to_dict()
     for name in draw(st.lists(st.sampled_from(list(data["meshes"])), unique=True, max_size=3)):
         data["meshes"][name]["gap"] = scaled(draw(st.sampled_from([0.05, 0.3, 1.0])), "mrad")
@@ -226,12 +227,12 @@ def with_lost_branches(draw: st.DrawFn) -> ls.Case:
 
 
 def radius_of(train: Train, name: str) -> float:
-    """Metres that a unit of a coordinate is worth."""
+    """Return the length [m] of one unit of a coordinate."""
     return train.gears[name.split()[1]].base_radius if name.endswith("rotation") else 1.0
 
 
 def same_places(train: Train, one: Equilibrium, other: Equilibrium) -> None:
-    """The same is open, in the same ranges, and the place is the same."""
+    """Check that the undetermined coordinates, their ranges and the places agree."""
     assert one.undetermined.keys() == other.undetermined.keys()
     here, there = coordinates(train, one), coordinates(train, other)
     for name, (low, high) in one.undetermined.items():
@@ -277,7 +278,9 @@ def test_engines_agree_on_random_trains_with_lost_branches():
 
 @pytest.mark.parametrize("frame", FRAMES)
 def test_the_frame_does_not_matter(frame):
-    """The same gears are open, rotations in the same ranges, and the least place turns along."""
+    """The same gears are undetermined, rotations have the same ranges, and the least place rotates
+    with the frame.
+    """
     ring = {"radius": "50 um", "offset": ["60 um", "80 um"]}
     case = two_path(**{"gears.pinionB.support": "free", "rings": {"pinionB": ring}})
     case = case.replace({'meshes."pinionB-out".gap': "30 mrad"})
@@ -293,7 +296,7 @@ def test_the_frame_does_not_matter(frame):
 
 
 def test_the_norm_counts_every_gear_and_no_name():
-    """Gears on a rigid shaft with clocking: their least place weighs both, whichever is first."""
+    """Two gears on a clocked rigid shaft: their least place weighs both, in any order."""
     case = two_path(
         **{
             'shafts."wheelB-pinionB"': {"stiffness": "rigid", "clocking": "0.4 mrad"},
@@ -312,7 +315,7 @@ def test_the_norm_counts_every_gear_and_no_name():
         if scene.rotation[n].index is None
     )
     lengths = norm_of(scene).lengths(x)
-    # Beside the squares stands what the clocking costs at best.
+    # To the squares is added the least cost of the clocking.
     wheel, pinion = (train.gears[g].base_radius for g in ("wheelB", "pinionB"))
     apart = (wheel * pinion * 0.4e-3) ** 2 / (wheel**2 + pinion**2)
     assert float(lengths @ lengths) + fixed + apart == pytest.approx(squares, rel=1e-9)

@@ -1,7 +1,7 @@
-"""The whole programme answers where forces leave the place of floats open.
+"""The whole programme gives an answer if forces leave the place of floats undetermined.
 
-At the least norm of what is free, contacts that carry nothing close and open without end; an
-interior point stands clear of them. Source: formulation, section 11.
+At the least norm of the free displacements, contacts without force open and close without end; an
+interior-point method keeps away from them. Source: formulation, section 11.
 """
 
 import math
@@ -15,7 +15,7 @@ REDUCED = 1e-10
 
 
 def star(seed: int) -> ls.Case:
-    """Four planets, of which the first, without load behind a gap, floats in a stiff ring."""
+    """Return four planets; the first, unloaded behind a gap, floats in a stiff ring."""
     rng = np.random.default_rng(seed)
     angle, sun, planet = math.radians(20.0), 0.04, 0.05
     distance = (sun + planet) / math.cos(angle)

@@ -1,4 +1,4 @@
-"""The equations of an active set: their Jacobian, and that they reproduce certified answers."""
+"""The equations of an active set: their Jacobian, and agreement with certified answers."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,7 @@ CASES = {
 
 @pytest.fixture(params=CASES, ids=str)
 def standing(request):
-    """A certified answer, the branch of its first position and the unknowns there."""
+    """Return a certified answer, the branch of its first position and the unknowns there."""
     train = build_train(CASES[request.param]())
     answer = certified(train, 1)
     return answer, *Setting.at(train, 1).branch_of(answer.equilibrium)
@@ -50,7 +50,8 @@ def test_the_jacobian_is_the_derivative_of_the_residual(standing):
         ]
     ).T
     found = np.vstack([branch.jacobians(z[None])[0], branch.torque_gradients(z)])
-    # Central differences of smooth terms: h² and round-off over h, both below 1e-8 of the largest.
+    # Central differences of smooth terms: h² and round-off over h are both below 1e-8 of the
+    # largest.
     assert np.abs(found - differences).max() < 1e-7 * np.abs(found).max()
 
 
@@ -60,7 +61,7 @@ def test_a_branch_gives_back_its_equilibrium(standing):
     force = branch.equations.state(z[None], branch.numbers).force[0] * elements.force
     found = dict(zip(elements.row_names, force[elements.springs :], strict=False))
     for name, certain in answer.equilibrium.flank_force.items():
-        # Torques are unique: two certified answers differ by what the certificate leaves open.
+        # Torques are unique: two certified answers differ by the tolerance of the certificate.
         assert found[name] == pytest.approx(certain, abs=1e-9 * answer.certificate.load)
     assert np.abs(figures_at(branch, z)[: branch.size]).max() <= 1e-12 * np.abs(z).max()
 

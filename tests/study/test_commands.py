@@ -1,4 +1,4 @@
-"""The commands of studies: what they print and write, and how they end."""
+"""The commands of studies: their output and files, and how they end."""
 
 import csv
 import re
@@ -24,7 +24,7 @@ def narrow():
 
 @pytest.fixture
 def measured(tmp_path: Path) -> Path:
-    """A case with a measurement and studies."""
+    """Write a case with a measurement and studies."""
     path = tmp_path / "bench.toml"
     path.write_text(
         f"""extends = '{(CASES / "fgfbstts/installation_error.toml").as_posix()}'
@@ -85,7 +85,7 @@ def test_sweep(command, tmp_path):
 
 
 def test_a_narrow_screen_cuts_no_figure(narrow):
-    """Two inputs with long names, in eighty columns: every Ω is printed in full."""
+    """With two inputs with long names in eighty columns, every Ω is printed in full."""
     result = narrow(
         *("sweep", CASES / "two_path/clocking_error.toml", "--position", 1),
         *("--over", "shafts.'wheelA-pinionA'.clocking=0 mrad, 1 mrad"),
@@ -96,7 +96,7 @@ def test_a_narrow_screen_cuts_no_figure(narrow):
     keys = ("meshes.*.stiffness", "shafts.*.stiffness", "gears.6.centre.distance")
     output = narrow("sensitivity", RING, *keys, "--position", 1).stdout
     assert re.search(r'meshes\."9-10"\.stiffness +6\.425e\+06 N\*m/rad', output)
-    # None has a kink: no column for the other side.
+    # None has a kink, so there is no column for the other side.
     assert "falling" not in output
 
 

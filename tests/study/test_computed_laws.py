@@ -1,4 +1,4 @@
-"""Laws computed from the teeth follow what a study varies, as in a case that gives it."""
+"""Laws computed from the teeth follow what a study varies, as in a case with that value."""
 
 import numpy as np
 import pytest
@@ -49,7 +49,7 @@ def test_a_fit_finds_the_width_back() -> None:
 
 
 def test_a_fitted_case_keeps_the_laws_of_its_teeth() -> None:
-    """So that they follow the next change; but a number that was fitted is not the teeth's."""
+    """They can then follow the next change; but a number that was fitted is not the teeth's."""
     measured = {"share": {"sun-planet1": 1.01}, "position": 1, "uncertainty": 1e-3}
     case = CASE.replace({"measured.bench": measured})
     found = ls.fit(case, {"errors.planet1.pin.tangential": ("-90 um", "90 um")})
@@ -65,7 +65,7 @@ def test_a_fitted_case_keeps_the_laws_of_its_teeth() -> None:
 
 
 def test_a_number_of_the_law_itself_is_varied_as_it_stands() -> None:
-    """Beside a width that other meshes follow."""
+    """This also holds next to a width that other meshes follow."""
     found = ls.sensitivity(CASE, [LAW, WIDTH], positions=[1])
     assert [item.key for item in found.inputs] == [LAW, WIDTH]
     assert found.omega[LAW, "rising"]["system"] != 0.0
@@ -76,7 +76,7 @@ def test_a_number_of_the_law_itself_is_varied_as_it_stands() -> None:
 
 
 def test_a_file_of_teeth_must_agree_with_every_point() -> None:
-    """Teeth in a file do not follow the case: a point is what a case says that gives it."""
+    """Teeth in a file do not follow the case: a point is judged as a case with its values."""
     case = ls.load_case(CASES / "fgfbstts" / "from_geometry.toml")
     turned = {"gears.4.centre.angle": ["59.99 deg", "60.01 deg"]}
     found = ls.sweep(case, turned, positions=[1])
@@ -92,7 +92,7 @@ def test_a_file_of_teeth_must_agree_with_every_point() -> None:
 
 
 def test_a_batch_varies_a_number_of_a_law_as_a_sweep_does() -> None:
-    """It refused the key: the law of the file is a word."""
+    """It used to refuse the key, because the law in the file is a word."""
     values = ["1e-7 rad/(N*m)", "2e-7 rad/(N*m)"]
     swept = ls.sweep(CASE, {LAW: values}, positions=[1]).dataset.torque
     many = ls.solve_many(CASE, {f"{LAW} [rad/(N*m)]": [1e-7, 2e-7]}, positions=[1]).torque

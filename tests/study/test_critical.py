@@ -1,4 +1,4 @@
-"""Critical values: against closed forms, independent solves, and scans of certified active sets."""
+"""Critical values against closed forms, independent solves, and scans of certified active sets."""
 
 import tomllib
 from dataclasses import asdict, replace
@@ -25,14 +25,14 @@ from loadshare.study.sensitivity.branch import Setting
 from loadshare.train import build_train
 
 EXACT = 1e-12
-"""Of the value: what root-finding on the branch promises."""
+"""Relative accuracy of root-finding on a branch."""
 
 
 def off_line() -> ls.Case:
-    """The seed's Fig. 13 with idlers 0.2 µm off the line through their pinion.
+    """Return the seed's Fig. 13 with idlers 0.2 µm off the line through their pinion.
 
-    On the line the forces of a pinion's two meshes are opposite, so that nothing says where it
-    rests between its arcs. Off it they press the pinion to one side, if ever so little.
+    On the line, the forces of a pinion's two meshes are opposite, so its rest position between its
+    arcs is undetermined. Off the line, they press the pinion slightly to one side.
     """
     case = shipped("fgfbstts/limit_ring")
     return case.replace({f"gears.{g}.centre.distance": "525.6314 mm" for g in "6789"})
@@ -40,15 +40,15 @@ def off_line() -> ls.Case:
 
 @pytest.fixture(scope="module")
 def rings():
-    """Both float ranges from none to more than enough."""
+    """Return critical values of both float ranges, from zero to more than enough."""
     return ls.critical(off_line(), "rings.*.float", "0 um", "12 um", positions=[1])
 
 
 def unlimited(case: ls.Case, pinion: str) -> float:
-    """Displacement of a pinion across its neighbours [µm] when no stop limits it.
+    """Return the displacement of a pinion across its neighbours [µm] when no stop limits it.
 
-    The equilibrium is solved to round-off on its active set: the certificate alone leaves the
-    displacement open to 1e-9 of the deflection, which is thirty times as large.
+    The equilibrium is solved to round-off on its active set: the certificate alone allows an error
+    of the displacement of 1e-9 of the deflection, which is thirty times as large.
     """
     train = build_train(case.replace({"rings.4.float": "1 mm", "rings.5.float": "1 mm"}))
     setting = Setting.at(train, 1)
@@ -60,7 +60,7 @@ def unlimited(case: ls.Case, pinion: str) -> float:
 
 @pytest.mark.parametrize("pinion", ["4", "5"])
 def test_a_stop_is_free_where_the_float_needs_no_more(rings, pinion):
-    """The critical range is the displacement without a limit, exactly."""
+    """The critical range is exactly the displacement without a limit."""
     (event,) = [e for e in rings.of("leaves boundary", pinion) if "stop" in e.element]
     assert event.value == pytest.approx(unlimited(off_line(), pinion), rel=EXACT)
 
@@ -73,18 +73,18 @@ def shipped_rings():
 
 @pytest.mark.parametrize(("pinion", "printed"), [("4", 8.36), ("5", 2.91)])
 def test_the_thresholds_of_fig_13(shipped_rings, pinion, printed):
-    """Printed: 8.36 and 2.91 µm; the reconstruction's own are 8.35 and 2.97 µm."""
+    """Printed: 8.36 and 2.91 µm; the reconstruction gives 8.35 and 2.97 µm."""
     case, found = shipped("fgfbstts/limit_ring"), shipped_rings
     (event,) = [e for e in found.of("leaves boundary", pinion) if "stop" in e.element]
     assert event.confirmed
     assert event.value == pytest.approx(printed, abs=0.07)
-    # A free pinion may rest anywhere between its arcs, 0.2 nm apart, and its float with it.
+    # A free pinion, and so its float, may be anywhere between its arcs, which are 0.2 nm apart.
     assert event.value == pytest.approx(unlimited(case, pinion), rel=1e-9)
 
 
 def test_what_is_as_near_to_a_change_as_round_off_is_given_up_at_once(shipped_rings):
-    """A free pinion has the room between its arcs, which goes with the square of the float: close
-    to the change there is none to report. 1500 solves went into cutting that in vain.
+    """The range of a free pinion between its arcs is proportional to the square of the float, so
+    none can be reported close to the change. Bisection used to spend 1500 solves on it in vain.
     """
     assert [gap.why for gap in shipped_rings.unproved] == [
         "all of it is too close to a change for double precision"
@@ -113,7 +113,7 @@ def test_every_event_is_confirmed_by_certified_solves(rings):
 
 
 def test_two_events_in_a_millionth_of_the_interval_are_distinguished():
-    """Over 20 mm, the arcs of pinion 5 hand over to each other within 20 nm."""
+    """Over 20 mm, the load of pinion 5 passes from one arc to the other within 20 nm."""
     case = off_line().replace({"rings.4.float": "20 um"})
     found = ls.critical(case, "rings.5.float", "0 mm", "20 mm", positions=[1])
     values = [e.value for e in found.events]
@@ -144,13 +144,13 @@ def test_positions_that_differ_in_nothing_have_the_same_events(rings):
 
 
 def test_the_clearance_that_a_spline_uses_up():
-    """Where clearance opens, it is the displacement of the fully floating pinion."""
+    """The clearance opens at the displacement of the fully floating pinion."""
     case = shipped("fgfbstts/spline_clearance")
     found = ls.critical(case, "splines.*.clearance", "0 um", "20 um", positions=[1])
     free = ls.solve(shipped("fgfbstts/full_float"), positions=[1]).positions[0]
     (event,) = found.of("clearance opens", "4")
     assert event.value == pytest.approx(np.hypot(*free.displacement["4"]) * 1e6, rel=EXACT)
-    # Pinion 5 frees first, as the paper finds; both shafts bend throughout until S2 = F_m / K_w.
+    # Pinion 5 is freed first, as the paper finds; both shafts bend throughout until S2 = F_m / K_w.
     assert found.of("clearance opens", "5")[0].value < event.value
     both = found.of("clearance used up")
     assert [e.value for e in both] == pytest.approx([50.0 / 1.78e7 * 1e6] * 2, rel=1e-9)
@@ -158,7 +158,7 @@ def test_the_clearance_that_a_spline_uses_up():
 
 
 def test_slip_starts_where_friction_is_what_a_sticking_spline_carries():
-    """A spline that sticks carries K_w R whatever its bound: the bound that frees it is known."""
+    """A sticking spline carries K_w R whatever its bound, so the bound that frees it is known."""
     case = shipped("fgfbstts/full_float")
     stuck = case.replace({"splines.4.normal_force": "1 MN", "splines.5.normal_force": "1 MN"})
     held = ls.solve(stuck, positions=[1]).floats[0]["4"].spline_force
@@ -169,12 +169,12 @@ def test_slip_starts_where_friction_is_what_a_sticking_spline_carries():
 
 
 def test_load_and_gap_scale_alike():
-    """Linear springs: a star loses contact at a gap in proportion to the load."""
+    """With linear springs, a star loses contact at a gap in proportion to the load."""
     star = families.star(4)
     gap = ls.critical(star, 'meshes."sun-planet1".gap', "0.1 mrad", "3 mrad").events[0]
     load = ls.critical(lost_contact(), "operating.torque", "1 N*m", "1 kN*m").events[0]
     assert load.value / 1000.0 == pytest.approx(0.4 / gap.value, rel=EXACT)
-    # The planet's other mesh and the opposite planet let go at the same load.
+    # The planet's other mesh and the opposite planet lose contact at the same load.
     assert load.together == 4
     assert load.kind == "contact closes"
 
@@ -182,7 +182,7 @@ def test_load_and_gap_scale_alike():
 def sets_along(
     case: ls.Case, key: str, values: np.ndarray, unit: str
 ) -> list[tuple[float, set[str]]]:
-    """Changes of the certified active set between neighbouring values, by their upper value."""
+    """Return changes of the certified active set between neighbouring values, by upper value."""
     changes, last = [], None
     for value in values:
         answer = ls.explain(case.replace({key: f"{float(value)!r} {unit}"}))
@@ -229,7 +229,7 @@ ECCENTRICITY = "errors.6.eccentricity.amount"
 
 @pytest.mark.parametrize("end", mostly_slow((100.0, 300.0, 600.0), (300.0,)))
 def test_events_do_not_depend_on_where_the_range_ends(end):
-    """Slip, stick, slip: the gauge dips by 2 % of the range, in a V."""
+    """Slip, stick, slip: the gauge has a V-shaped minimum within 2 % of the range."""
     found = ls.critical(shipped(FULL), ECCENTRICITY, "0 um", f"{end} um", positions=[1])
     known = [61.187254352177, 68.846000995651, 598.339078636623]
     assert [e.value for e in found.events] == pytest.approx(
@@ -241,7 +241,7 @@ def test_events_do_not_depend_on_where_the_range_ends(end):
 
 @pytest.mark.parametrize("end", mostly_slow((230.0, 450.0), (230.0,)))
 def test_a_branch_that_ends_on_the_way_is_left_in_time(end):
-    """Ends at which following the branch lost it."""
+    """Ends of the range at which following used to lose the branch."""
     case = shipped(FULL).replace(
         {"splines.4.clearance": "119 um", "splines.4.normal_force": "886 N"}
     )
@@ -254,7 +254,7 @@ def test_a_branch_that_ends_on_the_way_is_left_in_time(end):
 @pytest.mark.parametrize("end", [800.0, 763.7, 500.0])
 @pytest.mark.quick(1)
 def test_an_event_is_exact_where_gauges_go_on_steeper_beyond_it(end):
-    """A contact opens and lets an idler float: room beyond it shrinks 400 times as fast."""
+    """A contact opens and lets an idler float: the room beyond it shrinks 400 times as fast."""
     key = "errors.5.eccentricity.amount"
     found = ls.critical(shipped("fgfbstts/load"), key, "0 um", f"{end} um", positions=[1])
     event = next(e for e in found.events if e.element == "4-6")
@@ -283,7 +283,7 @@ def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> Sea
 
 
 def test_no_set_is_proved_to_hold_over_its_events():
-    """On either side of two events the spline slips: the same set, which does not hold between."""
+    """On either side of two events the spline slips: one set, which does not hold in between."""
     search = searched(shipped(FULL), ECCENTRICITY, 0.0, 100.0, "um")
     values = [61.1, 61.15, 68.9, 68.95]
     points = search.points(np.array(values))
@@ -293,7 +293,7 @@ def test_no_set_is_proved_to_hold_over_its_events():
 
 
 def test_a_ring_without_play_pins_its_gear_only_there():
-    """A set that holds at one value alone is left at once, and not carried on."""
+    """A set that holds at one value only is left immediately, and not followed further."""
     case = round_ring().replace({"rings.sun.offset": ["0 um", "0 um"]})
     search = searched(case, "rings.sun.radius", 0.0, 2.0, "um")
     first, last = search.points(np.array([0.0, 1.0]))
@@ -308,13 +308,13 @@ def drawn(number: int) -> Search:
 
 
 def test_a_spline_without_friction_and_force_is_free():
-    """A pinion has lost its branch, and its spline the torque that its friction follows."""
+    """A pinion has lost its branch, and its spline the torque that determines its friction."""
     points = drawn(329).points(np.array([680.0, 1000.0, 2000.0, 3295.5, 3295.512343928895]))
     assert len({p.active for p in points}) == 1
 
 
 def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
-    """The force of a spline at the end of its clearance vanishes where the float begins."""
+    """The force of a spline at the end of its clearance is zero where the float begins."""
     search = drawn(37)
     pressed = search.points(np.array([2.1867, 2.18701]))
     (floating,) = search.points(np.array([2.19]))
@@ -332,7 +332,7 @@ def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
 @pytest.mark.parametrize("number", mostly_slow((1, 6, 193), (1, 6)))
 @pytest.mark.quick(1)
 def test_random_paths_agree_with_a_scan(number):
-    """On path 193 an enclosure neither contracts nor diverges: a matrix is singular."""
+    """On path 193 an enclosure neither contracts nor diverges, because a matrix is singular."""
     outcome = judged(random_path(number), 400, "vectorised")
     faults = (outcome.missed, outcome.invented, outcome.moved, outcome.refused, outcome.raised)
     assert faults == ([], [], [], "", "")
@@ -356,7 +356,7 @@ def test_more_random_paths_agree_with_a_scan(number):
 
 
 def test_a_scan_shows_what_events_leave_out():
-    """The comparison itself: without one of the events, or with one too many, it complains."""
+    """This tests the comparison itself: with one event missing, or one too many, it complains."""
     path = random_path(3)
     found = followed(path, path.stop)
     assert found.events
@@ -393,7 +393,7 @@ def test_what_cannot_be_followed_is_reported(key, start, stop, message):
 
 
 def test_an_end_without_an_equilibrium_is_refused():
-    # Gear 6 floats with its pinion, and nothing limits either.
+    # Gear 6 floats with its pinion, and nothing limits either of them.
     case = shipped("fgfbstts/limit_ring").replace({"rings": None})
     case = case.replace({"gears.6.support": "free"})
     with pytest.raises(ls.Refused, match="position 1"):
@@ -401,7 +401,7 @@ def test_an_end_without_an_equilibrium_is_refused():
 
 
 def two_paths(support: str) -> ls.Case:
-    """Two paths without errors, of which one has the larger backlash, and idles when it brakes."""
+    """Return two paths without errors; one has the larger backlash, and idles when it brakes."""
     backlash = {"backlash": "30 um"}
     return ls.Case(
         {
@@ -426,7 +426,7 @@ def two_paths(support: str) -> ls.Case:
 @pytest.mark.parametrize("ends", [(-300, 300), (-300, 0), (-10, -0.0001), (-3, 3), (-0.02, 300)])
 @pytest.mark.quick(1)
 def test_what_carries_nothing_does_not_change(support, ends) -> None:
-    """While an idler may turn freely, that it touches at the end of its window is no event."""
+    """While an idler may turn freely, contact at the end of its range is no event."""
     case = two_paths(support)
     low, high = (f"{end} N*m" for end in ends)
     found = ls.critical(case, "operating.torque", low, high)
@@ -441,7 +441,7 @@ def test_what_carries_nothing_does_not_change(support, ends) -> None:
 
 
 def test_a_torque_that_turns_round_changes_the_flanks_of_meshes_without_backlash() -> None:
-    """One flank of each carries on either side, so no contact opens; the change has a name."""
+    """One flank of each mesh carries on either side, so no contact opens; the change has a name."""
     case = ls.Case(tomllib.loads(starter_case("box", "planetary")))
     found = ls.critical(case, "operating.torque", "-300 N*m", "500 N*m")
     assert {(e.value, e.kind, e.before, e.after) for e in found.events} == {
@@ -453,7 +453,7 @@ def test_a_torque_that_turns_round_changes_the_flanks_of_meshes_without_backlash
 
 
 def test_flanks_that_change_at_one_value_are_one_event() -> None:
-    """A torque that turns round leaves one flank and takes up the other."""
+    """A reversed torque leaves one flank and presses the other."""
     found = ls.critical(two_paths("rigid"), "operating.torque", "-30 N*m", "30 N*m")
     (value,) = {e.value for e in found.events}
     assert value == 0.0

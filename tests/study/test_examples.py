@@ -1,4 +1,4 @@
-"""The examples of the docstrings say what is so."""
+"""The examples in the docstrings are correct."""
 
 import doctest
 from importlib import import_module

@@ -1,4 +1,4 @@
-"""Measured against computed, and inputs fitted to what was measured."""
+"""Comparison with measurements, and inputs fitted to them."""
 
 import math
 from dataclasses import replace
@@ -13,7 +13,7 @@ SHARES = ("6-10", "7-10", "8-10", "9-10")
 
 
 def measured(case: ls.Case, uncertainty: float = 0.01, **changes: object) -> dict[str, object]:
-    """The pair shares that a changed case would show, as a measurement."""
+    """Return the pair shares that a changed case would show, as a measurement."""
     found = ls.solve(case.replace(changes) if changes else case, positions=[1]).positions[0]
     shares = {m: found.pair_share[m] for m in SHARES}
     return {"position": 1, "pair_share": shares, "uncertainty": uncertainty}
@@ -58,7 +58,7 @@ def test_a_single_position_is_solved_where_only_one_is_measured():
 
 
 def test_inputs_are_found_again():
-    """What a case with known errors shows leads back to these errors."""
+    """The shares of a case with known errors lead back to these errors."""
     truth = {"errors.6.installation.direction": "330 deg", "errors.8.installation.amount": "80 um"}
     base = shipped("fgfbstts/both_errors")
     case = base.replace({"measured.bench": measured(base, **truth)})
@@ -79,7 +79,7 @@ def test_inputs_are_found_again():
 
 
 def test_fits_can_be_compared():
-    """Their arrays have no one answer: a fit could not be found in a list."""
+    """Comparing their arrays is ambiguous, so a fit could not be found in a list."""
     case = shipped("fgfbstts/installation_error").replace(
         {"measured.bench": {"position": 1, "pair_share": {"6-10": 0.8}, "uncertainty": 0.01}}
     )
@@ -91,7 +91,7 @@ def test_fits_can_be_compared():
 
 
 def test_the_covariance_is_that_of_the_linear_problem():
-    """One input, four shares: σ² = 1/Σ(slope/uncertainty)², slopes from full solves."""
+    """For one input and four shares, σ² = 1/Σ(slope/uncertainty)², with slopes from full solves."""
     base = shipped("fgfbstts/installation_error")
     key = "errors.6.installation[0]"
     case = base.replace({"measured.bench": measured(base, 0.01, **{key: "40 um"})})
@@ -101,7 +101,7 @@ def test_the_covariance_is_that_of_the_linear_problem():
     ]
     slopes = [(at[1].pair_share[m] - at[0].pair_share[m]) / 0.2 for m in SHARES]
     assert unknown.value == pytest.approx(40.0, abs=1e-7)
-    # The shares bend a little over 0.2 µm.
+    # The shares are slightly curved over 0.2 µm.
     assert unknown.deviation == pytest.approx(0.01 / math.hypot(*slopes), rel=1e-5)
 
 
@@ -118,7 +118,7 @@ def test_inputs_that_the_data_cannot_tell_apart_are_named():
     assert f"The data cannot tell {keys[0]}, {keys[1]} apart." in found.warnings
     assert [math.isinf(u.deviation) for u in found.unknowns[:2]] == [True, True]
     assert np.isnan(found.correlation[0, 1])
-    # A coast flank that stays open carries no message.
+    # A coast flank that stays open contains no information.
     assert f"The data do not determine {keys[2]}." in found.warnings
     assert found.singular_values[-1] < 1e-6 * found.singular_values[0]
 
@@ -133,7 +133,7 @@ def test_more_inputs_than_figures_leave_no_freedom():
 
 
 def test_an_input_that_moves_nothing_is_not_determined():
-    """By itself: there is no other input to compare its effect with."""
+    """This holds even alone: there is no other input to compare its effect with."""
     measured = {"position": 1, "pair_share": {"8-10": 1.02}, "uncertainty": 0.01}
     case = shipped("fgfbstts/installation_error").replace({"measured.bench": measured})
     found = ls.fit(case, {"errors.6.installation[0]": ("0 um", "100 um")})
@@ -142,10 +142,11 @@ def test_an_input_that_moves_nothing_is_not_determined():
 
 
 def test_an_input_that_a_weak_one_can_move_is_not_determined():
-    """One share, two unknowns: whatever the second is, the first can make up for it.
+    """With one share and two unknowns, the first can compensate any value of the second.
 
-    The second bears on the share about a tenth as much as the first. Held at either end, the first
-    is fitted to values many standard deviations apart, so no finite deviation may be given for it.
+    The second affects the share about a tenth as much as the first. With the second at either end,
+    the first is fitted to values many standard deviations apart, so it must not be given a finite
+    deviation.
     """
     base = shipped("fgfbstts/installation_error")
     one = {"position": 1, "pair_share": {"6-10": 0.8}, "uncertainty": 0.01}
@@ -182,7 +183,7 @@ def test_a_fit_beyond_its_bounds_stands_at_one_and_says_so():
 
 @pytest.mark.slow
 def test_several_starts_find_what_one_misses():
-    """A direction far off leads into another valley; the best of several starts is taken."""
+    """A distant direction leads into another valley; the best of several starts is taken."""
     base = shipped("fgfbstts/both_errors")
     key = "errors.9.installation.direction"
     shares = measured(base)
@@ -237,7 +238,7 @@ def test_nothing_measured_is_reported():
 
 
 def test_the_entries_off_a_support_s_diagonal_are_one_unknown() -> None:
-    """Tied, they are found again from torques, though neither can vary alone."""
+    """If they are tied, the fit recovers them from torques, although neither can vary alone."""
     matrix = [["2e8 N/m", "0.6e8 N/m"], ["0.6e8 N/m", "3e8 N/m"]]
     tied = ("gears.s.support[0][1]", "gears.s.support[1][0]")
     case = ls.Case(
@@ -275,7 +276,7 @@ def test_a_fit_starts_where_the_case_is_or_in_the_middle():
 
 
 def test_a_figure_of_what_carries_no_load_is_reported():
-    """Of a stage without load there is no share, in any of its positions."""
+    """A stage without load at any of its positions has no share."""
     case = shipped("fgfbstts/installation_error").replace(
         {
             "operating.power": None,
@@ -292,7 +293,7 @@ def test_a_figure_of_what_carries_no_load_is_reported():
 
 
 def one_share(*values: float) -> ls.Case:
-    """A case of which one share was measured, several times."""
+    """Return a case with one share that was measured several times."""
     shares = {
         f"m{k}": {"position": 1, "pair_share": {"6-10": v}, "uncertainty": 0.01}
         for k, v in enumerate(values)
@@ -309,12 +310,12 @@ AMOUNT = "errors.6.installation.amount"
         # Equal weights meet in the middle: χ² = 2 (0.1/0.01)² and 2 (0.02/0.01)².
         ((0.8, 1.0), 200.0, True),
         ((0.88, 0.92), 8.0, False),
-        # Nothing between the bounds comes near; there is no degree of freedom.
+        # No value between the bounds is close; there is no degree of freedom.
         ((7.0,), None, True),
     ],
 )
 def test_figures_that_contradict_one_another_are_reported(values, chi, contradict):
-    """For one degree of freedom, one χ² in a thousand is above 10.83."""
+    """For one degree of freedom, χ² exceeds 10.83 once in a thousand."""
     found = ls.fit(one_share(*values), {AMOUNT: ("0 mm", "0.2 mm")})
     if chi is not None:
         assert found.chi_square == pytest.approx(chi, rel=1e-6)
@@ -322,7 +323,7 @@ def test_figures_that_contradict_one_another_are_reported(values, chi, contradic
 
 
 def test_bounds_may_be_a_text():
-    """As the command takes them; each of its letters was taken for a bound."""
+    """The command gives them so; each letter of the text used to be taken for a bound."""
     case = one_share(0.9)
     (by_text,) = ls.fit(case, {AMOUNT: "0 mm:0.2 mm"}).unknowns
     (by_pair,) = ls.fit(case, {AMOUNT: ("0 mm", "0.2 mm")}).unknowns
@@ -336,13 +337,13 @@ def test_what_is_no_range_is_reported(bounds):
 
 
 def test_a_bound_that_makes_no_case_is_named():
-    """The best value is at no amount; a trial beyond it was named, "-0.00945... mm"."""
+    """The best value is at zero; the message used to name a trial beyond it, "-0.00945... mm"."""
     with pytest.raises(ls.CaseError, match=r'"-0\.2 mm": is negative.*The bound -0\.2 mm'):
         ls.fit(one_share(1.3), {AMOUNT: ("-0.2 mm", "0.2 mm")})
 
 
 def test_a_start_in_a_flat_place_does_not_blame_the_data():
-    """From 11 µm on, floats touch nothing and move no share; the data came from 4 µm."""
+    """From 11 µm on, floats touch nothing and change no share; the data are those of 4 µm."""
     base = shipped("fgfbstts/limit_ring")
     floats = ("rings.4.float", "rings.5.float")
     data = measured(base, 0.001, **dict.fromkeys(floats, "4 um"))

@@ -1,4 +1,4 @@
-"""Friction with memory: closed forms, conservation, and a certificate that knows the memory."""
+"""Friction with memory: closed forms, conservation, and a certificate that includes the memory."""
 
 import math
 from dataclasses import replace
@@ -17,12 +17,12 @@ TURN = {"march": {"gear": "4", "revolutions": 1.0, "steps": 8}}
 
 
 def floating(**changes: object) -> ls.Case:
-    """The seed's full float, marching through a revolution of pinion 4."""
+    """Return the seed's full float, marching through a revolution of pinion 4."""
     return shipped("fgfbstts/full_float").replace({**TURN, **changes})
 
 
 def both(key: str, value: str) -> dict[str, str]:
-    """A key of both splines."""
+    """Return changes of a key of both splines."""
     return {f"splines.{g}.{key}": value for g in "45"}
 
 
@@ -36,7 +36,7 @@ def test_without_friction_there_is_nothing_to_remember():
 
 
 def test_a_spline_that_cannot_slip_is_a_spring():
-    """Bounded by more than it ever carries, friction holds: K_w is all there is."""
+    """Friction whose bound is never reached holds, so only the stiffness K_w remains."""
     found = ls.march(floating(**both("normal_force", "10 MN")))
     springs = {f"gears.{g}.support": "1.78e7 N/m" for g in "45"}
     spring = floating(splines=None, assumed=["errors.*"], **springs)
@@ -49,7 +49,7 @@ def test_a_spline_that_cannot_slip_is_a_spring():
 
 
 def test_the_first_step_is_the_holonomic_law():
-    """From rest |s − 0| is |s|: both laws are the same."""
+    """From rest |s − 0| is |s|, so both laws are the same."""
     case = floating()
     found = ls.march(case, steps=1)
     alone = ls.solve(case, positions=[1])
@@ -80,7 +80,7 @@ def test_what_is_dissipated_is_friction_times_the_path_of_the_slip():
 
 
 def test_memory_matters():
-    """With memory a float lags behind: some step rests elsewhere than without."""
+    """With memory a float lags: at some step its position differs from that without memory."""
     case = floating()
     found, alone = ls.march(case), ls.solve(case)
     apart = np.abs(found.dataset["displacement"] - alone.dataset["displacement"]).max()
@@ -88,7 +88,7 @@ def test_memory_matters():
 
 
 def test_every_revolution_is_like_the_one_before():
-    """All that turns turns with the pinion, so what memory carries on is the same each time."""
+    """Only errors that turn with the pinion remain, so that memory repeats in every revolution."""
     only = {f"errors.{g}.eccentricity": None for g in ("1", "2", "3", "6", "7", "8", "9", "10")}
     steps = 12
     found = ls.march(floating(**only), revolutions=4.0, steps=4 * steps)
@@ -96,9 +96,10 @@ def test_every_revolution_is_like_the_one_before():
     assert torque[2:] == pytest.approx(torque[1:3], rel=1e-9)
     slip = found.dataset["slip"].sel(spline="4").values.reshape(4, steps, 2)
     walked = np.diff(slip, axis=0)
-    # Along the direction that the meshes leave free a float may walk, as far in every revolution.
+    # Along the direction that the meshes leave free a float may drift, by the same amount in every
+    # revolution.
     assert np.ptp(walked[1:], axis=(0, 1)).max() < 1e-12
-    # The first revolution starts from rest, where no friction has been stretched yet.
+    # The first revolution starts from rest, with no friction built up yet.
     assert np.abs(walked[0] - walked[1]).max() > 1e-7
 
 
@@ -106,7 +107,7 @@ def test_every_revolution_is_like_the_one_before():
     "name", mostly_slow(("spline_clearance", "all_elements"), ("spline_clearance",))
 )
 def test_a_clearance_that_is_used_up_holds_the_slip(name):
-    """At the stop friction and clearance share a force in no unique way; the sum is unique."""
+    """At the stop, the shares of friction and clearance are not unique, but their sum is."""
     changes = TURN if name == "spline_clearance" else {"march.steps": 3}
     case = shipped(f"fgfbstts/{name}").replace(changes)
     found = ls.march(case)
@@ -117,13 +118,13 @@ def test_a_clearance_that_is_used_up_holds_the_slip(name):
         for gear, s in step.items():
             spline = train.splines[gear]
             room = spline.clearance - s.friction / spline.bending_stiffness
-            # The certificate leaves 1e-9 of the deflection open.
+            # The certificate allows 1e-9 of the deflection.
             assert np.linalg.norm(s.slip) <= room + 1e-12
             assert s.dissipated >= 0.0
 
 
 def test_the_certificate_refuses_a_forgotten_slip():
-    """The same answer judged from another slip is none."""
+    """The same answer is no equilibrium from another slip."""
     train = build_train(floating()).remembering({g: np.zeros(3) for g in "45"})
     answer = stepped(train, 2)
     assert answer.certificate.passed
@@ -169,7 +170,7 @@ def test_a_refused_step_leaves_those_before_it(monkeypatch):
 
 
 def test_what_solved_the_step_before_does_not_change_a_step(monkeypatch):
-    """It is tried first; each step is that which is found without it."""
+    """It is tried first; every step is the one that is found without it."""
     from loadshare.study import march as room
 
     rungs = []
@@ -209,7 +210,7 @@ def test_arrays_and_progress():
 
 
 def test_a_march_whose_displacements_are_too_large_is_refused():
-    """As `solve` refuses the same case without memory."""
+    """`solve` refuses the same case without memory in the same way."""
     heavy = floating(**{"operating.power": "4e7 kW"})
     with pytest.raises(ls.Refused, match="displacements are too large"):
         ls.solve(heavy)
@@ -236,13 +237,13 @@ TWO_PATHS = {
     },
     "errors": {"2": {"installation": ["0 um", "150 um"]}},
 }
-"""A pinion on a spline between two wheels, one of them out of place."""
+"""A pinion on a spline between two wheels; one of them is out of place."""
 
 
 def test_a_load_that_stays_leaves_a_spline_that_has_slipped_in_its_place():
-    """Friction is used up, so that rounding tells whether it sticks: the torques do not care.
+    """Friction is used up, so rounding decides whether it sticks; the torques do not depend on it.
 
-    It slips until its friction holds what the stiffness of the meshes still pushes, which falls in
+    The spline slips until its friction balances the remaining push of the meshes, which falls in
     proportion to the slip.
     """
     slips = []

@@ -1,7 +1,7 @@
-"""Marches with friction that follows the torque: with every room, and as long as torques decide it.
+"""Marches with friction that follows the torque, with any room for slip that torques decide.
 
-Source: formulation, section 5. From no slip the law with memory is the one without; a torque that
-nothing shares makes friction what it is when it is given.
+Source: formulation, section 5. From zero slip, the law with memory is the one without; if the
+torque is not shared, friction is the same as when it is fixed.
 """
 
 from dataclasses import replace
@@ -24,7 +24,7 @@ LOADS = (1000.0, 1400.0, 700.0, 701.0, 1300.0)
 
 
 def with_splines(load: float, friction: float, rooms: dict[str, float]) -> Train:
-    """Two shafts whose gears float, with rooms [m] besides the friction of 400 N·m each."""
+    """Return two shafts with floating gears; room [m] is left beyond the friction at 400 N·m."""
     train = two_shafts(friction, f"{load!r} N*m")
     (spline,) = train.splines.values()
     needs = spline.bound(400.0) / spline.bending_stiffness
@@ -86,11 +86,11 @@ def test_every_step_is_within_what_its_own_torque_allows(friction, rooms):
 
 
 def test_a_spline_without_friction_reaches_without_end():
-    """With memory, before it meets its stop: the load turns back and all but ends."""
+    """With memory, before it meets its stop: the load is reversed and almost vanishes."""
     found = ls.march(Path(__file__).with_name("turned_back.toml"))
     assert found.result.passed
     first, last = ([p.torque["4-6"], p.torque["4-7"]] for p in found.result.positions)
     assert first == pytest.approx([-718.7, -718.7], rel=2e-3)
-    # So light a load leaves one of the branches apart.
+    # At so light a load, one of the branches loses contact.
     assert last == pytest.approx([0.0, 1.0], abs=1e-9)
     assert found.dissipated == 0.0

@@ -1,6 +1,6 @@
-"""Marches at the limits: no room besides friction, next to none, and friction next to nothing.
+"""Marches at the limits: no room beyond friction, almost none, and almost no friction.
 
-Source: formulation, section 5. A clearance of F_m/K_w leaves a slip no room, so the spline is the
+Source: formulation, section 5. A clearance of F_m/K_w leaves no room for slip, so the spline is the
 spring K_w; without friction it is the holonomic one.
 """
 
@@ -15,7 +15,7 @@ KW = 1.78e7
 
 
 def spline(friction: float, clearance: float, **more: object) -> ls.Case:
-    """The seed's full float with a fixed friction [N] and a clearance [m] of both splines."""
+    """Return the seed's full float with fixed friction [N] and clearance [m] of both splines."""
     gone = both("normal_force", None) | both("friction", None)
     given = both("friction_force", f"{friction!r} N") | both("clearance", f"{clearance!r} m")
     return floating(assumed=["errors.*"], **gone, **given, **more)
@@ -37,7 +37,7 @@ ROOMS = [(f, r) for f in (1e-6, 1.0, 500.0) for r in (1e-13, 1e-11, 1e-10, 1e-9)
 
 @pytest.mark.parametrize(("friction", "room"), mostly_slow(ROOMS, ((1.0, 1e-13),)))
 def test_next_to_no_room_is_next_to_a_spring(friction, room):
-    """A slip that has so little room changes a displacement by no more than that."""
+    """A slip with so little room changes a displacement by no more than that."""
     found = ls.march(spline(friction, friction / KW + room))
     without = ls.march(spline(friction, friction / KW))
     assert found.result.passed

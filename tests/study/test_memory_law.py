@@ -1,4 +1,4 @@
-"""The parts of a spline with memory, and the scene that they make."""
+"""The parts of a spline with memory, and the scene that they form."""
 
 import math
 
@@ -25,7 +25,7 @@ def test_friction_resists_with_its_bound_and_no_more():
 
 
 def test_the_clearance_leaves_what_friction_bends():
-    """S2 − F_m/K_w, and nothing where friction alone needs more."""
+    """S2 − F_m/K_w, or zero if friction alone needs more."""
     assert SlipStop(SPLINE).law(70.0).reach == pytest.approx(40e-6 - 20e-6)
     assert SlipStop(SPLINE).law(700.0).reach == 0.0
 
@@ -55,7 +55,7 @@ def test_the_scene_gets_two_coordinates_for_every_slip():
     friction, stop = (r for r in scene.radials if r.gear == "4")
     assert friction.centre.tolist() == [1e-6, 2e-6]
     assert stop.centre.tolist() == [0.0, 0.0]
-    # The shaft bends by p − s: a common move costs nothing.
+    # The shaft bends by p − s, so a common displacement needs no force.
     together = np.zeros(scene.size)
     together[scene.displacement["4"]] = (1.0, 1.0)
     together[-4:-2] = (1.0, 1.0)

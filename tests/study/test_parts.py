@@ -1,4 +1,4 @@
-"""A set followed between two points on its own equations: how few certified solves that takes."""
+"""A set followed between two points on its own equations, with few certified solves."""
 
 from dataclasses import replace
 
@@ -11,11 +11,11 @@ from loadshare.study.follow.search import Search
 from loadshare.study.parameter import read_parameter
 
 FIRST = 9
-"""Certified solves with which every search begins."""
+"""Number of certified solves with which every search starts."""
 
 
 def pressed(stiffness: str) -> ls.Case:
-    """A pair whose driver rests on a round limit ring."""
+    """Return a pair whose driver rests on a round limit ring."""
     return ls.Case(
         {
             "operating": {"input": "a", "output": "b", "torque": "500 N*m"},
@@ -30,7 +30,7 @@ def pressed(stiffness: str) -> ls.Case:
 
 
 def loop() -> ls.Case:
-    """Two pairs, wound up against each other, on floats that open where their meshes do."""
+    """Return two pairs, wound up against each other, on floats that open when their meshes do."""
     return ls.Case(
         {
             "operating": {
@@ -69,7 +69,7 @@ def loop() -> ls.Case:
 
 
 def idlers() -> dict[str, object]:
-    """Two gears between first and last that have so much backlash that they may turn freely."""
+    """Return changes that add two gears with so much backlash that they may turn freely."""
     places = {"i": ["60 mm", "60 mm"], "j": ["75 mm", "105 mm"]}
     mesh = {"gap": "10 mrad", "backlash": "2 mm", "stiffness": "1e6 N*m/rad"}
     gears = {
@@ -85,7 +85,7 @@ def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> Sea
 
 @pytest.fixture
 def solves(monkeypatch):
-    """Values that were solved and certified."""
+    """Return the values that are solved and certified."""
     asked = []
     solved = Line.solved
 
@@ -100,8 +100,8 @@ def solves(monkeypatch):
 @pytest.mark.parametrize("stiffness", ["3e9 N/m", "3e7 N/m", "rigid"])
 @pytest.mark.parametrize(("low", "high"), [(1e-3, 100.0), (50.0, 60.0)])
 def test_a_float_that_moves_straight_outwards_does_not_turn(stiffness, low, high, solves):
-    """Its ring is stiff one way and soft the other: counted as stiff both ways nothing was proved
-    of a ring that widens by more than it is pressed in.
+    """Its ring is stiff in one direction and soft in the other. When it was taken as stiff in both,
+    nothing was proved about a ring that widens by more than it is compressed.
     """
     search = searched(pressed(stiffness), "rings.a.radius", low, high, "um")
     search.run()
@@ -110,7 +110,7 @@ def test_a_float_that_moves_straight_outwards_does_not_turn(stiffness, low, high
 
 
 def test_a_body_at_rest_elsewhere_is_followed_across_its_room(solves):
-    """A free body may rest anywhere: on opposite sides at both ends it has most room between."""
+    """A free body may rest anywhere: if on opposite sides at both ends, it has room in between."""
     search = searched(loop(), "meshes.g1-h1.backlash", 0.6, 0.7, "mm")
     values = np.array([0.6, 0.7])
     first, last = search.points(values)
@@ -136,7 +136,7 @@ def test_a_body_at_rest_elsewhere_is_followed_across_its_room(solves):
     "changed", [{}, pytest.param(idlers(), marks=pytest.mark.slow)], ids=["loop", "idlers"]
 )
 def test_events_at_which_a_body_loses_all_its_forces_are_proved(changed, solves):
-    """The forces that hold a float vanish with the mesh; idlers that turn freely do not blur it."""
+    """The forces on a float vanish with its mesh; free idlers do not disturb the proof."""
     search = searched(loop().replace(changed), "meshes.g1-h1.backlash", 0.0, 0.3, "mm")
     search.run()
     assert [change.confirmed for change in search.changes] == [True, True]
@@ -145,7 +145,7 @@ def test_events_at_which_a_body_loses_all_its_forces_are_proved(changed, solves)
 
 
 def test_what_round_off_hides_is_not_solved_again_and_again(solves):
-    """Balls are so soft at first that a float on them is lost in round-off before they part."""
+    """Balls are so soft at first that their float is lost in round-off before they lose contact."""
     ball = {"clearance": "20 um", "ball_stiffness": "5e9 N/m^1.5"}
     case = loop().replace({"bearings.g1": ball})
     search = searched(case, "meshes.g1-h1.backlash", 0.0, 0.3, "mm")

@@ -1,4 +1,4 @@
-"""Work side by side in processes: whoever calls it, and whatever becomes of a process."""
+"""Parallel work in processes: whoever calls it, and whatever happens to a process."""
 
 import os
 import signal
@@ -40,7 +40,7 @@ def test_only_what_kills_its_process_is_lost():
 
 
 def test_a_process_that_dies_costs_one_more_try_and_leaves_the_others_side_by_side(tmp_path):
-    """Of 40 items the fourth kills its process at first; from the 21st on, two at a time meet."""
+    """The fourth of 40 items kills its process at first; from the 21st on, items meet in pairs."""
 
     def work(n):
         with (tmp_path / f"{n}").open("a") as log:
@@ -57,7 +57,7 @@ def test_a_process_that_dies_costs_one_more_try_and_leaves_the_others_side_by_si
 
     found = list(side_by_side(work, range(40), 2))
     assert sorted(found) == [(n, "met") for n in range(40)]
-    # It is tried again when all others have started.
+    # It is tried again after all others have started.
     assert [n for n, _ in found].index(3) >= 38
     starts = {n: (tmp_path / f"{n}").read_text().count("started") for n in range(40)}
     assert starts == {n: 2 if n == 3 else 1 for n in range(40)}
@@ -86,7 +86,7 @@ def test_what_is_under_way_is_finished_when_no_more_is_to_be_started():
 
 
 def test_nobody_asks_for_more(tmp_path):
-    """What is at work then is killed, however long it would take."""
+    """Running work is killed, however long it would take."""
 
     def work(n):
         if n:

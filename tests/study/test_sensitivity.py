@@ -1,4 +1,4 @@
-"""Sensitivities: against closed forms and differences of certified solves."""
+"""Sensitivities against closed forms and differences of certified solves."""
 
 import math
 import tomllib
@@ -21,9 +21,9 @@ from loadshare.study.sensitivity.differences import differentiate
 
 
 def about_to_leave() -> ls.Case:
-    """Pinion 4 with a float range at which its stop is just free, to the last digit.
+    """Return a case whose pinion 4 has a float range that just frees its stop, to the last digit.
 
-    The idlers stand a little off the line through the pinion, so that an arc holds it as well.
+    The idlers are slightly off the line through the pinion, so that an arc holds it as well.
     """
     off_line = {f"gears.{g}.centre.distance": "525.6314 mm" for g in "6789"}
     case = shipped("fgfbstts/limit_ring").replace(off_line)
@@ -33,7 +33,7 @@ def about_to_leave() -> ls.Case:
 
 
 def torques(case: ls.Case, key: str, value: Value, number: float) -> np.ndarray:
-    """Torques [N·m] of the first position with an input at a number of its unit."""
+    """Return the torques [N·m] of the first position with an input set to a number of its unit."""
     changed = case.replace({key: value.at(number).text})
     (position,) = ls.solve(changed, positions=[1]).positions
     return np.array(list(position.torque.values()))
@@ -48,7 +48,7 @@ def test_the_closed_form():
         rates = found.rates[1, 'meshes."4-6".gap', side]
         assert rates.torque["1-2"] == pytest.approx(-4.641 / 2 / (2 * c1), rel=1e-9)
         assert rates.torque["1-3"] == pytest.approx(4.641 / 2 / (2 * c1), rel=1e-9)
-        # Ω46 = 1 − E46/(C4 T24) where T24 does not change; it does, by I12 dT12.
+        # Ω46 = 1 − E46/(C4 T24) if T24 does not change; it does, by I12 dT12.
         t12, dt12 = 1081.975, rates.torque["1-2"]
         t24 = 4.641 * t12
         explicit = -1 / (c4 * t24) - 3e-4 * -1 / (c4 * t24**2) * 4.641 * dt12
@@ -67,7 +67,7 @@ def test_torque_alone_changes_no_share_without_errors():
 
 
 def verdicts(case: ls.Case, found: Sensitivity, position: int = 1) -> dict[str, Verdict]:
-    """Every derivative against one-sided differences of certified solves."""
+    """Compare every derivative with one-sided differences of certified solves."""
     return {
         f"{item.key} {side}": judged(case, found, item, position, side)
         for item in found.inputs
@@ -76,7 +76,7 @@ def verdicts(case: ls.Case, found: Sensitivity, position: int = 1) -> dict[str, 
 
 
 def disagreeing(verdicts_by_key: dict[str, Verdict]) -> dict[str, Verdict]:
-    """Those beyond the stated errors, without differences to compare to, or without a reason."""
+    """Return those beyond the stated errors, without differences, or without a reason."""
     return {k: v for k, v in verdicts_by_key.items() if v.outcome not in ("agrees", "undefined")}
 
 
@@ -115,7 +115,7 @@ def test_differences_of_full_solves(name, keys):
     assert found.inputs
     compared = verdicts(case, found)
     assert not disagreeing(compared)
-    # Where anything moves, both the stated error and that of the differences say something.
+    # Where anything moves, the stated error and that of the differences are both small enough.
     moving = [v for v in compared.values() if math.isfinite(v.stated) and v.stated < 1.0]
     assert moving
     assert np.median([v.stated for v in moving]) < 1e-7
@@ -139,10 +139,10 @@ def outcomes(rows: list[dict]) -> list[str]:
 @pytest.mark.parametrize(
     ("number", "key"),
     [
-        # A mesh 7,000 times as stiff as the others, whose sides move as one.
+        # A mesh 7,000 times as stiff as the others, whose two gears move as one.
         (53, "gears.c21.base_radius"),
         (117, "splines.w2.bending_stiffness"),
-        # At its bound: there is one side, and the usual step is too long for it.
+        # The input is at its bound: there is one side only, and the usual step is too long for it.
         (128, 'meshes."i1a-q1".backlash'),
     ],
 )
@@ -153,7 +153,7 @@ def test_stated_errors_do_not_drown_derivatives(number, key):
 
 
 def test_a_difference_goes_on_to_steps_before_an_event_that_is_near():
-    """Less than 1e-5 deg below the value pinion 5 meets another arc, and other slopes hold."""
+    """Less than 1e-5 deg below the value pinion 5 meets another arc, and the slopes change."""
     case = shipped("fgfbstts/tolerance").replace(
         {"errors.9.eccentricity.amount": "20.651960977181545 um"}
     )
@@ -165,7 +165,7 @@ def test_a_difference_goes_on_to_steps_before_an_event_that_is_near():
 
 
 def test_a_gear_that_comes_to_float_has_no_displacement_to_that_side():
-    """On the event pinion 5 lies on stop and arc; with more eccentricity it floats between arcs."""
+    """At the event, pinion 5 is on stop and arc; with more eccentricity it floats between arcs."""
     key = "errors.8.eccentricity.amount"
     put = shipped("fgfbstts/tolerance").replace({key: "0.8570800282942369 um"})
     found = sensitivity(put, key, positions=[1])
@@ -174,7 +174,7 @@ def test_a_gear_that_comes_to_float_has_no_displacement_to_that_side():
 
 @pytest.mark.slow
 def test_inputs_on_the_verge_are_differentiated_without_solves(monkeypatch):
-    """The set of one side, once found, tells for every input what moves and what floats."""
+    """Once it is found, the set of one side gives for every input what moves and what floats."""
     key = "errors.8.eccentricity.amount"
     put = shipped("fgfbstts/tolerance").replace({key: "0.8570800282942369 um"})
     asked = []
@@ -218,11 +218,11 @@ def test_displacements_and_shares_follow():
     rates = found.rates[1, key, "rising"]
     for mesh in ("6-10", "7-10", "8-10"):
         slope = (at[1].pair_share[mesh] - at[0].pair_share[mesh]) / 2e-9
-        # Differences over 2 nm of shares that are good to 1e-13.
+        # Differences over 2 nm of shares that are accurate to 1e-13.
         assert rates.pair_share[mesh] == pytest.approx(slope, abs=1e-4 * abs(slope) + 1e-3)
     slope = (np.array(at[1].displacement["4"]) - at[0].displacement["4"]) / 2e-9
     assert rates.displacement["4"] == pytest.approx(slope, abs=1e-6)
-    # The input pinion floats with nothing to hold it along its teeth: it has no derivative.
+    # Nothing holds the floating input pinion along its teeth, so it has no derivative.
     assert np.isnan(rates.displacement["1"]).any()
     assert (rates.displacement["10"] == 0.0).all()
 
@@ -230,7 +230,7 @@ def test_displacements_and_shares_follow():
 @pytest.mark.parametrize("key", ["rings.4.float", "errors.6.installation[1]"])
 @pytest.mark.quick(1)
 def test_a_kink_has_a_derivative_to_each_side_and_says_so(key):
-    """At the critical float the stop is about to let go: nothing changes on one side."""
+    """At the critical float the stop is about to open: nothing changes on one side."""
     case = about_to_leave()
     found = sensitivity(case, key, positions=[1])
     assert [(k.position, k.elements) for k in found.kinks] == [(1, ("ring 4: upper stop",))]
@@ -241,7 +241,8 @@ def test_a_kink_has_a_derivative_to_each_side_and_says_so(key):
         there = torques(case, key, item.value, item.value.number + sign * 1e-4)
         slope = (there - here) / (sign * 1e-10)
         rates = np.array(list(found.rates[1, key, side].torque.values()))
-        # Differences over 0.1 nm (the arcs hand over 0.6 nm away) of torques good to 1e-8 N·m.
+        # Differences over 0.1 nm (the load passes to the other arc 0.6 nm away) of torques accurate
+        # to 1e-8 N·m.
         assert rates == pytest.approx(slope, rel=1e-5, abs=200.0)
         sizes.append(np.abs(rates).max())
     assert min(sizes) < 1e-3 * max(sizes)
@@ -249,8 +250,8 @@ def test_a_kink_has_a_derivative_to_each_side_and_says_so(key):
 
 
 def test_a_pinion_that_floats_free_is_caught_by_its_arcs():
-    """Nothing presses on it: an input that does so has the slope of the arc that is then in the
-    way, another one on each side, and the kink is reported. Where it rests remains open.
+    """Nothing presses on it. An input that does has the slope of the arc that it is pressed onto,
+    different on each side, and the kink is reported. The rest position remains undetermined.
     """
     case = shipped("fgfbstts/tolerance")
     key = 'meshes."4-6".pressure_angle'
@@ -264,12 +265,12 @@ def test_a_pinion_that_floats_free_is_caught_by_its_arcs():
         there = torques(case, key, value, value.number + sign * 1e-4)
         slope = (there - here) / (sign * 1e-4 * value.factor)
         rates = found.rates[1, key, side]
-        # First order in a step of 2e-6 of a radian, of torques good to 1e-9 N·m.
+        # First order in a step of 2e-6 rad, for torques accurate to 1e-9 N·m.
         assert list(rates.torque.values()) == pytest.approx(slope, rel=1e-3, abs=1e-2)
         assert np.isnan(rates.displacement["4"]).any()
         slopes.append(rates.torque["4-6"])
     assert slopes[0] != pytest.approx(slopes[1], rel=1e-5)
-    # Room that nothing presses on does nothing.
+    # Room in a direction without force has no effect.
     idle = found.rates[1, "rings.4.clearance", "rising"].torque
     assert max(map(abs, idle.values())) * 1e-6 < 1e-9
 
@@ -286,7 +287,7 @@ def test_an_input_at_its_bound_has_one_side():
 
 
 def test_the_largest_of_equal_branches():
-    """Without errors all branches are the largest: Ω rises to either side."""
+    """Without errors all branches are the largest, so Ω rises on either side."""
     case = shipped("fgfbstts/base").replace({"errors.6.installation": ["0 um", "0 um"]})
     found = sensitivity(case, "errors.6.installation[1]", positions=[1])
     slopes = {s: found.pair_omega["errors.6.installation[1]", s]["II"] for s in SIDES}
@@ -354,8 +355,8 @@ LAW = {"a": "0 rad", "b": "1e-6 rad/(N*m)", "c": "3e-6 rad/(N*m)^(2/3)"}
 
 @pytest.mark.parametrize("law", [None, LAW], ids=["springs", "soft at first"])
 def test_a_free_body_is_caught_where_it_falls(law):
-    """A free input pinion between two wheels: an angle that loads it across its teeth lets it fall
-    through the backlash, on whichever coast flank is in that way. How soft that is does not matter.
+    """A free input pinion is between two wheels. An angle that loads it across its teeth makes it
+    move through the backlash onto a coast flank. The stiffness of that flank does not matter.
     """
     changes: dict[str, object] = {"gears.1.support": "free"}
     for mesh in ("1-2", "1-3"):
@@ -379,7 +380,7 @@ def test_a_free_body_is_caught_where_it_falls(law):
     ),
 )
 def test_the_mesh_cycle_stands_still(key, torque):
-    """A change that lets a mesh pass to its next place is no derivative of what it does there."""
+    """A change that moves a mesh to its next position is not part of the derivative."""
     case = shipped("fgfbstts/all_elements")
     found = sensitivity(case, key, positions=[5, 16])
     for position in (5, 16):
@@ -389,7 +390,7 @@ def test_the_mesh_cycle_stands_still(key, torque):
 
 
 def test_elements_that_change_together_make_a_kink():
-    """The pinion leaves its stop and its arc at one float; below it they carry, above nothing."""
+    """The pinion leaves its stop and its arc at one float: below they carry, above nothing does."""
     value = "2.976574096813504 um"
     case = shipped("fgfbstts/limit_ring").replace({"rings.4.float": value, "rings.5.float": value})
     found = sensitivity(case, "rings.5.float", positions=[1])
@@ -401,10 +402,10 @@ def test_elements_that_change_together_make_a_kink():
 
 
 def test_an_error_covers_both_states_of_what_an_input_hardly_moves():
-    """The float is 1e-15 m off its critical value: its arc carries 3e-7 N, and may as well not.
+    """The float is 1e-15 m off its critical value: its arc carries 3e-7 N, or might be open.
 
-    Differences of the reference in 50 digits over 1e-8 rad: -1.11e-3 N·m/rad; over 1e-4 rad the
-    arc has let go, and nothing changes.
+    Differences of the reference in 50 digits over 1e-8 rad: -1.11e-3 N·m/rad; over 1e-4 rad the arc
+    has opened, and nothing changes.
     """
     case = shipped("fgfbstts/limit_ring").replace({"rings.5.float": "2.9765740955634916 um"})
     found = sensitivity(case, "gears.5.centre.angle", positions=[1])
@@ -415,7 +416,7 @@ def test_an_error_covers_both_states_of_what_an_input_hardly_moves():
 
 
 def test_what_has_no_derivative_says_why():
-    """Without backlash nothing catches the free pinion: no equilibrium, to either side."""
+    """Without backlash nothing stops the free pinion: there is no equilibrium on either side."""
     case = shipped("fgfbstts/base").replace({"gears.1.support": "free"})
     key = 'meshes."1-3".pressure_angle'
     found = sensitivity(case, key, positions=[1])
@@ -443,7 +444,7 @@ def test_printed_digits_are_covered_by_the_error(value, error, text):
 
 
 def in_groups(of):
-    """Return a function of groups of numbers that stands for one of a number."""
+    """Return a function of groups of numbers that applies a function of one number."""
 
     def group(numbers):
         try:
@@ -456,7 +457,7 @@ def in_groups(of):
 
 @pytest.mark.parametrize("number", [0.0, 1.7, -3.2e4])
 def test_differences_state_an_error_that_covers(number):
-    """Of a sine, and to each side of a bend; the errors are of use, too."""
+    """For a sine, and on each side of a kink; the errors are also small enough to be useful."""
     value = Value(number, "")
     rate = 1.0 / max(abs(number), 1.0)
 
@@ -488,14 +489,16 @@ def test_differences_state_an_error_that_covers(number):
 
 
 def test_the_judge_sees_a_matrix_as_results_do() -> None:
-    """Displacements in the gear's plane, and entries across the diagonal as one input."""
+    """Displacements are in the gear's plane, and off-diagonal entries are one input."""
     case = on_a_matrix(2e8, 1e8, 3e8)
     found = sensitivity(case, "gears.a.support[0][1]")
     assert judged(case, found, found.inputs[0], 1, "rising").outcome == "agrees"
 
 
 def test_a_ring_that_gains_play() -> None:
-    """As far as it has play, its gear goes where it is pushed; nothing else is one-sided."""
+    """Its gear moves as far as the new play allows, in the direction of the load; all else is
+    two-sided.
+    """
     matrix = on_a_matrix(2e8, 1e8, 3e8).to_dict()
     del matrix["gears"]["a"]["support"]
     case = ls.Case({**matrix, "rings": {"a": {"radius": "0 m"}}})
@@ -518,7 +521,9 @@ def test_a_bearing_without_clearance_is_on_no_verge() -> None:
 
 
 def test_differences_are_as_fine_as_what_they_difference():
-    """An input that is zero tells no step; a law δ^(3/2) at a thousandth of the usual one does."""
+    """A zero input suggests no step; a law δ^(3/2) near its start, at a thousandth of the usual
+    step, does.
+    """
     before = 1e-7
     value = Value(0.0, "rad")
 
@@ -531,7 +536,7 @@ def test_differences_are_as_fine_as_what_they_difference():
 
 
 def test_friction_of_a_torque_that_is_round_off_has_no_sign():
-    """No shaft and no load turns gear r1; its spline's friction follows a torque of zero."""
+    """No shaft and no load turns gear r1; the friction of its spline follows a torque of zero."""
     case = draw(2, 22)
     assert case.splines["r1"].friction
     found = sensitivity(case, "gears.r1.base_radius", positions=[1])
@@ -541,7 +546,7 @@ def test_friction_of_a_torque_that_is_round_off_has_no_sign():
 
 
 def test_a_body_that_nothing_holds_is_reported_at_once(monkeypatch):
-    """Two flanks hold pinion 1; it drifts as soon as only one of them pushes another way."""
+    """Two flanks hold pinion 1; it drifts as soon as the push of one changes direction."""
     monkeypatch.setattr(ways, "search", lambda *_: pytest.fail("a search was made"))
     key = 'meshes."1-2".pressure_angle'
     found = sensitivity(shipped("fgfbstts/limit_ring"), key, positions=[1])
@@ -552,7 +557,7 @@ def test_a_body_that_nothing_holds_is_reported_at_once(monkeypatch):
 
 
 def on_a_matrix(xx: float, xy: float, yy: float) -> ls.Case:
-    """A pair whose driver yields in its bearing under a force that statics gives."""
+    """Return a pair whose driver yields in its bearing under a force known from statics."""
     rows = [[f"{k!r} N/m" for k in row] for row in ([xx, xy], [xy, yy])]
     return ls.Case(
         {
@@ -580,7 +585,7 @@ def on_a_matrix(xx: float, xy: float, yy: float) -> ls.Case:
 )
 @pytest.mark.quick(2)
 def test_entries_of_a_support_s_matrix(matrix) -> None:
-    """K x = p, so that dx = −K⁻¹ dK x: also where its directions jump or are any."""
+    """K x = p, so dx = −K⁻¹ dK x, even if the principal directions jump or are arbitrary."""
     case, k = on_a_matrix(*matrix), np.array([matrix[:2], matrix[1:]])
     x = np.array(ls.solve(case).positions[0].displacement["a"])
     assert np.linalg.norm(k @ x) == pytest.approx(1000.0 / 0.05, rel=1e-12)
@@ -597,7 +602,7 @@ def test_entries_of_a_support_s_matrix(matrix) -> None:
             assert (off <= rates.error.displacement["a"]).all()
             assert off.max() <= 1e-6 * np.abs(exact).max()
             assert abs(rates.torque["a-b"]) <= rates.error.torque["a-b"]
-    # The set is the same in all directions: nothing is differenced between solves.
+    # The set is the same in all directions, so no differences between solves are needed.
     assert not found.remarks
 
 

@@ -1,4 +1,4 @@
-"""Sweeps: every point is what a solve of its own gives, and none ends the sweep."""
+"""Sweeps: every point equals an independent solve, and none ends the sweep."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def test_every_point_is_a_solve_of_its_own():
     changed = case.replace({"rings.4.float": "5 um", "rings.5.float": "5 um"})
     alone = ls.solve(changed)
     here = arrays.sel({name: 5.0})
-    # Both are at round-off; a point of a sweep begins elsewhere, at the point before it.
+    # Both are at round-off; a point of a sweep starts elsewhere, at the previous point.
     room = {"torque": 1e-9, "share": 1e-13, "pair_share": 1e-13}
     room |= {"displacement": 1e-16, "margin": 1e-16, "reaction": 1e-9}
     for kind, least in room.items():
@@ -34,14 +34,14 @@ def test_every_point_is_a_solve_of_its_own():
 
 
 def test_points_begin_where_the_first_one_ended():
-    """On one active set all along, none has to look for it, and none holds the others up."""
+    """If all have one active set, none needs a search, and none delays the others."""
     case = shipped("fgfbstts/limit_ring")
     alone = ls.solve(case.replace({"rings.4.float": "3 um"})).positions
     assert {p.effort.rounds for p in alone} == {3}
     found = ls.sweep(case, {"rings.4.float": "3 um:4 um:3"})
     rounds = [{p.effort.rounds for p in point.result.positions} for point in found.points]
     assert rounds == [{1}, {1}, {1}]
-    # An invalid point and one with other elements in between hold nothing up.
+    # An invalid point and one with other elements in between do not delay the others.
     over = {"rings.4.float": ["3 um", "-1 um", "3.5 um", "0 um", "4 um"]}
     broken = ls.sweep(case, over)
     assert [p.status for p in broken.points] == ["certified", "invalid", *["certified"] * 3]
@@ -119,7 +119,7 @@ def test_a_star_ties_all_that_it_means():
     parameter = read_parameter(case, "rings.*.float", "um")
     assert parameter.keys == ("rings.4.float", "rings.5.float")
     assert parameter.changes(2.5) == dict.fromkeys(parameter.keys, "2.5 um")
-    # A key that the tables lack may be set in all of them.
+    # A key that is missing in the tables may be set in all of them.
     assert read_parameter(case, "rings.*.stiffness", "N/m").keys[1] == "rings.5.stiffness"
 
 
@@ -147,7 +147,7 @@ def test_two_parameters_and_a_point_that_cannot_be(tmp_path):
 
 
 def test_a_refused_point_keeps_its_message_and_the_sweep_goes_on():
-    """A spline whose stick limit makes its law drop has no unique equilibrium."""
+    """The law of a spline drops because of its stick limit, so the equilibrium is not unique."""
     case = shipped("fgfbstts/full_float").replace(
         {
             "splines.4.normal_force": None,

@@ -1,4 +1,4 @@
-"""A disk of a few pages, with as much room left on it as a test wants."""
+"""A small disk with a given amount of free space."""
 
 import os
 import shutil
@@ -15,7 +15,7 @@ PAGE = 4096
 
 @contextmanager
 def mounted(place: Path) -> Iterator[Path]:
-    """A disk of its own at a folder; skips where none can be mounted."""
+    """Mount a disk of its own at a folder; skip if that is not possible."""
     place.mkdir()
     if shutil.which("mount") is None or not hasattr(os, "geteuid") or os.geteuid() != 0:
         pytest.skip("a disk can be mounted by root only")
@@ -30,7 +30,7 @@ def mounted(place: Path) -> Iterator[Path]:
 
 
 def fill(disk: Path, left: int) -> None:
-    """Fill a disk except for so many bytes."""
+    """Fill a disk except for `left` bytes."""
     free = os.statvfs(disk).f_bavail * PAGE
     with (disk / "ballast").open("wb") as file:
         os.posix_fallocate(file.fileno(), 0, free - left)
@@ -38,7 +38,7 @@ def fill(disk: Path, left: int) -> None:
 
 
 def files(disk: Path) -> dict[str, bytes]:
-    """What is on a disk, hidden files and all, except what fills it."""
+    """Return the files on a disk, including hidden ones, except the one that fills it."""
     return {
         file.relative_to(disk).as_posix(): file.read_bytes()
         for file in disk.rglob("*")

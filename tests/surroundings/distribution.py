@@ -19,19 +19,19 @@ NEEDED = (
     *("py.typed", "case/starters/planetary.toml"),
     *(f"report/page/templates/{name}" for name in ("report.html", "page.css", "page.js")),
 )
-"""What of the package is no Python."""
+"""Files of the package other than Python."""
 CASE = ("fgfbstts/base.toml", "fgfbstts/limit_ring.toml")
 
 
 def version() -> str:
-    """The version of the source."""
+    """Return the version of the source."""
     scope: dict[str, str] = {}
     exec((ROOT / "src/loadshare/_version.py").read_text(encoding="utf-8"), scope)
     return scope["__version__"]
 
 
 def problems_of_wheel(names: Iterable[str]) -> list[str]:
-    """What is wrong with the names in a wheel."""
+    """Return what is wrong with the names in a wheel."""
     held = set(names)
     package = {n.removeprefix("loadshare/") for n in held if n.startswith("loadshare/")}
     source = ROOT / "src/loadshare"
@@ -50,7 +50,7 @@ def problems_of_wheel(names: Iterable[str]) -> list[str]:
 
 
 def problems_of_sdist(names: Iterable[str]) -> list[str]:
-    """What is wrong with the names in an sdist."""
+    """Return what is wrong with the names in an sdist."""
     held = {name.partition("/")[2] for name in names}
     wanted = ("LICENSE", "README.md", "CHANGELOG.md", "pyproject.toml", "constraints.txt")
     folders = ("src/loadshare/__init__.py", "tests/conftest.py", f"cases/{CASE[0]}")
@@ -60,7 +60,7 @@ def problems_of_sdist(names: Iterable[str]) -> list[str]:
 
 
 def files_in(folder: Path) -> tuple[Path, Path]:
-    """The wheel and the sdist in a folder, to be found from anywhere."""
+    """Return absolute paths of the wheel and the sdist in a folder."""
     wheels, sdists = (sorted(folder.resolve().glob(end)) for end in ("*.whl", "*.tar.gz"))
     if (len(wheels), len(sdists)) != (1, 1):
         raise SystemExit(f"{folder}: holds {len(wheels)} wheels and {len(sdists)} sdists")
@@ -68,7 +68,7 @@ def files_in(folder: Path) -> tuple[Path, Path]:
 
 
 def installed_and_run(file: Path) -> None:
-    """Install a distribution into an empty environment and solve a case with it, far from here."""
+    """Install a distribution into an empty environment; solve a case with it outside the clone."""
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
         venv.create(place / "env", with_pip=True)
@@ -93,7 +93,7 @@ def installed_and_run(file: Path) -> None:
 
 
 def _output(place: Path, *words: str) -> str:
-    # Nothing of the source may be found from here.
+    # Nothing of the source may be importable.
     alone = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"PYTHONUTF8": "1"}
     done = subprocess.run(
         words, capture_output=True, encoding="utf-8", check=False, cwd=place, env=alone

@@ -1,7 +1,7 @@
-"""The tutorial and the page on gearboxes, done literally from a fresh installation of the wheel.
+"""The tutorial and the page on gearboxes, followed literally from a fresh installation.
 
-Every command is typed as printed, in an empty home and an empty folder; what is printed must be
-what the page shows. Needs a package index.
+Every command is typed as printed, in an empty home and an empty folder; its output must be what the
+page shows. Needs a package index.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 KEPT = ("PATH", "LANG", "LC_ALL", "TZ", "OPENBLAS_NUM_THREADS")
-"""Variables of the environment that a new user has as well."""
+"""Environment variables that a new user has as well."""
 
 spec = importlib.util.spec_from_file_location("blocks", ROOT / "tests/docs/blocks.py")
 blocks = sys.modules.setdefault("blocks", importlib.util.module_from_spec(spec))
@@ -35,7 +35,7 @@ def _pip(python: Path | str, *words: object) -> None:
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory) -> Path:
-    """Folder of the commands of a new environment with the wheel."""
+    """Return the folder of commands of a new environment with the wheel."""
     place = tmp_path_factory.mktemp("fresh")
     _pip(sys.executable, "wheel", "--quiet", "--no-deps", "--wheel-dir", place, ROOT)
     (wheel,) = place.glob("loadshare-*.whl")
@@ -47,7 +47,7 @@ def installed(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def newcomer(installed, tmp_path, monkeypatch) -> Path:
-    """A new user's environment: an empty home, and an empty folder to work in."""
+    """Set a new user's environment: an empty home, and an empty folder to work in."""
     path = f"{installed}{os.pathsep}{os.environ['PATH']}"
     for name in list(os.environ):
         if name not in KEPT:
@@ -64,7 +64,7 @@ def newcomer(installed, tmp_path, monkeypatch) -> Path:
 
 
 def _printed(python: Path, earlier: list[str], block: str) -> str:
-    """What a Python block prints after those before it, in one new process."""
+    """Return what a Python block prints after those before it, in one new process."""
     before = "\n".join(earlier)
     code = (
         "import contextlib, io\n"

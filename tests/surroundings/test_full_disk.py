@@ -1,4 +1,4 @@
-"""A full disk: every command that writes names the file, ends with 2 and leaves nothing half."""
+"""A full disk: every command that writes names the file, ends with 2 and leaves no partial file."""
 
 import subprocess
 import sys
@@ -28,7 +28,7 @@ seed = 1
 "errors.6.installation[0]" = {{ distribution = "normal", mean = "0 um", deviation = "15 um" }}
 """
 
-# Words; DISK, BENCH and PAIR stand for places of the test.
+# Arguments; DISK, BENCH and PAIR stand for paths of the test.
 SWEEP = ("sweep", RING, "--set", "rings.4.float=1 um, 2 um", "--position", 1, "-o")
 SENSITIVITY = ("sensitivity", RING, "errors.6.*", "--position", 1, "-o")
 MARCH = ("march", RING, "--gear", 4, "--revolutions", 1, "--steps", 1, "-o")
@@ -66,7 +66,7 @@ def disk(tmp_path: Path):
 
 @pytest.fixture
 def run(disk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """The command as its own process runs it; its exit code and messages besides the answer."""
+    """Run a command as its own process does; return its exit code and its messages."""
     bench, pair = tmp_path / "bench.toml", tmp_path / "pair.toml"
     base = (CASES / "fgfbstts" / "installation_error.toml").as_posix()
     bench.write_text(BENCH.format(base=base), encoding="utf-8")

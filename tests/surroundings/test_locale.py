@@ -1,4 +1,6 @@
-"""Answers do not depend on language and encoding; what a stream cannot show is a question mark."""
+"""Answers do not depend on language or encoding; a character that a stream cannot show becomes a
+question mark.
+"""
 
 import json
 import subprocess
@@ -59,7 +61,7 @@ def test_files_are_the_same_under_any_locale(wanted, tmp_path, name):
 def test_a_case_with_letters_of_any_kind_is_read_and_named(tmp_path, settings):
     case = tmp_path / "Straße µ.toml"
     case.write_text(f"extends = '{RING.as_posix()}'\nname = 'Straße Ω'\n", encoding="utf-8")
-    # One process for both.
+    # One process for both checks.
     first = """
 import sys
 from loadshare.cli.main import main
@@ -76,7 +78,7 @@ except SystemExit:
 
 
 def test_a_locale_with_decimal_commas_changes_no_figure(wanted, tmp_path):
-    """Where the system has one; libraries that print by the locale are called through it."""
+    """A locale of the system is used, if any; libraries that print by the locale are called."""
     import locale
 
     before = "import locale; locale.setlocale(locale.LC_ALL, {name!r})"
@@ -90,7 +92,7 @@ def test_a_locale_with_decimal_commas_changes_no_figure(wanted, tmp_path):
         found = run_in(tmp_path, before.format(name=name), PYTHONUTF8="1")
         assert found == wanted
         return
-    # Python's own way to commas, where the system has no such locale.
+    # Without such a locale, Python itself is made to use commas.
     commas = """
 import locale
 locale.localeconv = lambda: {"decimal_point": ",", "thousands_sep": ".", "grouping": [3, 0]}

@@ -1,4 +1,4 @@
-"""Too little memory is reported in words, with exit code 2."""
+"""Too little memory is reported by a message, with exit code 2."""
 
 import subprocess
 import sys

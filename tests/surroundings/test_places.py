@@ -1,4 +1,4 @@
-"""Places that cannot be written, and users without a home: commands answer all the same."""
+"""Folders that cannot be written, and users without a home: commands still answer."""
 
 import pwd
 import subprocess
@@ -44,17 +44,17 @@ def test_commands_answer_where_nothing_can_be_written(read_only, tmp_path):  # n
 
 @pytest.mark.slow
 def test_teeth_are_analysed_where_nothing_can_be_written(read_only, tmp_path):  # noqa: F811
-    """The tooth contact is compiled, which takes half a minute, and cannot be kept."""
+    """The tooth contact is compiled, which takes half a minute, and the code cannot be stored."""
     pair, out = tmp_path / "pair.toml", tmp_path / "out"
     pair.write_text(SPUR, encoding="utf-8")
     output = answered(read_only, tmp_path, [("ltca", pair, "--positions", 1, "-o", out / "pair")])
-    # That is reported, once.
+    # This is reported once.
     assert output.count("NUMBA_CACHE_DIR") + output.count("could not be kept") == 1
     assert (out / "pair" / "law.toml").exists()
 
 
 def answered(read_only, tmp_path, commands) -> str:  # noqa: F811
-    """What commands say of a user who may write into one folder only."""
+    """Return the output of commands for a user who may write into one folder only."""
     script = f"""
 from loadshare.cli.main import main
 for words in {[[str(w) for w in words] for words in commands]!r}:
@@ -110,7 +110,7 @@ for words in {[[str(w) for w in words] for words in commands.values()]!r}:
 
 @pytest.fixture
 def no_home(monkeypatch, tmp_path):
-    """A user whom the system knows by number only, as in many containers."""
+    """Set up a user whom the system knows by number only, as in many containers."""
 
     def unknown(number: int) -> None:
         raise KeyError(number)
@@ -133,7 +133,7 @@ def test_without_a_home_laws_are_not_kept(no_home, tmp_path):
 
 
 def test_without_a_home_compiled_code_is_kept_nowhere_else(no_home, tmp_path, monkeypatch):
-    """Numba would make a folder named ~ in the user's current folder."""
+    """Numba would create a folder named ~ in the user's current folder."""
     from loadshare import code_cache
 
     def function(x: float) -> float:

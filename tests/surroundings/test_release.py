@@ -1,4 +1,4 @@
-"""What a release rests on: bounds that were tested, and workflows that call what is there."""
+"""Preconditions of a release: bounds that were tested, and workflows that call existing targets."""
 
 import re
 import tomllib
@@ -16,7 +16,7 @@ WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 def pins(name: str) -> dict[str, str]:
     lines = (ROOT / name).read_text(encoding="utf-8").splitlines()
     found = [line for line in lines if line and not line.startswith("#")]
-    # A name and a number; no address from which to take it.
+    # A name and a number, but no address to take it from.
     assert all(re.fullmatch(r"[\w.-]+==[\w.]+", line) for line in found)
     return {line.split("==")[0].lower(): line.split("==")[1] for line in found}
 
@@ -32,14 +32,15 @@ def numbers(version: str) -> tuple[int, ...]:
 def test_the_lowest_version_of_each_package_is_the_one_that_is_tested(bound):
     name, _, lowest = bound.partition(">=")
     tested = pins("constraints-lowest.txt")[name]
-    # Of some releases the first was withdrawn or is of another day: 2.2 came as 2.2.2.
+    # The first release of some versions was withdrawn or appeared on another day: 2.2 came as
+    # 2.2.2.
     assert numbers(tested)[: len(numbers(lowest))] == numbers(lowest)
     assert numbers(pins("constraints.txt")[name]) >= numbers(lowest)
 
 
 @pytest.mark.parametrize("file", WORKFLOWS, ids=lambda f: f.name)
 def test_a_workflow_calls_what_is_there(file):
-    # "on" is true to YAML.
+    # YAML reads "on" as true.
     flow = yaml.safe_load(file.read_text(encoding="utf-8"))
     assert {"name", True, "jobs", "permissions"} <= set(flow)
     targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE))
@@ -47,7 +48,7 @@ def test_a_workflow_calls_what_is_there(file):
         assert job["runs-on"]
         for step in job["steps"]:
             if "uses" in step:
-                # Named with a version, never with a branch.
+                # Actions are named with a version, never with a branch.
                 assert re.fullmatch(r"[\w.-]+/[\w./-]+@v\d+(\.\d+)*", step["uses"])
                 continue
             words = step["run"].split()
@@ -95,7 +96,7 @@ def test_what_an_sdist_must_hold_is_looked_for():
 
 
 def test_distributions_are_installed_from_elsewhere(tmp_path, monkeypatch):
-    """`make dist` names their folder as it is seen from the clone."""
+    """`make dist` gives their folder relative to the clone."""
     folder = tmp_path / "dist"
     folder.mkdir()
     for name in ("a-1-py3-none-any.whl", "a-1.tar.gz"):

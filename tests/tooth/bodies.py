@@ -1,5 +1,5 @@
-"""Teeth for tests of the mechanics, written from first principles: an involute spur gear with a
-smooth fillet, and what is needed to put two of them in mesh.
+"""Teeth for tests of the mechanics, from first principles: an involute spur gear with a smooth
+fillet, and two such gears in mesh.
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ class SpurTooth:
 
     @property
     def start_radius(self):
-        """Where the involute begins: a quarter module above the root, or the base circle."""
+        """Radius where the involute begins: a quarter module above the root, or the base circle."""
         return max(1.0005 * self.base_radius, self.root_radius + 0.25 * self.module)
 
     def half_angle(self, radius):
-        """Angle from the tooth's middle to its flank."""
+        """Return the angle from the tooth's middle to its flank."""
         inv = lambda a: np.tan(a) - a  # noqa: E731
         at = np.arccos(np.minimum(self.base_radius / radius, 1.0))
         half = (0.5 * np.pi + 2.0 * self.shift * np.tan(self.alpha)) / self.teeth
@@ -72,7 +72,7 @@ class SpurTooth:
         r0, a0 = self.root_radius, np.pi / self.teeth
         r1, a1 = start, self.half_angle(start)
         slope = -np.sqrt(max(start**2 - self.base_radius**2, 0.0)) / (start * self.base_radius)
-        # A cubic that leaves the root circle along it and meets the involute along it.
+        # A cubic that is tangent to the root circle and to the involute.
         dr, length = r1 - r0, 1.5 * (r1 - r0)
         radius_f = r0 + s**2 * (3 * dr - length) + s**3 * (length - 2 * dr)
         da = 3.0 * (a1 - a0) / 2.0
@@ -90,7 +90,7 @@ class SpurTooth:
         )
 
     def flank_u(self, radius):
-        """u of a point of the involute at `radius`."""
+        """Return u of a point of the involute at `radius`."""
         start = self.start_radius
         t = (radius**2 - start**2) / (self.tip_radius**2 - start**2)
         return self.foot + (1.0 - self.foot) * t
@@ -118,7 +118,7 @@ class SpurPair:
 
     @property
     def _path(self):
-        """Ends of the path of contact, from the pitch point [m], and the base pitch."""
+        """Return the ends of the path of contact, from the pitch point [m], and the base pitch."""
         a, b = self.driver, self.driven
         leave = np.sqrt(a.tip_radius**2 - a.base_radius**2) - a.base_radius * np.tan(a.alpha)
         enter = np.sqrt(b.tip_radius**2 - b.base_radius**2) - b.base_radius * np.tan(b.alpha)

@@ -55,7 +55,7 @@ def test_out_of_range(wrong):
 
 @pytest.mark.parametrize(("sign", "limit"), [(-1.0, -0.5), (1.0, 2.0)])
 def test_shifts_at_a_limit_may_be_rounded(sign, limit):
-    """A sum of decimals is rarely the decimal that a user has in mind."""
+    """The sum of decimals is rarely exactly the decimal that a user has in mind."""
     shifts = (limit - sign * 0.1, sign * (0.1 + 6e-16))
     assert sign * (sum(shifts) - limit) > 0.0
     at_limit = example(profile_shift=(limit - sign * 0.1, sign * 0.1))
@@ -65,7 +65,7 @@ def test_shifts_at_a_limit_may_be_rounded(sign, limit):
 
 
 def test_equal_gears_with_unequal_shifts_are_one_pair_either_way():
-    """The formula is not symmetric in its gears; of equal teeth the larger shift comes first."""
+    """The formula is not symmetric in its gears; for equal teeth, the larger shift comes first."""
     teeth = {"teeth": 25, "module": "4 mm", "face_width": "40 mm", "centre": ["0 mm", "0 mm"]}
     one, two = (Gear.model_validate({**teeth, "profile_shift": x}) for x in (0.4, -0.1))
     there, back = (mesh_stiffness(pair, 0.1012) for pair in ((one, two), (two, one)))
@@ -73,7 +73,7 @@ def test_equal_gears_with_unequal_shifts_are_one_pair_either_way():
 
 
 def test_a_contact_ratio_below_that_of_the_formula_is_part_of_its_basis():
-    """By the lengths of the paths to both tips: 1.066 for 25/50 teeth with addenda of 0.6."""
+    """From the lengths of the paths to both tips: 1.066 for 25/50 teeth with addenda of 0.6."""
     stub = {"module": "4 mm", "face_width": "40 mm", "centre": ["0 mm", "0 mm"]}
     short, long = (
         tuple(Gear.model_validate({**stub, "teeth": z, "addendum": a}) for z in (25, 50))

@@ -1,4 +1,4 @@
-"""A train built from that of a case before is, to the last bit, the one built from nothing."""
+"""A train built from that of an earlier case is bit for bit the one built from scratch."""
 
 import numpy as np
 import pytest
@@ -81,7 +81,7 @@ def test_a_replaced_case_shares_what_it_does_not_change_and_changes_nothing_else
 
 
 def test_a_new_gear_changes_what_a_name_joins():
-    """Of the gears a, b, a-b and c, the name a-b-c may join two pairs; before, it joined one."""
+    """With gears a, b, a-b and c, the name a-b-c may join two pairs; before, it joined one."""
     text = {"base_radius": "50 mm", "centre": ["0 mm", "0 mm"]}
     gears = {name: {**text, "centre": [f"{100 * k} mm", "0 mm"]} for k, name in enumerate("abc")}
     case = shipped("fgfbstts/base")

@@ -21,8 +21,8 @@ from loadshare.train.situations import situation_of
 
 
 def test_the_senses_of_the_seeds_train():
-    """Face gears run alike about +z and −z seats of the shaft, pinions counter-clockwise, idlers
-    against them.
+    """Face gears turn in the same sense although they are on opposite sides of the shaft, pinions
+    counter-clockwise, idlers clockwise.
     """
     gears = build_train(shipped("fgfbstts/base")).gears
     assert {n: g.sense for n, g in gears.items()} == {
@@ -39,7 +39,7 @@ def test_clockwise_reverses_every_sense():
 
 
 def triangle(third: str = "45 mm") -> dict[str, object]:
-    """Three gears around which a chain of external meshes closes."""
+    """Return three gears around which a chain of external meshes closes."""
     centre = {"a": ["0 mm", "0 mm"], "b": ["100 mm", "0 mm"], "c": ["50 mm", "86.6025403784 mm"]}
     radius = f"{50 * math.cos(math.radians(20))!r} mm"
     return {
@@ -59,7 +59,7 @@ def test_a_ring_of_three_gears_locks():
 
 
 def test_paths_of_different_ratio_lock():
-    """One wheel 1 % larger: its path would turn the output at another speed."""
+    """One wheel is 1 % larger, so its path would turn the output at another speed."""
     case = families.two_path("0 rad")
     grown = {
         "gears.wheelA.base_radius": "94.149683 mm",
@@ -77,18 +77,18 @@ def test_paths_of_different_ratio_lock():
 
 @pytest.mark.parametrize("backlash", [10.0, 25.0])
 def test_the_float_range_takes_up_the_backlashes_of_a_chain(backlash):
-    """h = Σ j_n over the difference of the two flanks' slopes along the float.
+    """h = Σ j_n divided by the difference of the two flanks' slopes along the float.
 
-    The reconstruction's form: the pinion's two lines of action lie Δχ apart and their mean is m off
-    its centre line; here, with the pinion on the line of its idlers, both slopes are ∓cos α and h =
-    Σ j_n/(2 cos α).
+    In the reconstruction, the pinion's two lines of action are Δχ apart and their mean is m off its
+    centre line; here the pinion is on the line of its idlers, so both slopes are ∓cos α and h = Σ
+    j_n/(2 cos α).
     """
     case = with_backlash(shipped("fgfbstts/limit_ring"), f"{backlash} um")
     chains = {"upward": ["4-6", "6-10"], "downward": ["4-7", "7-10"]}
     train = build_train(case.replace({"rings.4.float": chains}))
     angle = math.radians(18.75)
     normal = 2 * backlash * 1e-6 * math.cos(angle)
-    # The idlers' angles are written in hundredths of a degree, so the slopes are cos α to 1e-6.
+    # The idlers' angles are given to hundredths of a degree, so the slopes are cos α to 1e-6.
     assert train.rings["4"].up == pytest.approx(normal / (2 * math.cos(angle)), rel=1e-5)
     assert train.rings["4"].down == pytest.approx(train.rings["4"].up, rel=1e-5)
 
@@ -105,7 +105,7 @@ def test_a_chain_must_begin_at_the_limited_gear():
 
 
 def exact_margin(arc: Arc, relative: np.ndarray) -> Decimal:
-    """|d₀ + Δ| − a + c in decimal arithmetic of fifty digits."""
+    """Return |d₀ + Δ| − a + c in decimal arithmetic of fifty digits."""
     with localcontext() as context:
         context.prec = 50
         d = [
@@ -134,7 +134,7 @@ def test_the_margin_of_an_arc_is_free_of_cancellation(size, clearance):
 
 
 def test_the_sagitta_of_an_arc():
-    """y²/2a at a = 0.16 m: 0.3 nm for y = 10 µm and 0.4 µm for 0.35 mm (formulation, section 6)."""
+    """y²/2a at a = 0.16 m is 0.3 nm for y = 10 µm, 0.4 µm for 0.35 mm (formulation, section 6)."""
     arc = Arc(np.array([0.16, 0.0, 0.0]), np.zeros(3), 0.0)
     for y, sagitta in ((1e-5, 0.3e-9), (3.5e-4, 0.4e-6)):
         relative = np.array([0.0, y, 0.0])
@@ -165,7 +165,7 @@ def test_a_mesh_cycle_turns_the_input_by_one_pitch():
 
 @pytest.mark.parametrize("gear", ["1", "2", "3"])
 def test_the_teeth_of_any_gear_of_the_first_stage_tell_the_cycle_of_the_input(gear):
-    """One tooth of the input: 25 times that gear's radius over the input's need not be whole."""
+    """The cycle is one tooth of the input; 25 times the ratio of the radii need not be whole."""
     case = shipped("fgfbstts/base")
     radii = {n: g.acting_radius for n, g in case.gears.items()}
     teeth = {"1": 25, "2": 139, "3": 139}[gear]
@@ -177,7 +177,7 @@ def test_the_teeth_of_any_gear_of_the_first_stage_tell_the_cycle_of_the_input(ge
 
 
 def test_teeth_of_a_later_stage_alone_make_its_tooth_the_cycle():
-    """Nothing gives the teeth of stage I: gear 4 is the first on the way whose teeth are known."""
+    """Nothing gives the teeth of stage I: gear 4 is the first on the path whose teeth are known."""
     case = shipped("fgfbstts/base")
     train = build_train(case.replace({"gears.10.teeth": 227}))
     assert train.cycle == "4"
@@ -198,7 +198,7 @@ def test_eccentricities_turn_whichever_gear_has_the_teeth(gear):
 
 
 def test_samples_of_an_eccentricity_that_nothing_turns_are_refused():
-    """An eccentricity of 0 is no input that could be ignored; the samples after it are."""
+    """Even an eccentricity of 0 must not be ignored, because its later samples are not zero."""
     still = {"errors": {"6": {"eccentricity": {"amount": "0 um"}}}}
     case = shipped("fgfbstts/base").replace(still)
     with pytest.raises(ls.CaseError, match=r"gears\.1\.teeth is missing"):
@@ -220,7 +220,7 @@ def test_a_neglected_rotation_leaves_eccentricities_where_they_are():
 
 
 def test_a_march_turns_its_gear_through_whole_revolutions():
-    """Gear 8 in 24 steps of 15°; its eccentricity turns with it in its running sense, clockwise."""
+    """Gear 8 turns in 24 steps of 15°; its eccentricity turns with it, clockwise."""
     train = build_train(shipped("fgfbstts/eccentricity"))
     assert train.count == 24
     assert train.gears["8"].sense == -1
@@ -231,8 +231,8 @@ def test_a_march_turns_its_gear_through_whole_revolutions():
 
 
 def test_a_mesh_with_teeth_stands_where_its_driver_has_turned():
-    """27 teeth of pinion 4 in 20 steps of a revolution of gear 10: the position follows from the
-    rotation.
+    """Pinion 4 with 27 teeth turns through a revolution of gear 10 in 20 steps: the position
+    follows from the rotation.
     """
     train = build_train(shipped("fgfbstts/all_elements"))
     for index in range(1, train.count + 1):
@@ -247,7 +247,7 @@ def test_there_is_no_such_position(index):
 
 
 def test_installation_errors_and_eccentricities_are_offsets():
-    """Both kinds add up; a face gear's pinion has its own transverse frame."""
+    """Both kinds add up; the pinion of a face gear has its own transverse frame."""
     errors = {
         "installation": ["3 um", "4 um"],
         "eccentricity": {"amount": "2 um", "phase": "90 deg"},

@@ -1,8 +1,8 @@
-"""Mesh geometry: the signs of the one expression for the approach, and what follows for floats.
+"""Mesh geometry: the signs of the expression for the approach, and their consequences for floats.
 
-Source: formulation, section 2. The checks know nothing of that expression: teeth that run at the
-pitch point must push forwards, a rigid rotation at the speed ratio must not compress, gears must
-press apart, and forces must do as much work on one body as they take from the other.
+Source: formulation, section 2. The checks do not use that expression: teeth at the pitch point must
+push forwards, a rigid rotation at the speed ratio must not compress, gears must push each other
+apart, and forces must do as much work on one body as they take from the other.
 """
 
 import math
@@ -30,7 +30,7 @@ def gear(
 
 
 SMALL, BIG, PINION, FACE = 0.05, 0.1, 0.04, 0.2
-"""Base radii [m]; of the face gear the acting radius."""
+"""Base radii [m]; for the face gear, the acting radius."""
 APART = (SMALL + BIG) / math.cos(ANGLE)
 WITHIN = (BIG - SMALL) / math.cos(ANGLE)
 OVER = PINION / math.cos(ANGLE)
@@ -69,7 +69,7 @@ both_senses = pytest.mark.parametrize("sense", [1, -1])
 
 
 def meshed(pair: tuple[Gear, Gear], sense: int) -> tuple[Gear, Gear, Mesh]:
-    """The pair with the driver running in `sense`, settled by the kinematics."""
+    """Return the pair with the driver running in `sense`, settled by the kinematics."""
     first = Gear(**{s: getattr(pair[0], s) for s in Gear.__slots__} | {"sense": sense})
     found = settle({"a": first, "b": pair[1]}, {"a-b": ("a", "b")}, {}, "a")
     contact = contact_of(found.gears["a"], found.gears["b"])
@@ -80,7 +80,7 @@ def meshed(pair: tuple[Gear, Gear], sense: int) -> tuple[Gear, Gear, Mesh]:
 
 
 def pitch_point(driver: Gear, driven: Gear) -> np.ndarray:
-    """Where the two pitch circles touch, from the gears' places alone."""
+    """Return the point where the two pitch circles touch, from the gears' places alone."""
     if "face" in (driver.kind, driven.kind):
         face, pinion = (driver, driven) if driver.kind == "face" else (driven, driver)
         towards = pinion.centre - face.centre
@@ -96,9 +96,7 @@ def pitch_point(driver: Gear, driven: Gear) -> np.ndarray:
 @every_pair
 @both_senses
 def test_teeth_run_the_same_way_at_the_pitch_point(pair, sense):
-    """The velocities of both gears at the pitch point, ω × r, agree in direction and with the
-    push.
-    """
+    """The velocities ω × r of both gears at the pitch point have the direction of the push."""
     driver, driven, mesh = meshed(pair, sense)
     at = pitch_point(driver, driven)
     speeds = [g.sense * np.cross(g.axis, at - g.centre) for g in (driver, driven)]
@@ -124,7 +122,7 @@ def test_a_rigid_rotation_at_the_speed_ratio_gives_no_approach(pair, sense):
 @every_pair
 @both_senses
 def test_tooth_bodies_press_apart(pair, sense):
-    """Pushing the bodies into each other closes both flanks alike, by sin α of the way."""
+    """Pushing the bodies into each other closes both flanks equally, by sin α of the distance."""
     driver, driven, mesh = meshed(pair, sense)
     into = pitch_point(driver, driven) - driver.centre
     if driver.kind == "face":
@@ -144,24 +142,25 @@ def test_tooth_bodies_press_apart(pair, sense):
 @both_senses
 @pytest.mark.parametrize("drive", [True, False])
 def test_torques_are_the_moments_of_the_push(pair, sense, drive):
-    """F n at the pitch point turns the driven gear forwards by r_b F, the reaction the driver
-    back.
+    """F n at the pitch point turns the driven gear forwards by r_b F, and its reaction turns the
+    driver backwards.
     """
     driver, driven, mesh = meshed(pair, sense)
     on_driver, on_driven, normal = mesh.direction(drive)
     for body, push, coefficient in ((driven, normal, on_driven), (driver, -normal, on_driver)):
         arm = pitch_point(driver, driven) - body.centre
-        # A contact yields by F along its approach, so a force does the work −coefficient on a turn.
+        # A contact compresses by its approach, so a force does the work −coefficient per unit of
+        # rotation.
         moment = body.sense * (body.axis @ np.cross(arm, push))
         if body.kind == "face":
-            # Its acting radius stands for the lever of the tooth force itself.
+            # Its acting radius is the lever of the tooth force itself.
             moment /= math.cos(ANGLE)
         assert moment == pytest.approx(-coefficient, rel=1e-12)
 
 
 @every_pair
 def test_a_reversed_train_uses_the_other_flank(pair):
-    """Drive and coast flanks change places when the train runs the other way."""
+    """Drive and coast flanks are exchanged when the train runs the other way."""
     _, _, ahead = meshed(pair, 1)
     _, _, back = meshed(pair, -1)
     assert ahead.drive_normal == pytest.approx(back.coast_normal)

@@ -23,7 +23,7 @@ PINION, WHEEL, SMALL, BULL = 23, 60, 19, 90
 
 
 def split_path(positions: int = 4, **changes: object) -> ls.Case:
-    """Two branches of two stages whose meshes are stiffer and softer over their cycles."""
+    """Return two branches of two stages with mesh stiffnesses that vary over their cycles."""
     first, second, between = PINION + WHEEL, SMALL + BULL, 150.0
     angle = math.acos((first**2 + between**2 - second**2) / (2.0 * first * between))
     gears: dict[str, dict] = {
@@ -32,7 +32,7 @@ def split_path(positions: int = 4, **changes: object) -> ls.Case:
     }
     for k, way in ((1, 1.0), (2, -1.0)):
         centre = [f"{v:.17g} mm" for v in (first * math.cos(angle), way * first * math.sin(angle))]
-        # Wheels side by side, as their tip circles overlap.
+        # The wheels are side by side, because their tip circles overlap.
         gears[f"a{k}"] = {"teeth": WHEEL, "centre": [*centre, f"{20 * k} mm"]}
         gears[f"b{k}"] = {"teeth": SMALL, "centre": [*centre, "80 mm"]}
     swing = [1.0 + 0.2 * math.sin(2.0 * math.pi * k / positions) for k in range(positions)]
@@ -59,7 +59,7 @@ def split_path(positions: int = 4, **changes: object) -> ls.Case:
 
 
 def chain(*teeth: int, **operating: object) -> ls.Case:
-    """Stages in a row: teeth of driver and driven gear of each, module 2 mm."""
+    """Return stages in series, module 2 mm, from the teeth of driver and driven gear of each."""
     gears, meshes, shafts, place = {}, {}, {}, 0.0
     for k, (driver, driven) in enumerate(zip(teeth[::2], teeth[1::2], strict=True)):
         names = f"{2 * k + 1}", f"{2 * k + 2}"
@@ -76,7 +76,7 @@ def chain(*teeth: int, **operating: object) -> ls.Case:
 
 @pytest.mark.parametrize("teeth", [(17, 31, 19, 43), (20, 40, 20, 60), (18, 32, 64, 30)])
 def test_two_stages_come_round_after_the_common_multiple_of_their_teeth(teeth) -> None:
-    """The middle shaft passes z₂ teeth to z₃: z₂ z₃/gcd of them until both are whole."""
+    """The middle shaft relates z₂ teeth to z₃: after z₂ z₃/gcd of them both are whole."""
     period = build_train(chain(*teeth)).period
     common = math.lcm(teeth[1], teeth[2])
     assert period.cycles == {"1-2": common // teeth[2], "3-4": common // teeth[1]}
@@ -93,13 +93,13 @@ def test_three_stages_come_round_at_the_first_time_at_which_all_do() -> None:
 
 
 def test_all_meshes_of_a_planetary_set_keep_step() -> None:
-    """z_s z_r/(z_s + z_r) cycles in every mesh while the sun turns once beside a held ring."""
+    """While the sun turns once inside a held ring, every mesh has z_s z_r/(z_s + z_r) cycles."""
     angles = ["0 deg", "120 deg", "240 deg"]
     case = planetary(18, 36, 90, angles, **{"operating.cycle": "common", "operating.positions": 7})
     train = build_train(case)
     assert set(train.period.cycles.values()) == {1}
     assert train.period.revolutions == Fraction(18 + 90, 18 * 90)
-    # Then it is the cycle of one pitch.
+    # The common cycle is then the cycle of one pitch.
     other = build_train(case.replace({"operating.cycle": None}))
     assert train.count == other.count == 7
     for k in range(1, 8):
@@ -107,7 +107,7 @@ def test_all_meshes_of_a_planetary_set_keep_step() -> None:
 
 
 def test_a_gearbox_of_planetary_stages_has_a_common_period() -> None:
-    """By Willis: stage frequencies z_r (carrier), and what stage after stage multiplies."""
+    """By Willis: the mesh frequencies are z_r (carrier), multiplied from stage to stage."""
     case = shipped("nrel_5mw/gearbox")
     counts = {name: gear.teeth for name, gear in case.gears.items() if gear.teeth}
     speed, expected = Fraction(1), {}
@@ -126,14 +126,14 @@ def test_a_gearbox_of_planetary_stages_has_a_common_period() -> None:
         stage = 3 if name == "wheel-pinion" else int(name.split("_")[1][0])
         assert cycles == expected[stage] * period.revolutions
     assert math.gcd(*period.cycles.values()) == 1
-    # All its teeth share no factor: the way is too long to be kept, and is reported.
+    # The teeth have no common factor: the period is too long to be stored, and is reported.
     message = rf"after {period.cycles[period.fastest]} cycles of mesh wheel-pinion"
     with pytest.raises(CaseError, match=message):
         build_train(case.replace({"operating.cycle": "common"}))
 
 
 def test_load_is_shared_as_in_a_march_over_the_same_way() -> None:
-    """Bit for bit: each mesh stands where the march has it, and the machine is the same."""
+    """Bit for bit: each mesh is at the position of the march, and the machine is the same."""
     case = split_path()
     period = build_train(case).period
     assert period.cycles == {"p-a1": WHEEL, "p-a2": WHEEL, "b1-bull": SMALL, "b2-bull": SMALL}
@@ -146,13 +146,14 @@ def test_load_is_shared_as_in_a_march_over_the_same_way() -> None:
         assert one.mesh_position == other.mesh_position
         assert one.torque == pytest.approx(other.torque, rel=1e-12)
     assert found.omega["I"] == pytest.approx(marched.omega["I"], rel=1e-12)
-    # All meshes through their positions together miss the worst meeting of the stages.
+    # If all meshes go through their positions together, the worst combination of the stages is
+    # missed.
     together = ls.solve(case.replace({"operating.cycle": None}))
     assert found.omega["I"] > together.omega["I"] + 1e-3
 
 
 def test_places_are_those_of_fractions() -> None:
-    """No step is missed by round-off, over thousands of cycles."""
+    """Round-off misses no step over thousands of cycles."""
     train = build_train(chain(17, 31, 19, 43, positions=5))
     cycles = train.period.cycles
     for step in range(0, train.count, 7):

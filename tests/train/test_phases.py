@@ -1,4 +1,4 @@
-"""Phases of meshes against Parker and Lin, and against teeth that are turned and looked at."""
+"""Phases of meshes against Parker and Lin, and against teeth that are rotated explicitly."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from loadshare.train import build_train
 
 
 def planetary(sun: int, planet: int, ring: int, angles: list[str], **changes: object) -> Case:
-    """A set without profile shift."""
+    """Return a set without profile shift."""
     wheel = {"module": "2 mm", "centre": ["0 mm", "0 mm"]}
     case = Case(
         operating={
@@ -44,7 +44,7 @@ def planetary(sun: int, planet: int, ring: int, angles: list[str], **changes: ob
 
 
 def apart(one: float, other: float) -> float:
-    """Distance of two phases, round the cycle."""
+    """Return the distance of two phases around the cycle."""
     return abs((one - other + 0.5) % 1.0 - 0.5)
 
 
@@ -76,7 +76,7 @@ def test_planets_follow_one_another_as_parker_and_lin_have_it(sun, planet, angle
 
 
 def test_a_gear_train_of_idlers_keeps_step() -> None:
-    """The flanks of the idler, drawn explicitly, pass its two pitch points one after the other."""
+    """The explicit flanks of the idler pass its two pitch points one after the other."""
     case = Case(
         operating={
             "input": "a",
@@ -102,8 +102,8 @@ def test_a_gear_train_of_idlers_keeps_step() -> None:
     )
     train = build_train(case)
     pitch = 2.0 * math.pi / 30
-    # A tooth of b stands at the angle t; its trailing flank, as b runs clockwise, at t + pitch/4,
-    # meets a at 197°, its leading flank at t − pitch/4 meets c at −64°.
+    # A tooth of b is at the angle t. As b runs clockwise, its trailing flank at t + pitch/4 meets a
+    # at 197°, its leading flank at t − pitch/4 meets c at −64°.
     sense = train.gears["b"].sense
     assert sense == -1
     for tooth in np.linspace(0.0, pitch, 7):
@@ -114,9 +114,9 @@ def test_a_gear_train_of_idlers_keeps_step() -> None:
 
 
 def face_train(teeth: int | None, *angles: float, **changes: object) -> Case:
-    """A pinion a that drives a face gear f, which drives the pinion b at another angle [rad].
+    """Return a pinion a that drives a face gear f, which drives pinion b at another angle [rad].
 
-    Both pinions have 25 teeth, and the face gear's sense is that of a.
+    Both pinions have 25 teeth, and the face gear has the sense of a.
     """
     stiffness = [f"{1.0 + 0.01 * k!r}e6 N*m/rad" for k in range(5)]
     law = {"pressure_angle": "20 deg", "stiffness": stiffness}
@@ -152,19 +152,20 @@ def face_train(teeth: int | None, *angles: float, **changes: object) -> Case:
 def test_the_teeth_of_a_face_gear_pass_its_pinions_one_after_the_other(
     angle: float, running: str, sense: int, allowance: float
 ) -> None:
-    """Trailing flanks meet a, leading flanks b: they are a tooth of the face gear apart."""
+    """Trailing flanks meet a, leading flanks b, so they are a tooth of the face gear apart."""
     thick = {f"gears.{n}.thickness_allowance": f"{allowance} mm" for n in "ab"}
     case = face_train(106, 0.0, angle, **{"operating.running": running}, **thick)
     train = build_train(case)
     assert apart(train.meshes["a-f"].phase, 0.0) < 1e-12
-    # Where pinions lack what they are thinner, the face gear has it: their spaces are full.
+    # The face gear's teeth are thicker by as much as the pinions' are thinner: the spaces are
+    # filled.
     tooth = 0.5 - allowance / (4.0 * math.pi)
     expected = tooth - sense * 106 * angle / (2.0 * math.pi)
     assert apart(train.meshes["f-b"].phase, expected) < 1e-9
 
 
 def test_a_helical_pinion_meets_a_face_gear_in_the_middle_of_its_face() -> None:
-    """Wherever it is along its axis, and whether or not its face has a width."""
+    """This holds anywhere along its axis, and with or without a face width."""
     normal, helix = math.radians(20.0), math.radians(15.0)
     pressed = math.atan(math.tan(normal) / math.cos(helix))
     radius = 0.5 * 25 * 4.0 / math.cos(helix)
@@ -223,8 +224,9 @@ def test_a_pinion_keeps_step_with_a_face_gear_and_a_spur_gear() -> None:
         },
     )
     train = build_train(case)
-    # About x, from y to z: the face gear is below b, at −90°, and runs from x to y, so b's flank
-    # that it pushes runs to y at −90°, which is counter-clockwise. It is the trailing one.
+    # About x, from y to z: the face gear is below b, at −90°, and runs from x to y. The flank of b
+    # that it pushes therefore moves to y at −90°, which is counter-clockwise. It is the trailing
+    # one.
     assert train.gears["b"].sense == 1
     pitch = 2.0 * math.pi / 25
     tooth = -math.pi / 2.0 + pitch / 4.0 + (0.0 - train.meshes["f-b"].phase) * -pitch
@@ -233,7 +235,7 @@ def test_a_pinion_keeps_step_with_a_face_gear_and_a_spur_gear() -> None:
 
 
 def test_the_four_branches_of_the_seed_keep_step() -> None:
-    """Its teeth follow from three pinions; radii with seven digits miss whole numbers by 3e-4."""
+    """Its teeth follow from three pinions; radii of seven digits miss whole numbers by 3e-4."""
     train = build_train(shipped("fgfbstts/phases"))
     gears, turn = train.gears, 2.0 * math.pi
     count = {name: round(gear.teeth or 0) for name, gear in gears.items()}
@@ -241,15 +243,15 @@ def test_the_four_branches_of_the_seed_keep_step() -> None:
     phase = {name: mesh.phase for name, mesh in train.meshes.items()}
 
     def pitches(gear: str, one: str, other: str) -> float:
-        """Pitches of a gear by which its tooth has run on from one neighbour to another."""
+        """Return the pitches by which a gear's tooth moves from one neighbour to another."""
         ways = [gears[gear].plane @ (gears[n].centre - gears[gear].centre) for n in (one, other)]
         angles = [math.atan2(y, x) for x, y in ways]
         return -gears[gear].sense * count[gear] * (angles[1] - angles[0]) / turn
 
     # Pinion 1 has its face gears above and below: half a revolution is ten of its pitches.
     assert phase["1-2"] == phase["1-3"] == 0.0
-    # An idler's trailing flank meets its pinion, the leading one gear 10. The two ways round from
-    # gear 4 to gear 5 differ by 0.012 of a pitch: the places are rounded.
+    # An idler's trailing flank meets its pinion, its leading flank gear 10. The two ways round from
+    # gear 4 to gear 5 differ by 0.012 of a pitch, because the places are rounded.
     for pinion, idlers in (("4", "67"), ("5", "89")):
         first, second = (phase[f"{pinion}-{i}"] for i in idlers)
         assert apart(second - first, pitches(pinion, *idlers)) < 0.02
@@ -261,7 +263,7 @@ def test_the_four_branches_of_the_seed_keep_step() -> None:
 
 
 def between_two_face_gears(pitches: float) -> Case:
-    """Pinions a and b between face gears f and g of 106 teeth, b as many half pitches from a."""
+    """Return pinions a and b between face gears f, g of 106 teeth, `pitches` half pitches apart."""
     angle = 0.9 // (math.pi / 106.0) * math.pi / 106.0 + pitches * math.pi / 106.0
     case = face_train(106, 0.0, angle)
     law = {"pressure_angle": "20 deg", "stiffness": "1e6 N*m/rad"}
@@ -274,7 +276,7 @@ def between_two_face_gears(pitches: float) -> Case:
 
 
 def test_face_gears_whose_teeth_do_not_meet_are_reported_with_the_angles_that_fit() -> None:
-    """As b moves on by half a pitch of f, g shifts against it by a whole one."""
+    """If b is moved by half a pitch of f, g shifts relative to it by a whole one."""
     for fitting in (0.0, 1.0, 2.0):
         build_train(between_two_face_gears(fitting))
     with pytest.raises(CaseError) as caught:
@@ -291,7 +293,7 @@ def test_a_pinion_whose_axis_misses_that_of_its_face_gear_is_refused() -> None:
 
 
 def test_a_phase_that_counts_and_does_not_follow_is_asked_for() -> None:
-    """106.4 teeth follow from the radii of the face gear: no phase follows from these."""
+    """The radii of the face gear give 106.4 teeth, from which no phase follows."""
     with pytest.raises(CaseError, match=r"the teeth of f are not known \(by their radii 106\.4"):
         build_train(face_train(None, 0.0, 0.9))
     given = {'meshes."a-f".phase': 0.0, 'meshes."f-b".phase': 0.3}
@@ -316,14 +318,14 @@ def test_sets_that_cannot_be_assembled_are_reported_with_the_angles_that_fit() -
 
 @pytest.mark.parametrize(("ring", "parts"), [(-70, 40), (0, 60)])
 def test_planets_in_pairs_are_reported_with_the_angles_that_fit(ring: int, parts: int) -> None:
-    """To a ring the two gears run alike and their difference counts; to a second sun, the sum."""
+    """For a ring, both gears turn alike and their difference counts; for a second sun, the sum."""
     last = {"teeth": abs(ring or 30), "type": "internal" if ring else "external"}
     gears: dict[str, Any] = {
         "sun": {"teeth": 30, "centre": ["0 mm", "0 mm", "0 mm"]},
         "last": {**last, "centre": ["0 mm", "0 mm", "60 mm"]},
         "c": {"type": "carrier", "centre": ["0 mm", "0 mm"]},
     }
-    # Both planets 20 teeth: 50 mm from a sun, and from a ring of 70 as well.
+    # Both planets have 20 teeth: 50 mm from a sun, and from a ring of 70 as well.
     for name, turn, height in (("p", 0.0, 15.0), ("q", 47.156357, 45.0)):
         place = {"distance": "50 mm", "height": f"{height} mm"}
         for k, angle in (("1", 0.0), ("2", 91.0)):
@@ -366,7 +368,7 @@ def test_a_law_is_read_at_each_meshs_own_place() -> None:
 
 
 def test_phases_do_not_depend_on_the_order_of_tables() -> None:
-    """On a driven carrier every mesh of a planet is as near to the input as the other."""
+    """On a driven carrier, both meshes of a planet are equally near to the input."""
     changes = {"operating.input": "carrier", "operating.output": "sun"}
     case = planetary(18, 36, 90, ["0 deg", "120 deg", "240 deg"], **changes)
     stiffness = [f"{1.0 + 0.01 * k!r}e6 N*m/rad" for k in range(20)]
@@ -377,7 +379,7 @@ def test_phases_do_not_depend_on_the_order_of_tables() -> None:
     }
     tables["reversed"] = {k: dict(reversed(v.items())) for k, v in tables["reversed"].items()}
     written = [Case(operating=case.operating, **t) for t in tables.values()]
-    # The second of two cases is built on the first; neither may take its phases.
+    # The second of two cases is built on the first; neither may take over its phases.
     for first, second in (written, written[::-1]):
         answers = [ls.solve(c, positions=[1, 8]) for c in (first, second)]
         trains = [build_train(c) for c in (first, second)]
@@ -388,14 +390,14 @@ def test_phases_do_not_depend_on_the_order_of_tables() -> None:
         for one, other in zip(*(a.positions for a in answers), strict=True):
             assert one.mesh_position == other.mesh_position
             assert one.torque == pytest.approx(other.torque, rel=1e-12)
-    # The planet whose name comes first, and of its meshes that of the gear whose name does. There
-    # the planet is nearer to the input than the ring, which the train takes for the driver.
+    # It is the planet whose name comes first, and of its meshes that of the gear whose name does.
+    # There the planet is nearer to the input than the ring, which the train takes as the driver.
     first_mesh = trains[0].meshes["p1-ring"]
     assert (first_mesh.driver, first_mesh.coast_phase) == ("ring", 0.0)
 
 
 def test_in_a_march_meshes_of_a_set_pass_by_the_relative_speed() -> None:
-    """A turn of the sun takes 15 of its 18 teeth past a planet; each mesh has its own phase."""
+    """In a turn of the sun, 15 of its 18 teeth pass a planet; each mesh has its own phase."""
     case = planetary(18, 36, 90, ["0 deg", "120 deg", "240 deg"])
     case = case.replace({"march": {"gear": "sun", "revolutions": 1.0, "steps": 7}})
     train = build_train(case)

@@ -1,7 +1,7 @@
-"""Samples as arrays: every key that becomes one means what it means in a case file.
+"""Samples as arrays: every key that becomes an array means the same as in a case file.
 
-The judge is the case itself: a sample's situations must be those of the train built from the case
-with the sample's values written into it.
+They are compared with the case itself: a sample's situations must be those of the train built from
+the case with the sample's values.
 """
 
 import re
@@ -23,15 +23,15 @@ from loadshare.train.situations import Situations, situation_of
 
 PINT = pint.UnitRegistry()
 DIGITS = 1e-13
-"""Relative: products are taken in another order, and π/180 before or after."""
+"""Relative: products are formed in another order, and π/180 is applied before or after."""
 NONE = 1e-19
-"""Absolute [SI]: cosines of right angles, times lengths of some 10 µm."""
+"""Absolute [SI]: cosines of right angles times lengths of some 10 µm."""
 
 ARRAYS = tuple(f.name for f in fields(Situations) if f.name not in ("train", "count"))
 
 
 def everything() -> ls.Case:
-    """Every element, with a ring whose arcs follow the errors and floats that are given."""
+    """Return a case with every element, and a ring whose arcs follow errors and given floats."""
     return shipped("fgfbstts/all_elements").replace(
         {
             "rings.4.float": "5 um",
@@ -42,14 +42,14 @@ def everything() -> ls.Case:
 
 
 def plain() -> ls.Case:
-    """The seed's transmission with errors, a torque, and a gap on a mesh."""
+    """Return the seed's transmission with errors, a torque, and a gap on a mesh."""
     return loaded(shipped("fgfbstts/both_errors"), "900 N*m").replace(
         {'meshes."4-6".gap': "3 urad", 'meshes."4-6".backlash': "30 um"}
     )
 
 
 def splined() -> ls.Case:
-    """Splines with a fixed friction force, and a stick limit below what would be continuous."""
+    """Return splines with a fixed friction force, and a stick limit below the continuous one."""
     return shipped("fgfbstts/spline_clearance").replace(
         {
             "splines.4.friction": None,
@@ -109,7 +109,7 @@ PREPARED = {
     "rings.4.stiffness [N/um]": {"rings.4.stiffness": "500 N/um"},
     "rings.sun.stiffness [N/um]": {"rings.sun.stiffness": "500 N/um"},
 }
-"""What a key needs to be in the case before it can be an array."""
+"""Changes that a key needs in the case before it can be an array."""
 
 
 def drawn(key: str, count: int, seed: int = 0) -> np.ndarray:
@@ -148,7 +148,7 @@ def test_a_key_that_becomes_an_array(key):
 
 @pytest.mark.parametrize("key", FAST)
 def test_it_makes_a_difference(key):
-    """Two values give two situations: no key is read and forgotten."""
+    """Two values give two situations, so no key is read and then ignored."""
     make, low, high = FAST[key]
     case = make().replace(PREPARED.get(key, {}))
     ((_, group),) = samples_of(case, {key: [low, high]})
@@ -167,7 +167,7 @@ def test_all_keys_together(make):
 
 @pytest.mark.parametrize("torque", [800.0, -800.0])
 def test_a_batch_after_another_is_what_it_would_be_alone(torque):
-    """Only where the load presses the same flanks is the geometry that of the one before."""
+    """The geometry is shared with the batch before only if the load presses the same flanks."""
     case = loaded(shipped("fgfbstts/both_errors"), "900 N*m")
     samples = {"operating.torque [N*m]": [torque, 0.9 * torque]}
     ((_, before),) = samples_of(case, {"operating.torque [N*m]": [900.0]})
@@ -218,7 +218,7 @@ SLOW = {
 
 @pytest.mark.parametrize("key", SLOW)
 def test_a_key_that_changes_the_machine_groups_the_samples(key):
-    """Samples with the same value share a train; fast keys next to it stay arrays."""
+    """Samples with the same value share a train; fast keys next to it remain arrays."""
     case = everything()
     floats = [1.0, 2.0, 3.0]
     groups = samples_of(case, {key: SLOW[key], "rings.5.float [um]": floats})
@@ -323,7 +323,7 @@ def test_all_problems_are_reported_at_once():
 
 
 def test_a_value_that_cannot_be_read_is_named():
-    """With what it is and what is allowed, as a file's would be."""
+    """The message contains the value and what is allowed, as for a file."""
     key = "rings.5.float"
     for value, told in {
         "3 foo": f'{key} = "3 foo": the unit foo is not known. Allowed: a value in m such as',

@@ -18,7 +18,7 @@ ARRAYS = tuple(f.name for f in fields(Situations) if f.name not in ("train", "co
 
 
 def row(situations: Situations, sample: int) -> dict[str, np.ndarray]:
-    """The numbers of one sample."""
+    """Return the numbers of one sample."""
     found = {name: getattr(situations, name) for name in ARRAYS}
     return {name: v[sample if len(v) > 1 else 0] for name, v in found.items()}
 
@@ -66,7 +66,7 @@ def test_a_stack_of_stacks_is_the_stack():
 
 
 def test_tables_of_different_length_stand_side_by_side():
-    """Shorter ones are filled up with what is not a number, between meshes and between samples."""
+    """Shorter ones are padded with NaN, between meshes and between samples."""
     data = families.star(3).to_dict() | {"assumed": []}
     long = {"torque": ["1 N*m", "2 N*m", "4 N*m"], "deflection": ["1 urad", "3 urad", "7 urad"]}
     short = {"torque": ["5 N*m"], "deflection": ["5 urad"]}
@@ -87,7 +87,7 @@ def test_tables_of_different_length_stand_side_by_side():
 
 
 def test_the_arrays_tell_what_the_train_tells():
-    """Every number again, by the train's own methods, on the case with every element."""
+    """Every number is recomputed by the train's own methods, for the case with every element."""
     train = build_train(shipped("fgfbstts/all_elements"))
     for index in (1, 4):
         found, here = row(situation_of(train, index), 0), situation_of(train, index)

@@ -19,41 +19,41 @@ def seed() -> Seed:
 
 @pytest.fixture(scope="session")
 def both(seed: Seed) -> BothErrors:
-    """Figure 10, fitted."""
+    """Return the fit of figure 10."""
     return both_errors.both_errors(seed)
 
 
 @pytest.fixture(scope="session")
 def full(seed: Seed, both: BothErrors) -> FullFloat:
-    """Figure 11."""
+    """Return the results for figure 11."""
     return splines.full_float(seed, both.case)
 
 
 @pytest.fixture(scope="session")
 def loosened(seed: Seed, both: BothErrors) -> Clearance:
-    """Figure 12."""
+    """Return the results for figure 12."""
     return splines.clearance(seed, both.case)
 
 
 @pytest.fixture(scope="session")
 def loaded(seed: Seed, both: BothErrors, full: FullFloat) -> Loads:
-    """Figure 18."""
+    """Return the results for figure 18."""
     return loads.loads(seed, both.case, full.case)
 
 
 @pytest.fixture(scope="session")
 def limited(seed: Seed) -> Rings:
-    """Figures 13 and 14."""
+    """Return the results for figures 13 and 14."""
     return rings.rings(seed)
 
 
 @pytest.fixture(scope="session")
 def displaced(seed: Seed) -> Installation:
-    """Figure 8."""
+    """Return the results for figure 8."""
     return single_errors.installation(seed)
 
 
 @pytest.fixture(scope="session")
 def turning(seed: Seed) -> Eccentricity:
-    """Figure 9."""
+    """Return the results for figure 9."""
     return single_errors.eccentricity(seed)

@@ -1,4 +1,4 @@
-"""What is required of the seed paper's figures, on the figures that the page is made of."""
+"""Requirements on the seed paper's figures, checked on the figures of the page."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_both_pinions_press_on_rings_of_the_printed_size(limited):
 def test_the_threshold_is_the_float_in_an_ample_ring(limited):
     """Two ways to the same figure: the event along the clearance, and the free balance point.
 
-    An ample ring lets the pinion pass along an arc; its sagitta at 10 µm is below a nanometre.
+    In an ample ring the pinion may move along an arc; its sagitta at 10 µm is below a nanometre.
     """
     for pinion, threshold in limited.thresholds.items():
         free = math.hypot(*limited.as_printed.point(pinion))
@@ -52,7 +52,7 @@ def test_no_sign_of_the_error_of_gear_9_gives_branch_and_balance_point(limited):
     assert limited.as_printed.branch == "9-10"
     assert limited.mirrored.branch == "8-10"
     here, there = (np.array(v.point("5")) for v in (limited.as_printed, limited.mirrored))
-    # The arcs bend by less than a nanometre.
+    # The sagitta of the arcs is less than a nanometre.
     assert there == pytest.approx(-here, abs=1e-3)
     assert here @ printed.POINTS["5"] > 0.0 > there @ printed.POINTS["5"]
 
@@ -70,7 +70,7 @@ def test_the_stiffness_fit_knows_what_it_cannot_tell_apart(limited):
 
 @pytest.mark.slow
 def test_fig_8_in_order_of_influence(displaced):
-    """Gear 1 leads stage I; gear 6 leads stage II, the others far less (under half)."""
+    """Gear 1 has most influence in stage I, gear 6 in stage II, twice that of the others."""
     assert order(displaced.omega("I"))[0] == ["1"]
     two = displaced.omega("II")
     assert order(two)[0] == ["6"]
@@ -87,8 +87,8 @@ def test_the_printed_sizes_of_fig_8_lie_within_what_the_direction_leaves_open(di
 
 @pytest.mark.slow
 def test_fig_8_is_linear_in_the_error(displaced):
-    """No contact is lost, so torques are linear in the error: Ω I to round-off. Ω II is over the
-    torque of a pinion, which the error changes by up to 5.3 % (gear 10: Ω I of 1.0528).
+    """No contact is lost, so torques are linear in the error: Ω I to round-off. Ω II is relative to
+    the torque of a pinion, which the error changes by up to 5.3 % (gear 10: Ω I of 1.0528).
     """
     for stage, tolerance in (("I", 1e-9), ("II", 0.053)):
         for curve in displaced.curves[stage].values():
@@ -98,14 +98,14 @@ def test_fig_8_is_linear_in_the_error(displaced):
 
 @pytest.mark.slow
 def test_gears_2_and_3_are_alike_in_every_direction(displaced):
-    """The layout is symmetric: to round-off."""
+    """The layout is symmetric, so they agree to round-off."""
     two, three = (displaced.turned["I"][gear] for gear in "23")
     assert two == pytest.approx(three, abs=1e-9)
 
 
 @pytest.mark.slow
 def test_a_common_direction_gives_the_printed_picture_of_fig_8(displaced):
-    """Gear 6 as printed; where it leads, 7 to 10 are alike (within a factor of 2) and far less."""
+    """Gear 6 is as printed; if it has most influence, 7 to 10 are far below, within a factor 2."""
     led = [omega for omega in displaced.matching.values() if order(omega)[0] == ["6"]]
     assert len(displaced.matching) == 4
     assert len(led) == 2
@@ -119,16 +119,16 @@ def test_a_common_direction_gives_the_printed_picture_of_fig_8(displaced):
 
 @pytest.mark.slow
 def test_mirrored_gears_reach_the_same_largest_coefficient(displaced):
-    """Over a whole turn. Directions 5° apart miss the largest Ω − 1 by 1 − cos 2.5°, 0.1 %."""
+    """This holds over a whole turn. Steps of 5° miss the largest Ω − 1 by 1 − cos 2.5°, 0.1 %."""
     for here, there in (("6", "8"), ("7", "9")):
         highest = [displaced.extremes["II"][gear][1] - 1 for gear in (here, there)]
         assert highest[0] == pytest.approx(highest[1], rel=2e-3)
 
 
 def test_an_eccentric_gear_comes_round_once_per_revolution(seed):
-    """The torque over the mean: one period per revolution, and two halves that are mirrored.
+    """The torque over the mean has one period per revolution, and its two halves are mirrored.
 
-    A period of half a revolution would make both halves alike.
+    With a period of half a revolution, both halves would be equal.
     """
     case = seed.case("eccentricity").replace(
         {"march": {"gear": "8", "revolutions": 2.0, "steps": 24}}
@@ -142,7 +142,7 @@ def test_an_eccentric_gear_comes_round_once_per_revolution(seed):
 
 
 def test_fig_9_in_order_of_influence(turning):
-    """Gear 1 leads stage I, gear 8 stage II, which it shares with its mirror image 6."""
+    """Gear 1 has most influence in stage I; in stage II, gear 8 and its mirror image 6."""
     assert order(turning.omega("I"))[0] == ["1"]
     assert "8" in order(turning.omega("II"))[0]
     assert order(turning.omega("II"))[0] == ["6", "8"]
@@ -176,7 +176,7 @@ def test_the_fit_of_fig_10_determines_three_combinations(both):
 
 @pytest.mark.slow
 def test_the_conditional_fit_agrees_with_finite_differences(both):
-    """Covariance from differences of the shares over 0.01°: curvature leaves a relative 1e-3."""
+    """The covariance is from differences of shares over 0.01°: curvature adds a relative 1e-3."""
     keys = [f"errors.{g}.eccentricity.direction" for g in CONDITIONAL]
     values = [u.value for u in both.conditional.unknowns]
 
@@ -196,7 +196,7 @@ def test_the_conditional_fit_agrees_with_finite_differences(both):
 
 @pytest.mark.slow
 def test_balanced_torques_cannot_meet_the_printed_ones(both):
-    """Within 2 %, and not to the digits printed, which do not balance."""
+    """They agree within 2 %, but not to the printed digits, which do not balance."""
     entries = torque_entries(both)
     assert all(abs(e.relative) < 0.02 for e in entries)
     assert sum(printed.TORQUES.values()) - printed.TORQUE == pytest.approx(1.0, abs=0.01)
@@ -218,7 +218,7 @@ def test_full_float_shares_better_and_pinion_4_floats_further(both, full):
 
 @pytest.mark.slow
 def test_in_full_float_the_pairs_lie_on_one_another(full):
-    """As the picture says: within the width of its lines, 2 N·m. Both splines have one friction."""
+    """They agree within the width of the picture's lines, 2 N·m. Both splines have one friction."""
     torque = full.position.torque
     for here, there in (("6-10", "8-10"), ("7-10", "9-10"), ("1-2", "1-3")):
         assert torque[here] == pytest.approx(torque[there], abs=2.0)
@@ -226,8 +226,8 @@ def test_in_full_float_the_pairs_lie_on_one_another(full):
 
 @pytest.mark.slow
 def test_the_printed_floats_are_the_unrelieved_estimate(full):
-    """Pinion 5: within 2 % of F/K_w. Pinion 4: 356 µm belong to 1.047, the share of Fig. 13, to
-    its last digit. Both are more than 20 times the float with relief.
+    """Pinion 5 is within 2 % of F/K_w. For pinion 4, 356 µm correspond to 1.047, the share of Fig.
+    13, to its last digit. Both are more than 20 times the float with relief.
     """
     assert full.unrelieved("5") == pytest.approx(printed.FLOATS["5"], rel=0.02)
     omega = splines.share_of_push(full, printed.SHARES_II["7-10"], printed.FLOATS["4"])
@@ -238,7 +238,9 @@ def test_the_printed_floats_are_the_unrelieved_estimate(full):
 
 @pytest.mark.slow
 def test_the_force_on_a_pinion_is_what_a_stiff_bearing_carries(both):
-    """1e12 N/m against mesh stiffnesses near 2e9 N/m relieves by some per mille."""
+    """A bearing of 1e12 N/m yields a little, which reduces the force by some per mille: mesh
+    stiffnesses are near 2e9 N/m.
+    """
     for pinion in PINIONS:
         soft = first(both.case, {f"gears.{pinion}.support": "1e12 N/m"})
         carried = 1e12 * math.hypot(*soft.displacement[pinion])
@@ -249,7 +251,7 @@ def test_the_force_on_a_pinion_is_what_a_stiff_bearing_carries(both):
 def test_the_curve_of_fig_12_falls_and_pinion_5_is_free_first(full, loosened):
     found = loosened
     assert found.free["5"] < found.free["4"]
-    # Paper: 300 µm, of the 356 µm that pinion 4 floats, free pinion 5 and not pinion 4.
+    # Paper: 300 µm, less than the float of 356 µm of pinion 4, frees pinion 5 but not pinion 4.
     part = printed.HALF_FREE / printed.FLOATS["4"]
     assert found.free["5"] < part * found.free["4"] < found.free["4"]
     for pinion, curve in found.curves.items():
@@ -281,8 +283,8 @@ def test_omega_falls_with_the_load_and_differences_of_torque_stay(loaded):
 
 @pytest.mark.slow
 def test_other_directions_that_give_fig_10_give_the_same_floats(seed, full):
-    """The floats even out what the shares show: within 3 %, as the case file's set misses the
-    shares by 0.001 of 0.067.
+    """The floats even out the differences that the shares show. They agree within 3 %, because the
+    case file's set misses the shares by 0.001 of 0.067.
     """
     for case in alternatives(seed).values():
         other = splines.full_float(seed, case)

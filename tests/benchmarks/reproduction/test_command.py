@@ -1,4 +1,4 @@
-"""The command of the reproduction: what it writes and refuses."""
+"""The command of the reproduction: its files and its refusals."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def run():
 
 @pytest.mark.slow
 def test_page_and_pictures_are_the_same_bytes_every_time(run, seed, limited, tmp_path, monkeypatch):
-    """One chapter in place of all, which the slow test computes."""
+    """One chapter replaces all of them, which the slow test computes."""
     found = Reproduction((point_chapter(seed, limited),), {"fgfbstts/base.toml": "0" * 64})
     monkeypatch.setattr(publish, "reproduce", lambda cases, tell: found)
     for name in ("one", "two"):

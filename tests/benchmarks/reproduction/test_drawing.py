@@ -1,4 +1,4 @@
-"""The page's pictures: the same file for the same figures, whatever round-off there was."""
+"""The page's pictures: the same figures give the same file, whatever the round-off."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def drawn(curve: list[tuple[float, float]]) -> str:
 
 
 def test_round_off_changes_no_picture():
-    """A point that stays at the origin has what a solver leaves there, far below seven digits."""
+    """A point that stays at the origin has round-off of the solver, far below seven digits."""
     exact = [(0.0, 0.0), (4.12, 7.136)]
     assert drawn([(-3e-17, 2e-17), (4.12 * (1 + 2e-16), 7.136)]) == drawn(exact)
     assert drawn([(0.0, 0.0), (4.12001, 7.136)]) != drawn(exact)

@@ -10,7 +10,7 @@ from loadshare.train import build_train
 
 
 def test_the_layout_is_that_of_the_case_files(seed):
-    """Centres and radii to what the case files round away, 0.1 µm to 0.1 mm."""
+    """Centres and radii agree within the rounding of the case files, 0.1 µm to 0.1 mm."""
     own = build_train(seed.case("limit_ring"))
     made = build_train(seed.case("limit_ring").replace(layout(*START)))
     for gear, there in own.gears.items():
@@ -21,7 +21,7 @@ def test_the_layout_is_that_of_the_case_files(seed):
 
 @pytest.mark.slow
 def test_the_layout_gives_the_figures_of_the_case_files(seed, limited):
-    """The case files round lengths to 0.1 µm and 0.1 mm of half a metre: 1e-3 relative."""
+    """The case files round lengths to 0.1 µm, and to 0.1 mm of half a metre: 1e-3 relative."""
     found = figures(seed.case("limit_ring"), START)
     own = {e.quantity: e.computed for e in fig13_entries(limited)}
     expected = [

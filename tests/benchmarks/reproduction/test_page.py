@@ -1,4 +1,4 @@
-"""The committed page shows what is computed now."""
+"""The committed page agrees with a fresh computation."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_a_committed_chapter_agrees_with_a_fresh_computation(seed, turning):
 def test_the_committed_chapters_agree_with_a_fresh_computation(
     seed, displaced, full, loosened, limited, loaded
 ):
-    """All but Figs. 7, 10 and 11, which tooth contact analysis takes part in: the slow test."""
+    """These are all chapters except Figs. 7, 10 and 11, which need tooth contact analysis."""
     chapters = [
         single_errors.installation_chapter(seed, displaced),
         splines.clearance_chapter(seed, loosened, full),
@@ -46,14 +46,14 @@ def test_the_committed_chapters_agree_with_a_fresh_computation(
 
 
 def assert_fresh(chapter):
-    """A chapter as computed now is the one that is committed."""
+    """Check that a chapter as computed now is the committed one."""
     fresh = "\n\n".join(b for b in chapter.blocks if not b.startswith("{"))
     assert disagreement(fresh, section(chapter.title)) == "", f"{chapter.title}: make reproduce"
 
 
 @pytest.mark.slow
 def test_the_committed_page_and_pictures_agree_with_a_fresh_computation():
-    """Coordinates of a picture to a tenth of a pixel."""
+    """Coordinates of a picture agree to a tenth of a pixel."""
     found = reproduce(CASES, lambda _: None)
     fresh, kept = found.text, PAGE.read_text(encoding="utf-8")
     assert fresh.splitlines()[-1].startswith(VERSIONS)
@@ -65,7 +65,7 @@ def test_the_committed_page_and_pictures_agree_with_a_fresh_computation():
 
 
 def test_the_committed_stiffness_is_within_three_percent():
-    """Fig. 7, both ends of three ranges. That the page is fresh is the slow test's."""
+    """Fig. 7, both ends of three ranges. The slow test checks that the page is current."""
     found = re.findall(
         r"^\| (?:low|high)est K .* ([+−]?[\d.]+) % \|", section(stiffness.TITLE), re.M
     )

@@ -1,8 +1,8 @@
-"""The hot path gives the equilibrium that Clarabel and the exact solve give, or none.
+"""The hot path gives the equilibrium of Clarabel with the exact solve, or none.
 
 Source: formulation, sections 7 and 11. Both end in a dense solve on an identified active set, by
-different formulas (forces here, displacements there); what is left is round-off times the condition
-of the case. 1e-9 of the largest figure is required, as between the back-ends.
+different formulas (forces here, displacements there); they differ by round-off times the condition
+number of the case. 1e-9 of the largest figure is required, as between the back-ends.
 """
 
 import pytest
@@ -22,20 +22,20 @@ from loadshare.train import build_train
 
 AGREE = 1e-9
 EXACT = 1e-12
-"""Residual below which displacements are compared: a push that is out of balance by more, though
-within the tolerance, may float a loose gear to its limit in one answer and not in the other.
+"""Residual below which displacements are compared. A larger imbalance, though within the tolerance,
+may float a loose gear to its limit in only one of the answers.
 """
 
 
 def floats(position: Position) -> dict[tuple[str, int], float]:
-    """Displacements of a position [m] by gear and axis."""
+    """Return the displacements of a position [m] by gear and axis."""
     return {(g, k): v for g, d in position.displacement.items() for k, v in enumerate(d)}
 
 
 @pytest.mark.parametrize("case", EVERY_SHIPPED)
 @pytest.mark.quick(4)
 def test_every_position_of_a_shipped_case(case):
-    """Also what the equilibrium leaves open: both give the displacement of least norm."""
+    """Undetermined displacements agree as well: both give those of least norm."""
     hot, other = ls.solve(shipped(case)), ls.solve(shipped(case), solver="clarabel")
     for here, there in zip(hot.positions, other.positions, strict=True):
         assert here.effort.rung == HOT, here.position
@@ -49,7 +49,7 @@ def test_every_position_of_a_shipped_case(case):
 
 
 def agrees(case: ls.Case) -> bool:
-    """Whether the hot path answers a train; its answer must then be right."""
+    """Return whether the hot path answers a train; its answer must then be right."""
     note(case.to_toml())
     train = build_train(case)
     found = hot_answers(Machine(train), [1], CERTIFY.tolerance).get(1)
@@ -65,7 +65,7 @@ def agrees(case: ls.Case) -> bool:
         return True
     second = certify(train, other)
     if second.passed:
-        # Forces are as good as the balance that the certificates found.
+        # Forces agree as closely as the certificates found the answers to be in balance.
         left = max(verdict.worst, second.worst)
         assert furthest(forces(mine), forces(other)) < AGREE + 10.0 * left
         if left < EXACT:
@@ -76,7 +76,7 @@ def agrees(case: ls.Case) -> bool:
 @pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
 @pytest.mark.quick(1)
 def test_a_random_train(family):
-    """What it answers is right, and it answers nearly all: or the ladder would hide its loss."""
+    """Its answers are right, and it answers nearly all: the ladder would hide its failures."""
     answered = []
 
     @settings(TRAINS, max_examples=examples(6, 12))

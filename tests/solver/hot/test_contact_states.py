@@ -1,7 +1,7 @@
-"""Radial laws as five numbers, and where an element of such a law stands.
+"""Radial laws as five numbers, and the place of an element on such a law.
 
-Source: formulation, sections 5 and 6. The judge is `train.radial`, which writes the same laws as
-chains of pieces.
+Source: formulation, sections 5 and 6. The reference is `train.radial`, which writes the same laws
+as chains of pieces.
 """
 
 import math
@@ -29,7 +29,7 @@ from loadshare.train.samples import samples_of
 
 NAN = math.nan
 EVERYWHERE = (0.0, 0.3, 0.999, 1.0, 1.001, 1.5, 2.0, 4.0)
-"""Radii, over the ends of pieces."""
+"""Radii relative to the ends of pieces."""
 
 
 def graph(
@@ -58,7 +58,7 @@ def graph(
 
 
 def force(law: at.Graph, radius: float) -> float:
-    """Force of the chain that the five numbers give, away from its steps."""
+    """Return the force of the chain that the five numbers define, away from its steps."""
     first, stick, bound, reach, last = (float(v[0]) for v in law[:5])
     if radius <= stick:
         return first * radius
@@ -92,7 +92,7 @@ lengths = st.floats(0.0, 1e-4).map(lambda v: 0.0 if v < 1e-9 else v)
 def test_a_spline_is_the_chain_that_the_train_writes(
     stiffness, stick, clearance, jump, given_stick
 ):
-    """With and without a jump at S1, with S1 given or continuous, fixed or after the torque."""
+    """With and without a jump at S1, given or continuous; friction fixed or by the torque."""
     friction = stiffness * stick * (jump if given_stick else 1.0)
     limit = stick if given_stick else None
     assume(not given_stick or clearance >= stick)
@@ -113,7 +113,7 @@ def test_a_round_ring_is_the_chain_that_the_train_writes(radius, stiffness):
 @settings(TRAINS, max_examples=examples(30, 60))
 @given(stiffnesses, lengths, lengths, st.floats(0.0, 3.0))
 def test_a_law_without_meaning_is_reported(stiffness, stick, clearance, share):
-    """Where the chain would drop, or S2 lies inside S1, the train raises; the hot path refuses."""
+    """If the chain would drop, or S2 is inside S1, the train raises and the hot path refuses."""
     friction = stiffness * stick * share
     assume(abs(share - 1.0) > 1e-5)
     law = graph(stiffness, stick, clearance, friction)
@@ -126,7 +126,7 @@ def test_a_law_without_meaning_is_reported(stiffness, stick, clearance, share):
 
 
 def test_the_clearance_of_a_continuous_spline_may_close_first():
-    """Then the shaft bends throughout: one rising piece without end."""
+    """The shaft then bends throughout: one rising piece without end."""
     law = graph(1e7, None, 1e-6, 1e3)
     assert law.stick[0] == math.inf
     assert [p.name for p in spline_law(1e7, None, 1e-6, 1e3).pieces] == ["stick"]
@@ -150,7 +150,7 @@ FORCE_BAND, LENGTH_BAND = 1e-9, 1e-15
 
 
 def moved(law: at.Graph, place: int, radius: float, pull: float) -> int:
-    """Where an element that is out by `radius` and pulled by `pull` should stand."""
+    """Return the place to which an element at `radius` under `pull` should move."""
     bands = np.array([FORCE_BAND]), np.array([LENGTH_BAND]), np.array([FORCE_BAND])
     offset, load = np.array([[0.6, 0.8]]) * radius, np.array([[0.6, 0.8]]) * pull
     wrong, other = radials.misplaced(place, law, offset, load, *bands)
@@ -158,7 +158,7 @@ def moved(law: at.Graph, place: int, radius: float, pull: float) -> int:
 
 
 def stands(law: at.Graph, place: int, pull: float, judge: float) -> tuple[float, float]:
-    """Radius and force that the law of a place gives under an intended pull or radius."""
+    """Return radius and force that the law of a place gives for an intended pull or radius."""
     first, stick, bound, reach, last = (float(v[0]) for v in law[:5])
     if place == at.OPEN:
         return judge, 0.0
@@ -176,7 +176,7 @@ def stands(law: at.Graph, place: int, pull: float, judge: float) -> tuple[float,
 
 
 def settled(law: at.Graph, place: int, pull: float) -> int:
-    """The place where an element comes to rest when a given force hangs on it."""
+    """Return the place where an element comes to rest under a given force."""
     far = 2.0 * float(law.reach[0]) + 1e-5
     for _ in range(8):
         out = far if pull > float(law.bound[0]) else 0.0
@@ -190,7 +190,7 @@ def settled(law: at.Graph, place: int, pull: float) -> int:
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.2, 1.6, 5.0])
 @pytest.mark.parametrize("name", LAWS)
 def test_an_element_under_a_dead_load_ends_where_the_law_says(name, share):
-    """From its first place, over as many as it takes, to the piece that carries the load."""
+    """It moves from its first place, in any number of steps, to the piece that carries the load."""
     law, place = LAWS[name]
     pull = share * STIFFNESS * STICK
     first, stick, bound, reach, last = (float(v[0]) for v in law[:5])
@@ -213,8 +213,8 @@ def test_an_element_under_a_dead_load_ends_where_the_law_says(name, share):
     [("rigid ring", at.WALL, CLEARANCE, at.OPEN), ("with a jump", at.CORNER, STICK, at.STICK)],
 )
 def test_a_limit_does_not_hold_from_outside(name, place, radius, back):
-    """A set may ask it to: passes then swing from one side of the centre to the other, and what
-    they come to between has a force that points inward. That is no limit's.
+    """A set may ask for this: passes then alternate between the two sides of the centre, and an
+    intermediate result has a force that points inwards. A limit cannot exert such a force.
     """
     law, _ = LAWS[name]
     push = 1.2 * STIFFNESS * STICK
@@ -225,8 +225,8 @@ def test_a_limit_does_not_hold_from_outside(name, place, radius, back):
 @pytest.mark.parametrize("name", ["splines", "every element", "round ring", "elastic round ring"])
 @pytest.mark.quick(2)
 def test_a_solved_element_stands_on_its_law(name):
-    """In random samples: the force of every radial element is on the train's graph at its radius,
-    and it stands on the piece that its code names.
+    """In random samples, the force of every radial element is on the train's graph at its radius,
+    and the element is on the piece that its code names.
     """
     case, samples = varied(name, 60, seed=3)
     ((_, group),) = samples_of(case, samples)
@@ -254,14 +254,14 @@ def test_a_solved_element_stands_on_its_law(name):
 
 
 def _on(law: RadialLaw, piece: int, radius: float) -> bool:
-    """Whether a radius lies on a piece, up to round-off."""
+    """Return whether a radius is on a piece, up to round-off."""
     begin = law.start(piece)
     end = begin + law.pieces[piece].length
     return begin - 1e-12 <= radius <= end + 1e-12
 
 
 def test_torque_that_reaches_the_spline_bounds_its_friction():
-    """The matrix that gives it in the force method, against the train's own sum."""
+    """The force method's matrix for this torque is compared with the train's own sum."""
     case, samples = varied("every element", 5, seed=4)
     ((_, group),) = samples_of(case, samples)
     machine = Machine(group.train)
@@ -279,7 +279,7 @@ def test_torque_that_reaches_the_spline_bounds_its_friction():
 
 
 def test_a_ring_without_play_relieves_a_spline_that_would_pin_its_gear_too():
-    """Both hold the sun in one place; who carries what is open, the torques are not."""
+    """Both hold the sun in one place; their shares are undetermined, the torques are not."""
     spline = {
         "bending_stiffness": "2e7 N/m", "clearance": "10 um", "stick_limit": "0 um",
         "friction_force": "50 N",
@@ -291,7 +291,7 @@ def test_a_ring_without_play_relieves_a_spline_that_would_pin_its_gear_too():
         assert found.rung == HOT
         torques = ls.solve(case).positions[0].torque
         assert torques == pytest.approx(ls.solve(held).positions[0].torque, rel=1e-12)
-    # Where their middles differ it is the spline's turn to say with what it pushes.
+    # If their centres differ, the force of the spline is determined.
     aside = both.replace({"rings.sun.offset": ["15 um", "0 um"]})
     found = ls.explain(aside, 1).equilibrium
     pushed = 50.0 + 2e7 * 5e-6

@@ -1,9 +1,9 @@
-"""NumPy for all samples of a set, Numba for samples side by side: the same passes.
+"""NumPy for all samples of a set, Numba for samples side by side: both do the same passes.
 
-Each is the other's check: every formula is in both. They may take another number of passes, as
+Each checks the other, because every formula is in both. The number of passes may differ, because
 NumPy ends when the last sample of a set has settled; so they differ by round-off, and 1e-12 of the
-largest figure is required. The elements that act are the same, except those that neither carry a
-force nor leave a gap: it depends on the way there whether they count.
+largest figure is required. The acting elements are the same, except those with neither force nor
+gap: whether they count depends on the path.
 """
 
 import numpy as np
@@ -35,7 +35,7 @@ SAME = 1e-12
 
 
 def apart(one: np.ndarray, other: np.ndarray) -> float:
-    """Largest difference in a sample over its largest figure."""
+    """Return the largest difference in a sample over its largest figure."""
     if not one.size:
         return 0.0
     one, other = (v.reshape(len(v), -1) for v in (one, other))
@@ -44,7 +44,7 @@ def apart(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def forces(machine: Machine, found: Equilibria) -> np.ndarray:
-    """All forces (S, forces) [N], torques of shafts at the smallest base circle."""
+    """Return all forces (S, forces) [N], torques of shafts at the smallest base circle."""
     radius = min(g.base_radius for g in machine.train.gears.values())
     every = (
         found.flank_force,
@@ -57,35 +57,35 @@ def forces(machine: Machine, found: Equilibria) -> np.ndarray:
 
 
 def moves(machine: Machine, found: Equilibria) -> np.ndarray:
-    """All displacements (S, moves) [m], rotations at the base circle."""
+    """Return all displacements (S, moves) [m], rotations at the base circle."""
     radius = [g.base_radius for g in machine.train.gears.values()]
     turned = found.rotation * radius
     return np.concatenate([turned, found.displacement.reshape(len(turned), -1)], axis=1)
 
 
 def contact_forces(machine: Machine, found: Answers) -> np.ndarray:
-    """Force of every switch [N], (S, switches); radial elements count as carrying."""
+    """Return the force of every switch [N], (S, switches); radial elements count as carrying."""
     rows = np.concatenate([found.equilibria.flank_force, found.equilibria.ring_force], axis=1)
     radials = machine.structure.switches - machine.structure.rows
     return np.pad(rows, ((0, 0), (0, radials)), constant_values=np.nan)
 
 
 def few_abreast(*given):
-    """Eight at a time, so that samples wait, and the slow ones begin again beside one another."""
+    """Solve eight at a time, so that samples wait, and slow ones start again beside each other."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(compiled, "ABREAST", ABREAST._replace(widest=8))
         return compiled.settle(*given)
 
 
 def alone(*given):
-    """Every sample by itself."""
+    """Solve every sample alone."""
     structure, loading, sets, parts, *state = given
     each = np.repeat(sets, [len(part) for part in parts], axis=0)
     return compiled.settle(structure, loading, each, np.concatenate(parts)[:, None], *state)
 
 
 def agree(machine: Machine, situations: Situations) -> Answers:
-    """All engines certify the same samples, with the same elements and the same figures."""
+    """Check that all engines certify the same samples, with the same elements and figures."""
     one, *others = (
         machine.answer(situations, CERTIFY.tolerance, engine)
         for engine in (vectorised.settle, compiled.settle, few_abreast, alone)
@@ -96,7 +96,7 @@ def agree(machine: Machine, situations: Situations) -> Answers:
 
 
 def same(machine: Machine, one: Answers, other: Answers) -> None:
-    """Two engines agree on what they certify."""
+    """Check that two engines agree on what they certify."""
     assert one.passed.tolist() == other.passed.tolist()
     rows = one.passed
     apart_at = np.argwhere(one.states[rows] != other.states[rows])
@@ -123,7 +123,7 @@ def test_every_position_of_a_shipped_case(name):
 @pytest.mark.parametrize("name", VARIED)
 @pytest.mark.quick(3)
 def test_random_samples(name):
-    """Of every position; nearly all of them are solved on the hot path."""
+    """Samples of every position; nearly all of them are solved on the hot path."""
     case, samples = varied(name, 40)
     ((_, group),) = samples_of(case, samples)
     machine = Machine(group.train)
@@ -153,7 +153,7 @@ def test_random_trains(family):
 @settings(TRAINS, max_examples=200)
 @given(st.data())
 def test_radial_elements_move_alike_from_place_to_place(data):
-    """Whatever the law, the offset and the force, on corners and off them."""
+    """This holds for any law, offset and force, on corners and off them."""
     length = st.sampled_from([0.0, 1.0, 1.0 + 1e-13, 2.0, 3.0])
     stick, level = data.draw(length), data.draw(length)
     first = data.draw(st.sampled_from([0.0, 1.0])) if stick == 0.0 else 1.0
@@ -172,7 +172,7 @@ def test_radial_elements_move_alike_from_place_to_place(data):
 
 
 def test_planets_come_to_rest_in_their_roller_bearings_one_after_another():
-    """Where a drift ends is told once the walls before it are pressed in."""
+    """The end of a drift is found once the walls before it are pressed in."""
     machine = Machine(build_train(planets_in_bearings(**ROLLERS)))
     loading = loading_of(machine.structure, machine.situations([1, 2, 3]))
     start = at_rest(machine.structure, loading)
@@ -181,7 +181,7 @@ def test_planets_come_to_rest_in_their_roller_bearings_one_after_another():
 
 
 def test_solve_many_with_either_engine():
-    """And by name: "auto" compiles from a few thousand equilibria on."""
+    """This includes the name "auto", which compiles from a few thousand equilibria on."""
     case, samples = varied("drums", 60, seed=5)
     one, other = (
         ls.solve_many(case, samples, positions=[2], keep=KEPT, engine=engine)

@@ -1,6 +1,6 @@
-"""Without a torque, what round-off leaves in contacts is none. Source: formulation, section 5.
+"""Without a torque, round-off in contacts does not count as force. Source: formulation, section 5.
 
-Nor does a shaft that winds by a thousand turns lend its round-off to what shares the load.
+Nor does a shaft that winds by a thousand turns add its round-off to the load sharing.
 """
 
 import math
@@ -25,11 +25,11 @@ LAWS = {
     "s-p2": (0.0, 8.4e-6),
     "q2-r": (2.8e-5, 2e-8),
 }
-"""a and c of every mesh, with its torque in N·m."""
+"""Coefficients a and c of every mesh, for torques in N·m."""
 
 
 def unloaded_set(direction: float) -> ls.Case:
-    """A stepped set without torque, a force on its ring gear, which a spline takes alone."""
+    """Return a stepped set without torque; a spline alone takes a force on its ring gear."""
     gears: dict[str, Any] = {
         "s": {"base_radius": "113 mm", "centre": ["0 mm", "0 mm"], "support": "free"},
         "r": {"type": "internal", "base_radius": "242 mm", "held": True, "support": "free"},
@@ -88,13 +88,13 @@ def test_a_set_without_torque_has_none(turn: int) -> None:
     assert found.passed.all()
     assert not found.equilibria.flank_force.any()
     moved = found.equilibria.displacement[0, list(train.gears).index("r"), :2]
-    # To the end of the clearance, and then the shaft of the spline bends.
+    # It reaches the end of the clearance, and then the shaft of the spline bends.
     expected = CLEARANCE + (FORCE - FRICTION) / STIFFNESS
     assert np.hypot(*moved) == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_soft_shaft_between_two_splits_costs_no_digits() -> None:
-    """It takes the whole load, so no self-stress has a part of it; the bound was 1e-10."""
+    """It takes the whole load, so no self-stress includes it; the bound used to be 1e-10."""
     star, box = (
         tomllib.loads(case.to_toml())
         for case in (families.star(6), families.two_path("0.0012 rad"))

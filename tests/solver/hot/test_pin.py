@@ -1,4 +1,4 @@
-"""A gear that friction pins stands at its pin to the last digit, however strong the friction."""
+"""A gear that friction pins is at its pin to the last digit, however strong the friction."""
 
 import math
 
@@ -12,7 +12,7 @@ from loadshare.train import build_train
 
 
 def pinned(friction: str, torque: str) -> ls.Case:
-    """A torque split over two idlers that were misplaced, one of them pinned by friction."""
+    """Return a torque split over two misplaced idlers, one of them pinned by friction."""
     angle = f"{math.acos(0.22 / math.hypot(0.24, 0.15))!r} rad"
     centres = {"in": (0.0, 0.0), "a": (0.24, 0.15), "b": (0.24, -0.15), "out": (0.48, 0.0)}
     gears = {

@@ -1,4 +1,4 @@
-"""Redundants of the compiled kernel: the same statics, with little that is not zero."""
+"""Redundants of the compiled kernel: the same statics, with few non-zero entries."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from loadshare.train import build_train
 
 
 def _statics(branches: int) -> Basis:
-    """Every flank and stop acts that can."""
+    """Return the basis with every possible flank and stop acting."""
     structure = structure_of(build_train(ls.Case(families.split_torque(branches).to_dict())))
     states = np.zeros(structure.switches, dtype=np.int8)
     states[: structure.flat] = 1

@@ -1,4 +1,4 @@
-"""Where what no force holds may rest: the nearest place among half-planes and discs."""
+"""Rest positions of what no force holds: the nearest place among half-planes and discs."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,9 @@ from loadshare.solver.hot.rest import rest
 
 
 def test_a_half_plane_and_a_disc_leave_the_nearest_point_between_them():
-    """Out of x ≥ 3 and a disc of radius 2 around (4, 1): the point (3, 1 − √3) is too far off, the
-    nearest to the origin is (3, 0), inside the disc."""
+    """Outside x ≥ 3 and a disc of radius 2 around (4, 1): the point (3, 1 − √3) is too far off; the
+    nearest to the origin is (3, 0), inside the disc.
+    """
     share = rest(
         np.array([[-1.0, 0.0]]), np.array([-3.0]), [(np.eye(2), -np.array([4.0, 1.0]), 2.0)], 4.0
     )
@@ -25,7 +26,7 @@ def test_a_disc_alone_is_met_on_the_way_to_its_middle():
 
 
 def test_discs_that_one_move_closes_both_are_met():
-    """Newly turned tangents alone sent the place to and fro between the two discs."""
+    """With new tangents alone, the place alternated between the two discs."""
     row, room = np.array([[1.0, -1.0, 1.0]]), np.array([-2.0])
     discs = [
         (np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([-2.0, 1.0]), 1.0),
@@ -50,7 +51,7 @@ def test_no_room_is_reported():
 
 
 def test_an_unloaded_planet_outside_its_ring_rests_in_it():
-    """Its flank has room; only the least displacement would leave it out of its ring."""
+    """Its flank has room; only the least displacement would leave it outside its ring."""
     gears = {
         "sun": {"centre": ["0 mm", "0 mm"], "base_radius": "50 mm"},
         "ring": {"centre": ["0 mm", "0 mm"], "base_radius": "110 mm", "type": "internal"},

@@ -1,4 +1,4 @@
-"""The search leads floats along round walls on which they roll. Source: formulation, section 6."""
+"""The search moves floats along round walls on which they roll. Source: formulation, section 6."""
 
 import math
 from typing import Any
@@ -22,15 +22,15 @@ LAWS = {
     "s-p3": (1.1e-5, 2.1e-8, 1.8e-7),
     "p3-r": (0.0, 1.1e-7, 2.6e-7),
 }
-"""a, b and c of every mesh, with its torque in N·m."""
+"""Coefficients a, b and c of every mesh, for torques in N·m."""
 BACKLASH = dict(zip(LAWS, (77, 141, 100, 236, 202, 78, 117, 127), strict=True))
-"""[µm]"""
+"""Backlash of every mesh [µm]."""
 
 
 def set_on_a_round_wall(torque: float) -> ls.Case:
-    """A set whose carrier rolls in a rigid ring, under a force on its floating ring gear.
+    """Return a set whose carrier rolls in a rigid ring, with a force on its floating ring gear.
 
-    The torque is light: the carrier rolls by 60 degrees from where it meets the wall.
+    The torque is light: the carrier rolls by 60 degrees from its first contact with the wall.
     """
     gears: dict[str, Any] = {
         "s": {"base_radius": "108 mm", "centre": ["0 mm", "0 mm"], "support": "rigid"},

@@ -1,4 +1,4 @@
-"""The rule that names a sample's set: what it learns, and that it changes no answer."""
+"""The rule that predicts a sample's active set: what it learns, and that it changes no answer."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ TAUGHT, COUNT = 256, 768
 
 @pytest.fixture(scope="module")
 def rings():
-    """A machine with limit rings, samples of errors, and what exchange finds from rest."""
+    """Return a machine with limit rings, samples of errors, and what exchange finds from rest."""
     work = workloads(CASES, quick=True)[0]
     ((_, samples),) = samples_of(work.case, work.some(COUNT))
     machine, situations = Machine(samples.train), samples.situations(1)
@@ -57,7 +57,7 @@ def test_samples_to_learn_from_are_spread_over_all_positions(count):
     assert 0.9 * wanted < len(rows) <= wanted
     per_part = np.bincount(rows * 5 // count)
     assert np.abs(per_part - len(rows) / 5).max() <= 2
-    # At each position other samples of a study, but for some.
+    # Except for some, they are other samples of a study at each position.
     assert len(np.unique(rows % (count // 5))) > 0.7 * wanted
 
 
@@ -66,7 +66,7 @@ def test_few_samples_teach_nothing():
 
 
 def test_answers_are_those_from_rest_in_fewer_visits(rings, monkeypatch):
-    # One table of settings in both places.
+    # The same settings are used in both places.
     monkeypatch.setattr(rule_module, "RULE", RULE._replace(taught=TAUGHT, worth=3))
     machine, situations, _, iterate, found = rings
     answers = machine.answer(situations, 1e-9, vectorised.settle, starts=(1,))
@@ -75,7 +75,7 @@ def test_answers_are_those_from_rest_in_fewer_visits(rings, monkeypatch):
     assert answers.turns.mean() < found.turns.mean()
     flanks = machine.structure.columns.flanks
     force = np.maximum(iterate.force[:, flanks], 0.0) * machine.structure.force
-    # Another beginning moves an answer by round-off.
+    # Another start changes an answer by round-off.
     assert np.abs(answers.equilibria.flank_force - force).max() <= 1e-12 * force.max()
 
 
@@ -85,14 +85,14 @@ def test_numbers_that_do_not_vary_teach_nothing(rings):
     states = np.zeros((TAUGHT, machine.structure.switches), dtype=np.int8)
     states[::2, 0] = 1
     rule = rule_of(machine.structure, loading, states, at_rest(machine.structure, loading))
-    # All begin on the set that was met most often, of two as often the first.
+    # All start on the set that was met most often; of two equally frequent ones, on the first.
     assert (rule.named(loading)[0] == 0).all()
 
 
 @pytest.mark.parametrize("law", [ROLLERS, {"stiffness": "4e8 N/m"}, {"stiffness": "rigid"}])
 @pytest.mark.parametrize("engine", [vectorised.settle, compiled.settle])
 def test_floats_begin_on_the_walls_that_hold_them(law, engine):
-    """From rest a visit goes by for every wall that a float has drifted to."""
+    """From rest, a float needs one visit for every wall that it drifts to."""
     case = planets_in_bearings(**law)
     samples = {
         "operating.torque [N*m]": np.linspace(500.0, 1500.0, COUNT),

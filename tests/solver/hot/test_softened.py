@@ -1,6 +1,6 @@
-"""The laws that the search goes by: their forces, tangents and kinks.
+"""The laws that the search uses: their forces, tangents and kinks.
 
-Source: formulation, sections 5 and 6. The judge is differences of the forces themselves.
+Source: formulation, sections 5 and 6. They are compared with differences of the forces.
 """
 
 from itertools import pairwise
@@ -23,7 +23,7 @@ def machine_of(name: str) -> Machine:
 
 
 def drawn(name: str, seed: int) -> tuple[Laws, np.ndarray, np.ndarray]:
-    """Laws, where the elements are pressed, and a way from there."""
+    """Return laws, a point at which the elements are pressed, and a direction from there."""
     own, rng = machine_of(name), np.random.default_rng(seed)
     loading = loading_of(own.structure, own.situations([1]))
     count = len(own.structure.vectors)

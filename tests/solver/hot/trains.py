@@ -1,6 +1,4 @@
-"""Machines, and samples of them that push contacts open and closed, for the tests of the hot
-path.
-"""
+"""Machines, and samples of them that open and close contacts, for the tests of the hot path."""
 
 from collections.abc import Callable, Mapping
 
@@ -22,19 +20,19 @@ SUN = {
 
 
 def placed(case: ls.Case) -> ls.Case:
-    """The seed's transmission with installation errors given by components."""
+    """Return the seed's transmission with installation errors given by components."""
     return case.replace(
         {"errors.6.installation": ["0 um", "100 um"], "errors.9.installation": ["0 um", "-100 um"]}
     )
 
 
 def starred(case: ls.Case) -> ls.Case:
-    """A star whose first planet has an error that can be varied."""
+    """Return a star whose first planet has an error that can be varied."""
     return case.replace({"errors.planet1.installation": {"amount": "1 um", "direction": "0 deg"}})
 
 
 def tabled() -> ls.Case:
-    """A star of three with tabulated laws on the sun's meshes."""
+    """Return a star of three with tabulated laws on the sun's meshes."""
     case = starred(families.star(3))
     table = {
         "torque": ["30 N*m", "90 N*m", "400 N*m"],
@@ -51,7 +49,7 @@ ROLLERS = {"diameter": "50 mm", "rolling": {"rollers": 14, "length": "12 mm"}}
 
 
 def planets_in_bearings(**law: object) -> ls.Case:
-    """Three planets in bearings with clearance and some law, one of them on a pin out of place."""
+    """Return three planets in bearings with clearance and any law, one on a misplaced pin."""
     at_origin = {"centre": ["0 mm", "0 mm"]}
     return ls.Case(
         {
@@ -133,11 +131,11 @@ VARIED: dict[str, tuple[Callable[[], ls.Case], Mapping[str, tuple[float, float]]
     ),
     "tables": (tabled, SUN),
 }
-"""What is varied, and between what."""
+"""Keys that are varied, and their limits."""
 
 
 def varied(name: str, count: int, seed: int = 0) -> tuple[ls.Case, dict[str, np.ndarray]]:
-    """A case and a table of random samples."""
+    """Return a case and a table of random samples."""
     make, ranges = VARIED[name]
     rng = np.random.default_rng(seed)
     return make(), {key: rng.uniform(low, high, count) for key, (low, high) in ranges.items()}

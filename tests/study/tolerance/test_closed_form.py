@@ -1,4 +1,4 @@
-"""Two paths with clocked shafts: Ω is linear in the clockings, and all is known."""
+"""Two paths with clocked shafts: Ω is linear in the clockings, and everything is known."""
 
 import math
 
@@ -12,7 +12,7 @@ from loadshare.study.tolerance import study as room
 
 A, B = 'shafts."wheelA-pinionA".clocking', 'shafts."wheelB-pinionB".clocking'
 MEAN = 1.2
-"""Of the first clocking [mrad]; the second one scatters about zero."""
+"""Mean of the first clocking [mrad]; the second one scatters about zero."""
 
 
 def normal(mean: float, deviation: float) -> dict:
@@ -21,7 +21,7 @@ def normal(mean: float, deviation: float) -> dict:
 
 @pytest.fixture(scope="module")
 def slope() -> float:
-    """How much Ω rises with the clocking of the first shaft less that of the second [1/mrad]."""
+    """Return the slope of Ω over the difference of the clockings, first minus second [1/mrad]."""
     return (ls.solve(shipped("two_path/clocking_error")).omega["system"] - 1.0) / MEAN
 
 
@@ -36,8 +36,9 @@ DEVIATION = math.hypot(0.1, 0.05)
 
 @pytest.mark.parametrize("sampling", ["random", "sobol"])
 def test_moments_and_probability(slope, sampling):
-    """Of n samples: the mean errs by σ/√n, the deviation by σ/√(2n), a probability by √(pq/n), all
-    within 4.5 sigma; Sobol points by far less, within a tenth of that.
+    """For n samples, the errors are σ/√n of the mean, σ/√(2n) of the deviation and √(pq/n) of a
+    probability, all within 4.5 sigma; for Sobol points they are far smaller, within a tenth of
+    that.
     """
     limit = 1.0 + slope * (MEAN + DEVIATION)
     found = study(sampling=sampling, seed=11, limit=limit)
@@ -63,13 +64,13 @@ def test_every_sample_is_the_linear_answer(slope):
     assert frame["sample"].tolist() == list(range(512))
     apart = frame[f"{A} [mrad]"] - frame[f"{B} [mrad]"]
     assert np.allclose(frame["omega.system"], 1.0 + slope * apart, rtol=0.0, atol=1e-10)
-    # Torque follows Ω: 367 N·m enter, half of them in the mean path.
+    # Torque follows Ω: of 367 N·m, half is in the mean path.
     largest = frame[["torque.in-wheelA [N*m]", "torque.in-wheelB [N*m]"]].max(axis=1)
     assert np.allclose(largest, 367.0 / 2.0 * frame["omega.I"], rtol=1e-10)
 
 
 def test_shares_of_variance(slope):
-    """Variances add: 0.8 and 0.2, alone and in all, as nothing interacts."""
+    """Variances add: 0.8 and 0.2, both first-order and total, because nothing interacts."""
     found = study(indices=2048, samples=64)
     shares = {s.unit: s for s in found.of("system").shares}
     for unit, truth in ((A, 0.8), (B, 0.2)):
@@ -80,7 +81,7 @@ def test_shares_of_variance(slope):
 
 
 def test_correlated_inputs_share_as_one(slope):
-    """ρ = 0.9 between both: Var(a - b) = σ²(2 - 1.8), all of it the group's."""
+    """With ρ = 0.9 between both, Var(a - b) = σ²(2 - 1.8), all of which belongs to the group."""
     inputs = {A: normal(MEAN, 0.1), B: normal(0.0, 0.1)}
     group = {"inputs": [A, B], "correlation": 0.9}
     found = study(inputs=inputs, groups=[group], indices=512, sampling="sobol")
@@ -106,7 +107,7 @@ def test_the_worst_case_is_at_the_vertex(slope):
 
 
 def test_the_worst_case_is_not_sought_again(slope, tmp_path, monkeypatch):
-    """It is kept with its study, and sought again where the file is of no use."""
+    """It is stored with its study, and sought again if the file is unusable."""
     options = {"samples": 64, "worst": True, "out": tmp_path / "study"}
     first = study(**options).worst
     searches = []
@@ -125,7 +126,7 @@ def test_the_worst_case_is_not_sought_again(slope, tmp_path, monkeypatch):
 
 
 def test_the_worst_phase_is_between(slope):
-    """A phase has no vertex. Two equal eccentricities help each other most, or not at all."""
+    """A phase has no vertex. Two equal eccentricities add up most between its limits, or cancel."""
     case = shipped("fgfbstts/base").replace(
         {
             "errors.6.eccentricity": {"amount": "20 um", "direction": "0 deg"},
@@ -138,7 +139,8 @@ def test_the_worst_phase_is_between(slope):
     )
     stage = found.worst[0]
     assert stage.at == {"errors.6.eccentricity.phase": "between"}
-    # Over 1024 even phases the largest is short of the top by less than (π/1024)²/2 of its swing.
+    # Over 1024 even phases, the largest is below the maximum by less than (π/1024)²/2 of its
+    # amplitude.
     top = found.of("system").summary.highest
     assert top <= stage.omega + 1e-12
     assert stage.omega - top < 1e-5 * (stage.omega - 1.0)

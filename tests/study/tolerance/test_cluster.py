@@ -29,7 +29,7 @@ NOBODY = "tcp://127.0.0.1:9"
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory) -> Path:
-    """A run in this process, one block at a time."""
+    """Run in this process, one block at a time."""
     out = tmp_path_factory.mktemp("reference") / "study"
     run(out, chunk=1)
     return out
@@ -56,7 +56,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_bits(reference, tmp_path):
 
 @pytest.mark.slow
 def test_a_cluster_that_is_lost_leaves_what_is_done(reference, tmp_path):
-    """First the scheduler goes, then, on another cluster, all workers do."""
+    """First the scheduler is lost, then, on another cluster, all workers are."""
     out = tmp_path / "study"
     (tmp_path / "one").mkdir()
     (tmp_path / "two").mkdir()
@@ -91,7 +91,7 @@ def test_a_cluster_that_is_lost_leaves_what_is_done(reference, tmp_path):
 
 @pytest.mark.slow
 def test_the_commands_of_the_documentation(tmp_path):
-    """Given as written, except for a port that is free, the folder, and fewer samples."""
+    """They are given as written, except for a free port, the folder, and fewer samples."""
     page = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```sh\n(dask scheduler.*?)```", page, re.DOTALL)
     with socket.socket() as free:

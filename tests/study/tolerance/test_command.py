@@ -1,4 +1,4 @@
-"""`loadshare tolerance` and `loadshare study`: what they print and write, and how they end."""
+"""`loadshare tolerance` and `loadshare study`: their output and files, and how they end."""
 
 import io
 
@@ -19,7 +19,7 @@ def command():
 
 @pytest.fixture
 def scattering(tmp_path):
-    """A case with a small tolerance study."""
+    """Write a case with a small tolerance study."""
     path = tmp_path / "scattering.toml"
     path.write_text(
         f"""extends = '{PATHS.as_posix()}'
@@ -74,7 +74,7 @@ def test_study_runs_it_by_name(command, scattering):
 
 
 def test_refused_samples_end_with_a_code(command, scattering):
-    """A share of the power leaves so little torque that the spline's law drops."""
+    """For some samples, the power gives so little torque that the spline's law drops."""
     path = scattering.with_name("spline.toml")
     path.write_text(
         f"""extends = '{(CASES / "fgfbstts/full_float.toml").as_posix()}'

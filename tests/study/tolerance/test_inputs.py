@@ -1,4 +1,4 @@
-"""What scatters, how, and which inputs together."""
+"""Which inputs scatter, how, and which of them together."""
 
 import math
 
@@ -43,7 +43,7 @@ def drawn(spread: dict) -> Distribution:
             None,
         ),
         ({"distribution": "uniform phase"}, 180.0, 360.0 / math.sqrt(12.0), (0.0, 360.0)),
-        # Cut at ± one deviation: the variance is 1 - 2 φ(1) / (2 Φ(1) - 1).
+        # Truncated at ± one deviation: the variance is 1 - 2 φ(1) / (2 Φ(1) - 1).
         (
             {
                 "distribution": "truncated normal",
@@ -59,7 +59,7 @@ def drawn(spread: dict) -> Distribution:
     ],
 )
 def test_distributions_have_their_moments(spread, mean, deviation, ends):
-    """Over a fine even grid of probabilities, whose ends cost 1e-4 of a normal variance."""
+    """The grid of probabilities is fine and even; its ends cost 1e-4 of a normal variance."""
     found = drawn(spread)
     values = found.at(POINTS)
     assert values.mean() == pytest.approx(mean, rel=1e-4)
@@ -112,8 +112,8 @@ def correlated(correlation, *more, inputs=("errors.6.*", "errors.9.installation[
 
 
 def test_a_copula_correlates_as_it_says():
-    """Of 65536 pairs: a normal correlation errs by (1 - ρ²)/√n, 0.0014 here; ranks alike. Four
-    sigma are allowed. The rank correlation of a Gaussian copula is 6/π asin(ρ/2).
+    """For 65536 pairs, the error of a normal correlation is (1 - ρ²)/√n, 0.0014 here; that of ranks
+    is similar. Four sigma are allowed. The rank correlation of a Gaussian copula is 6/π asin(ρ/2).
     """
     matrix = [[1.0, 0.8, -0.3], [0.8, 1.0, 0.1], [-0.3, 0.1, 1.0]]
     keys = ("errors.6.installation[0]", "errors.6.installation[1]", "errors.9.installation[1]")
@@ -256,7 +256,7 @@ def test_blocks_are_streams_of_their_own():
 
 
 def test_sobol_blocks_go_on_where_the_last_one_ended():
-    """The first 512 points of each sequence, from two blocks, lie one in each 512th."""
+    """The first 512 points of each sequence, from two blocks, have one point in each 512th."""
     both = np.concatenate([uniforms("sobol", 1, (), block, 4) for block in (0, 1)])
     for r in range(TOLERANCE.sequences):
         cells = np.sort(np.floor(both[r :: TOLERANCE.sequences] * 512.0), axis=0)
@@ -267,7 +267,7 @@ def test_sobol_blocks_go_on_where_the_last_one_ended():
 
 
 def with_class(**inputs) -> ls.Case:
-    """A set of planets with eccentricities, the second of a finer class than the first."""
+    """Return a set of planets with eccentricities; the first has a finer class than the second."""
     case = shipped("planetary/four_planets")
     changes = {f"gears.planet{k}.tolerance_class": k + 4 for k in (1, 2)}
     changes |= {

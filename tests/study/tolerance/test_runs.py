@@ -1,4 +1,4 @@
-"""Runs: bit-identical whoever solves them, resumed after a kill, and nothing lost on the way."""
+"""Runs: bit-identical whoever solves them, resumed after a kill, with no loss."""
 
 import json
 import os
@@ -47,7 +47,7 @@ SETTINGS = {
 
 @pytest.fixture
 def processes(monkeypatch):
-    """Worker processes: studies as small as these are else solved in this one."""
+    """Use worker processes: studies as small as these would be solved in this one."""
     monkeypatch.setattr(study, "TOLERANCE", TOLERANCE._replace(small=0))
 
 
@@ -56,7 +56,7 @@ def run(out: Path, **settings):
 
 
 def bits(out: Path) -> dict[str, bytes]:
-    """Every column of all parts, as bytes."""
+    """Return every column of all parts as bytes."""
     files = sorted(out.glob("part-*.parquet"))
     whole = pa.concat_tables(parquet.read_table(f).replace_schema_metadata() for f in files)
     return {
@@ -69,7 +69,7 @@ def bits(out: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory) -> Path:
-    """A run in this process, one block at a time."""
+    """Run in this process, one block at a time."""
     out = tmp_path_factory.mktemp("reference") / "study"
     run(out, chunk=1)
     return out
@@ -108,7 +108,7 @@ def text_of(out: Path, options: dict) -> str:
 
 
 def environment(**more: str) -> dict[str, str]:
-    """That of a process which finds what this one finds."""
+    """Return the environment of a process that finds the same modules."""
     return {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path)), **more}
 
 
@@ -118,7 +118,7 @@ def script(out: Path) -> subprocess.Popen:
 
 
 def test_killed_and_resumed(reference, tmp_path):
-    """SIGKILL while parts are being solved: those that are whole are kept as they are."""
+    """SIGKILL arrives while parts are being solved: complete parts are kept as they are."""
     out = tmp_path / "study"
     process = script(out)
     try:
@@ -131,7 +131,7 @@ def test_killed_and_resumed(reference, tmp_path):
         process.wait()
     kept = {file: file.stat().st_mtime_ns for file in out.glob("part-*.parquet")}
     assert 2 <= len(kept) < BLOCKS
-    # What a kill in the midst of writing leaves.
+    # A kill in the middle of writing leaves this.
     (out / ".part-000004.parquet.0123456789abcdef").write_bytes(b"PAR1 half")
     found = run(out, chunk=1)
     assert {file: file.stat().st_mtime_ns for file in kept} == kept
@@ -154,10 +154,10 @@ def until(reached, process: subprocess.Popen | None = None, limit: float = 60.0)
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="ru_maxrss is in KiB on Linux only")
 def test_memory_does_not_grow_with_the_samples(tmp_path):
-    """Six times as many samples: a worker holds one part at a time, the study some columns.
+    """With six times the samples, a worker still holds one part at a time, the study some columns.
 
-    Each further part that was kept would be 3 MB or more. Allocators leave some MB open. A column
-    of the study takes 8 bytes a sample; fifteen at once are allowed.
+    Each further part in memory would be 3 MB or more. Allocators keep some MB. A column of the
+    study takes 8 bytes per sample; fifteen at once are allowed.
     """
     tail = "import json, resource as r\nprint(json.dumps([r.getrusage(w).ru_maxrss for w in {}]))"
     peaks = []
@@ -181,7 +181,7 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
     whole = bits(out)
     first, second = sorted(out.glob("part-*.parquet"))
     first.write_bytes(first.read_bytes()[:-200])
-    # A part of another study, or of another number, under this one's name.
+    # A part of another study, or with another number, under this one's name.
     second.unlink()
     parquet.write_table(parquet.read_table(sorted(reference.glob("*.parquet"))[0]), second)
     found = run(out, chunk=3)
@@ -204,7 +204,7 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
 )
 @pytest.mark.quick(1)
 def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change, caplog):
-    """Whoever recomputes its digest has its samples solved again; without, all of it is."""
+    """With a recomputed digest, its samples are solved again; without, all of the part is."""
     out = tmp_path / "study"
     shutil.copytree(reference, out)
     file = sorted(out.glob("part-*.parquet"))[1]
@@ -231,7 +231,7 @@ def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change,
 def test_rounding_of_a_force_is_no_difference(tmp_path, added, is_refused):
     """A stop that just touches carries 0 N in a block of thousands, and 3e-8 N among two samples.
 
-    Of forces of some 10 kN, known to 1e-9: a study of the shipped tolerances could not be resumed.
+    Forces are some 10 kN, known to 1e-9: a study of the shipped tolerances could not be resumed.
     """
     name = "boundary_force.4 [N]"
     floats = {"rings.*.float": {"distribution": "uniform", "low": "90 um", "high": "99 um"}}
@@ -254,13 +254,13 @@ def test_rounding_of_a_force_is_no_difference(tmp_path, added, is_refused):
 
 
 def test_a_study_that_was_killed_before_it_began_begins_anew(tmp_path):
-    """Its folder holds half of study.json, under another name."""
+    """Its folder contains half of study.json, under another name."""
     out = tmp_path / "study"
     out.mkdir()
     (out / ".study.json.0123456789abcdef").write_text('{"case"')
     run(out, chunk=1, samples=8)
     assert sorted(p.name for p in out.iterdir()) == ["part-000000.parquet", "study.json"]
-    # What is not its own stays a reason to refuse.
+    # Files of others remain a reason to refuse.
     other = tmp_path / "other"
     other.mkdir()
     (other / ".notes.txt.0123456789abcdef").write_text("mine")
@@ -286,7 +286,7 @@ def test_a_worst_case_that_is_none_is_refused_by_name(tmp_path):
         file.write_text(json.dumps({**altered, DIGEST: digest_of(altered)}), encoding="utf-8")
         with pytest.raises(ls.ResultError, match=r"worst\.json: worst\.stage\.omega"):
             run(tmp_path / "study", **options)
-    # With its old digest it is no worst case, and one is sought again.
+    # With its old digest it is not valid, and a worst case is sought again.
     file.write_text(json.dumps(altered), encoding="utf-8")
     assert run(tmp_path / "study", **options).worst == found.worst
     assert json.loads(file.read_text(encoding="utf-8")) == good
@@ -296,7 +296,7 @@ def test_other_settings_are_reported(tmp_path):
     out = tmp_path / "study"
     few = {"samples": 64, "chunk": 1}
     run(out, **few, limit=1.05)
-    # Neither limit, quantiles nor workers bear on the samples.
+    # Neither the limit nor quantiles nor workers affect the samples.
     assert run(out, **few, limit=1.1, workers=1, quantiles=[0.9]).limit == 1.1
     other = {**INPUTS, next(iter(INPUTS)): {"distribution": "uniform phase"}}
     with pytest.raises(ls.LoadshareError) as caught:
@@ -316,7 +316,7 @@ def test_other_settings_are_reported(tmp_path):
 
 
 def test_numbers_and_arrays_of_numpy_are_settings(tmp_path):
-    """They are written to study.json as plain numbers, so that the same study goes on."""
+    """They are written to study.json as plain numbers, so that the same study can continue."""
     few = {"samples": 64, "seed": 4, "quantiles": [0.5, 0.9], "positions": [1], "chunk": 1}
     found = run(tmp_path, **few)
     given = {"samples": np.int64(64), "seed": np.int32(4), "chunk": np.int8(1)}
@@ -384,7 +384,7 @@ def test_what_a_worker_cannot_write_is_reported(tmp_path, processes):
 
 @pytest.mark.slow
 def test_refused_samples_are_counted_and_reported():
-    """Under little torque the law of a spline with a stick limit drops: no unique equilibrium."""
+    """At low torque, the law of a spline with stick limit drops: no unique equilibrium."""
     case = shipped("fgfbstts/full_float").replace(
         {
             "splines.4.normal_force": None,
@@ -409,7 +409,7 @@ def test_refused_samples_are_counted_and_reported():
 
 
 def test_a_sample_that_makes_no_case_does_not_take_others_with_it(monkeypatch):
-    """Far beyond what was tried a normal value can leave what a case allows: here without trial."""
+    """Far out, a normal value may be outside a case's limits; here no trial prevents that."""
     from loadshare.study.tolerance import inputs as room
 
     monkeypatch.setattr(room, "TOLERANCE", TOLERANCE._replace(far=0.4))
@@ -426,7 +426,7 @@ def test_a_sample_that_makes_no_case_does_not_take_others_with_it(monkeypatch):
 
 @pytest.mark.parametrize("worst", mostly_slow((False, True), {False}))
 def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone(worst):
-    """Only the train that is built of a sample shows it; the worst case is sought all the same."""
+    """Only the train built from a sample shows it; the worst case is still sought."""
     bearing = {"clearance": "30 um", "stiffness": "1e9 N/m", "diameter": "50 mm"}
     case = shipped("planetary/four_planets").replace(
         {"gears.planet1.support": None, "bearings.planet1": bearing}
@@ -437,7 +437,7 @@ def test_a_clearance_that_warmth_uses_up_refuses_its_samples_alone(worst):
     }
     found = ls.tolerance(case, inputs, samples=8, indices=0, worst=worst)
     frame = found.to_frame()
-    # The pin grows by 11.5e-6 of its 50 mm in diameter for every kelvin.
+    # The pin grows by 11.5e-6 of its 50 mm in diameter per kelvin.
     left = frame["bearings.planet1.clearance [um]"]
     left = left - 0.5 * 11.5e-6 * 50e3 * frame["gears.carrier.temperature [K]"]
     assert (frame["certified"] == (left > 0.0)).all()
@@ -466,7 +466,7 @@ if __name__ == "__main__":
 
 @pytest.fixture
 def scatter(tmp_path) -> Path:
-    """A case with a study that takes some seconds."""
+    """Write a case with a study that takes some seconds."""
     case = shipped(PATHS).replace(
         {"study.scatter": {"kind": "tolerance", "inputs": INPUTS, "indices": 0, "samples": 400_000}}
     )
@@ -501,7 +501,7 @@ def test_a_study_that_is_stopped_says_what_is_kept(scatter, tmp_path, sent, code
         until(lambda: (out / "part-000000.parquet").exists(), process)
         for _ in range(3):
             process.send_signal(sent)
-        # Workers hold the other end of this pipe: when it is read to its end, they are gone.
+        # Workers hold the other end of this pipe: once it is read to its end, they have ended.
         _, err = process.communicate(timeout=120.0)
     finally:
         with suppress(ProcessLookupError):
@@ -535,7 +535,7 @@ def test_what_has_no_folder_is_not_kept(monkeypatch, processes):
 
 
 def test_torques_of_a_drive_that_brakes_are_the_largest(tmp_path):
-    """Three planets on a floating sun take a third each: of -900 N·m, the most negative load."""
+    """Three planets on a floating sun take a third each of -900 N·m, the most negative load."""
     torque = ["-800 N*m", "-500 N*m", "-900 N*m"]
     case = shipped("star/floating_sun_3").replace(
         {"operating.torque": torque, "operating.positions": 3}

@@ -1,4 +1,4 @@
-"""Intervals cover what they say, and shares of variance are those of closed forms."""
+"""Intervals cover what they state, and shares of variance agree with closed forms."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def test_wilson_is_the_published_interval(hits, count, low, high):
 
 
 def test_wilson_covers_as_often_as_it_says():
-    """Its exact coverage, from the binomial distribution, swings about 95 %, its average."""
+    """Its exact coverage, from the binomial distribution, oscillates about 95 %, its average."""
     count = 60
     ends = np.array([(e.low, e.high) for e in (wilson(k, count) for k in range(count + 1))])
     truth = np.linspace(0.02, 0.98, 193)
@@ -37,8 +37,8 @@ def test_wilson_covers_as_often_as_it_says():
 
 
 def test_intervals_of_quantile_and_mean_cover_the_truth():
-    """Of 400 intervals at 95 %, 380 ± 4.4 hold the truth: five sigma are 22. Order statistics step,
-    and so cover a little more.
+    """Of 400 intervals at 95 %, 380 ± 4.4 contain the truth: five sigma are 22. Order statistics
+    are discrete, and so cover slightly more.
     """
     rng = np.random.default_rng(5)
     level, inside = 0.9, {"quantile": 0, "mean": 0}
@@ -52,12 +52,12 @@ def test_intervals_of_quantile_and_mean_cover_the_truth():
 
 
 def test_intervals_of_replicates_cover_the_truth():
-    """Sequences that differ by chance alone, each with its own error: Student's interval."""
+    """Sequences differ by chance alone, each with its own error: Student's interval."""
     rng = np.random.default_rng(6)
     inside = 0
     for _ in range(400):
         shift = 0.1 * rng.standard_normal(TOLERANCE.sequences)
-        # Within a sequence nothing scatters but what adds up to nothing.
+        # Within a sequence, the scatter adds up to zero.
         ramp = np.linspace(-1.0, 1.0, 8)[:, None]
         figures = summary((ramp + shift).reshape(-1), (0.5,), replicated=True)
         inside += figures.mean.low <= 0.0 <= figures.mean.high
@@ -94,8 +94,8 @@ def _pick_freeze(figure, width: int, rows: int, seed: int) -> np.ndarray:
 
 
 def test_shares_of_the_ishigami_function():
-    """T. Ishigami and T. Homma (1990): sin x1 + 7 sin² x2 + 0.1 x3⁴ sin x1 over ±π. Its shares are
-    0.3139, 0.4424, 0 alone and 0.5576, 0.4424, 0.2437 in all.
+    """T. Ishigami and T. Homma (1990): sin x1 + 7 sin² x2 + 0.1 x3⁴ sin x1 over ±π. Its first-order
+    shares are 0.3139, 0.4424, 0, its total ones 0.5576, 0.4424, 0.2437.
     """
 
     def ishigami(u):
@@ -107,14 +107,14 @@ def test_shares_of_the_ishigami_function():
         found, (0.3139, 0.4424, 0.0), (0.5576, 0.4424, 0.2437), strict=True
     ):
         for estimate, truth in ((share.first, first), (share.total, total)):
-            # The interval is one of 95 %: half as wide again covers three sigma.
+            # The interval is at 95 %: 1.5 times its half-width covers three sigma.
             room = 0.75 * (estimate.high - estimate.low)
             assert estimate.value == pytest.approx(truth, abs=room)
             assert 0.0 < estimate.high - estimate.low < 0.15
 
 
 def test_bootstrap_intervals_cover_the_truth():
-    """x1 + 2 x2 has the shares 1/5 and 4/5. Of 60 intervals 57 ± 1.7 hold the truth."""
+    """x1 + 2 x2 has the shares 1/5 and 4/5. Of 60 intervals, 57 ± 1.7 contain the truth."""
     inside = np.zeros(2)
     for seed in range(60):
         design = _pick_freeze(lambda u: u[:, 0] + 2.0 * u[:, 1], 2, 256, seed)

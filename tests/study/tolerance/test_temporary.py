@@ -1,4 +1,4 @@
-"""Samples that are not to be kept: gone after SIGTERM, and after SIGKILL with the next study."""
+"""Samples that are not kept: deleted after SIGTERM, and after SIGKILL by the next study."""
 
 import os
 import signal
@@ -32,7 +32,7 @@ def place(tmp_path, monkeypatch):
 
 
 def made(place, name: str, *held: str, age: float = 2.0 * NEW):
-    """A folder with a lock that nobody holds, and other files."""
+    """Make a folder with a lock that nobody holds, and other files."""
     folder = place / name
     folder.mkdir()
     (folder / LOCK).touch()

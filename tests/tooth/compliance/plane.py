@@ -1,5 +1,5 @@
-"""A tooth in plane strain, meshed so finely round its contact that the pressure is resolved: the
-second way to what finite elements, middle surface and Hertz's contact give together.
+"""A tooth in plane strain, meshed so finely around its contact that the pressure is resolved: an
+independent check of finite elements, middle surface and Hertz contact together.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class PlaneTooth:
 
 
 def solve_plane(body, u, load, half_width, side=1, teeth=5, bare=(1, 1, 1, 1)):
-    """Press a half-ellipse of pressure on the flank at `u`; round it, the mesh is refined until its
+    """Press a half-ellipse of pressure on the flank at `u`; the mesh around it is refined until its
     cells are an eighth of the half-width.
     """
     middle = MiddleSurface(body)
@@ -74,7 +74,7 @@ def solve_plane(body, u, load, half_width, side=1, teeth=5, bare=(1, 1, 1, 1)):
         return shape * np.einsum("i,i...->...", inward, v)
 
     stiffness, force = energy.assemble(basis), pressure.assemble(boundary)
-    # Whatever the facets make of the half-ellipse, its resultant is the load.
+    # The discrete pressure on the facets is scaled so that its resultant is the load.
     resultant = np.hypot(
         *(force[basis.nodal_dofs[i]].sum() + force[basis.facet_dofs[i]].sum() for i in range(2))
     )
@@ -93,7 +93,7 @@ def solve_plane(body, u, load, half_width, side=1, teeth=5, bare=(1, 1, 1, 1)):
 
 
 def _triangles(section):
-    """Triangles on every node of the section's quadrilaterals."""
+    """Return triangles on every node of the section's quadrilaterals."""
     points = section.points[:, 0, :2]
     found = []
     for quad in section.quads:

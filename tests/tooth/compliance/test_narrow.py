@@ -1,4 +1,4 @@
-"""Faces from far wider to far narrower than the tooth is thick: plane strain and plane stress."""
+"""Faces from far wider to far narrower than the tooth thickness: plane strain and plane stress."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -21,12 +21,12 @@ E, NU = 206e9, 0.3
 LOAD, CURVATURE = 5e5, 100.0
 BODY = SpurTooth(teeth=25, module=5e-3, face_width=50e-3, rim=0.035)
 STRESS = replace(BODY, youngs_modulus=E * (1 + 2 * NU) / (1 + NU) ** 2, poisson=NU / (1 + NU))
-"""The material with which plane strain is the plane stress of BODY."""
+"""The material with which plane strain equals the plane stress of BODY."""
 RIGID = 1e30
 
 
 def line(width, depth, count=32):
-    """An even line over a face, on a body that yields and one that hardly does."""
+    """Return an evenly divided line over a face, on a compliant body and an almost rigid one."""
     n = np.ones(count)
     depths = depth * n, depth * n
     return StripLine(
@@ -35,7 +35,7 @@ def line(width, depth, count=32):
 
 
 def local(width, depth):
-    """Mean yielding between flank and middle surface under an even load [m]."""
+    """Return the mean compression between flank and middle surface under an even load [m]."""
     strips = line(width, depth)
     zero = np.zeros((len(strips.length),) * 2)
     problem = ContactProblem(zero, zero[0], (strips,))
@@ -44,7 +44,7 @@ def local(width, depth):
 
 def test_the_limit_of_no_width_is_a_slice_in_plane_stress():
     """Weber and Banaschek's compression with E' = E and ν' = ν/(1 + ν); the half-space's part is
-    the width over the thickness.
+    the ratio of width to thickness.
     """
     depth = 3e-3
     width = half_width(LOAD, CURVATURE, E)
@@ -54,7 +54,7 @@ def test_the_limit_of_no_width_is_a_slice_in_plane_stress():
 
 
 def test_a_face_as_wide_as_the_tooth_is_thick_is_left_alone():
-    """From there on the half-space has all, bit for bit; the limit is plane strain."""
+    """From there on the half-space has the whole part, bit for bit; the limit is plane strain."""
     depth = 3e-3
     for face in (6e-3, 60e-3):
         assert line(face, depth).narrow == 0.0
@@ -84,7 +84,8 @@ def test_the_tangent_is_the_slope():
 @pytest.mark.parametrize("u", mostly_slow((0.55, 0.75, 0.95), (0.75,)))
 def test_a_whole_tooth_softens_as_two_plane_models_say(u):
     """Narrow over wide, against plane stress over plane strain, both resolved: measured +0.2, −0.2
-    and −0.7 %. With the half-space alone the narrow face yielded 17 to 38 % less than plane stress.
+    and −0.7 %. With the half-space alone, the narrow face yielded 17 to 38 % less than plane
+    stress.
     """
     strain = solve_plane(BODY, u, 1.0, half_width(LOAD, CURVATURE, E / (1 - NU**2)))
     stress = solve_plane(STRESS, u, 1.0, half_width(LOAD, CURVATURE, E))
@@ -99,7 +100,7 @@ def test_a_whole_tooth_softens_as_two_plane_models_say(u):
 
 
 def test_ever_narrower_faces_are_ever_softer():
-    """Of a pair under the same load per width; it was stiffer by a quarter at 0.1 mm."""
+    """A pair under the same load per width; at 0.1 mm it used to be stiffer by a quarter."""
     found = []
     for width in (6e-3, 3e-3, 1.5e-3, 0.3e-3, 0.1e-3):
         common = {"module": 3e-3, "face_width": width}

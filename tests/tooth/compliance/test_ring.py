@@ -10,7 +10,7 @@ from skfem.helpers import ddot, sym_grad, trace
 from loadshare.tooth.compliance.ring import Ring
 
 WIDE, NARROW = 1e3, 1e-6
-"""Face widths [m] at which every harmonic is in plane strain, in plane stress."""
+"""Face widths [m] at which every harmonic is in plane strain, or in plane stress."""
 EXTERNAL = Ring(0.06, 0.03, 0.013, WIDE, 24, 0.3)
 INTERNAL = Ring(0.06, 0.09, 0.013, WIDE, 24, 0.3)
 
@@ -24,9 +24,9 @@ def test_reciprocity_and_energy(ring):
 
 @pytest.mark.parametrize("ring", [EXTERNAL, INTERNAL])
 def test_all_teeth_together_twist_the_ring_and_swell_it(ring):
-    """Roots side by side without spaces load the ring evenly, which leaves torsion,
-    u_θ = τR (R² − h²)/(2G h²), and Lamé's ring in plane stress, u_r = A(r − h²/r). What stands for
-    the finest harmonics, of which there are none here, is 0.0011.
+    """Adjacent roots without spaces load the ring evenly, which leaves torsion, u_θ = τR (R² −
+    h²)/(2G h²), and Lamé's ring in plane stress, u_r = A(r − h²/r). The substitute for the finest
+    harmonics, of which there are none here, is 0.0011.
     """
     whole = replace(ring, thickness=2.0 * np.pi * ring.loaded / ring.teeth)
     total = sum(whole.root(k) for k in range(24))
@@ -39,9 +39,9 @@ def test_all_teeth_together_twist_the_ring_and_swell_it(ring):
 
 
 def test_a_small_root_stands_on_a_half_plane():
-    """Lean 18/π under a linear traction and (1 − 2ν)/(1 − ν) under a shear one; a root half as
-    thick deflects by 2/π ln 2 more. The thickness is 1/500 of radius and depth; the harmonics left
-    out swing by 1 % of the smallest figure.
+    """The lean is 18/π under a linear traction and (1 − 2ν)/(1 − ν) under shear; a root half as
+    thick deflects by 2/π ln 2 more. The thickness is 1/500 of radius and depth; the omitted
+    harmonics oscillate by 1 % of the smallest figure.
     """
     ring = Ring(1.0, 0.5, 2e-3, WIDE, 100, 0.3)
     root, half = ring.root(0), replace(ring, thickness=1e-3).root(0)
@@ -54,7 +54,7 @@ def test_a_small_root_stands_on_a_half_plane():
 @pytest.mark.parametrize("half_angle", [0.03, 0.06, 0.1])
 def test_deflection_by_shear_is_the_published_one(bore, half_angle):
     """P* of Sainsot, Velex and Duverger (2004), table 1, in units of 1/E: 3 %. Measured: 2.3 %. At
-    the end of their range, a bore of 1/1.4, the polynomial leaves the series by 20 %.
+    the end of their range, a bore of 1/1.4, the polynomial differs from the series by 20 %.
     """
     h, t = bore, half_angle
     published = -50.952e-5 / t**2 + 185.5e-3 * h**2 + 0.0538e-4 * h / t
@@ -64,7 +64,7 @@ def test_deflection_by_shear_is_the_published_one(bore, half_angle):
 
 
 def test_a_ring_of_forty_depths_is_flat():
-    """The body of a face gear: half as round changes less than 1 % of the deflection."""
+    """For the body of a face gear, half the curvature changes less than 1 % of the deflection."""
     depth, thickness, pitch = 0.03, 0.0107, 0.0135
     roots = [
         Ring(n * depth, (n - 1.0) * depth, thickness, WIDE, 2.0 * np.pi * n * depth / pitch, 0.3)
@@ -78,9 +78,9 @@ def test_a_ring_of_forty_depths_is_flat():
 @pytest.mark.parametrize("ring", [EXTERNAL, INTERNAL])
 @pytest.mark.quick(1)
 def test_against_plane_finite_elements(ring):
-    """The same tractions on a meshed ring, root and next tooth. Quadratic elements, eight over
-    a root, miss 0.2 % of the lean, next to the ends of the traction. The mesh swells in plane
-    strain, `Ring` in plane stress.
+    """The same tractions act on a meshed ring, at the root and the next tooth. Quadratic elements,
+    eight over a root, miss 0.2 % of the lean, near the ends of the traction. The mesh swells in
+    plane strain, `Ring` in plane stress.
     """
     cells, over_root, apart = 240, 8, 10  # around the ring, on a root, between two roots
     ring = replace(ring, thickness=2.0 * np.pi * ring.loaded * over_root / cells)
@@ -97,7 +97,9 @@ def test_against_plane_finite_elements(ring):
 
 
 def _meshed(ring, cells, over_root, apart):
-    """Compliances (3, 3) of a root and of the one `apart` cells on, in units of (1 − ν²)/E."""
+    """Return the compliances (3, 3) of a root and of the one `apart` cells further, in units of (1
+    − ν²)/E.
+    """
     around = 2.0 * np.pi * np.arange(cells) / cells
     radii = ring.held + (ring.loaded - ring.held) * (1.0 - (1.0 - np.linspace(0, 1, 13)) ** 2)
     points = radii[:, None] * np.exp(1j * around)

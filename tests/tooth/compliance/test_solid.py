@@ -12,7 +12,7 @@ STEEL = 206e9
 
 
 def beam(length, thickness, width, along, across, layers, skew=0.0):
-    """A rectangular cantilever along y, clamped at y = 0, loaded in x; swept along z."""
+    """Return a rectangular cantilever along y, clamped at y = 0, loaded in x, swept along z."""
     x = np.linspace(-0.5, 0.5, 2 * across + 1) * thickness
     y = np.linspace(0.0, length, 2 * along + 1)
     z = np.linspace(0.0, width, 2 * layers + 1)
@@ -31,12 +31,12 @@ def beam(length, thickness, width, along, across, layers, skew=0.0):
 
 
 def tip_deflection(poisson, **mesh):
-    """Mean deflection of the tip under a unit force spread evenly over the tip's middle line."""
+    """Return the mean deflection of the tip under a unit force spread over its middle line."""
     blocks, names = beam(**mesh)
     solid = build_solid(blocks, STEEL, poisson)
     column = names[(mesh["across"], 2 * mesh["along"])]
     nodes = column * blocks.layers + np.arange(blocks.layers)
-    # Simpson's weights: what the quadratic element makes of an even line load.
+    # Simpson's weights: the nodal forces of the quadratic element for an even line load.
     weights = np.ones(blocks.layers)
     weights[1:-1:2], weights[2:-1:2] = 4.0, 2.0
     weights /= weights.sum()
@@ -50,8 +50,8 @@ def tip_deflection(poisson, **mesh):
 
 @pytest.mark.parametrize("slender", [4.0, 8.0])
 def test_timoshenko_beam(slender):
-    """PL³/3EI + PL/κGA with ν = 0, where beam and solid share their assumptions except for the
-    clamped end and the spread of the load: 0.5 %.
+    """PL³/3EI + PL/κGA with ν = 0: beam and solid then differ only in the clamped end and the
+    spread of the load: 0.5 %.
     """
     t, b = 5e-3, 4e-3
     length = slender * t

@@ -50,17 +50,17 @@ def slices():
 
 
 def row(u, tooth=0):
-    """A line of points over the face width, at one height."""
+    """Return a line of points over the face width, at one height."""
     return Flank(tooth, np.column_stack([np.full_like(STATIONS, u), STATIONS]))
 
 
 def even(model, u):
-    """Mean displacement [m] per load per width [N/m]."""
+    """Return the mean displacement [m] per load per width [N/m]."""
     return float(model.bulk((row(u),)).mean()) * BODY.face_width
 
 
 def beside(model, u):
-    """The same of the next tooth."""
+    """Return the same for the next tooth."""
     count = len(STATIONS)
     bulk = model.bulk((row(u), row(u, tooth=1)))
     return float(bulk[:count, count:].mean()) * BODY.face_width
@@ -68,7 +68,7 @@ def beside(model, u):
 
 @pytest.mark.parametrize("u", mostly_slow((0.5, 0.7, 0.9), (0.7,)))
 def test_solid_tooth_is_the_plane_tooth_without_poisson(u):
-    """ν = 0 makes the even load plane. The plane model is far finer: 1 %."""
+    """With ν = 0, the even load is a plane problem. The plane model is far finer: 1 %."""
     body = replace(BODY, poisson=0.0)
     plane = solve_plane(body, u, 1.0, 2e-4, bare=CUT)
     assert even(finite(poisson=0.0), u) == pytest.approx(plane.foot, rel=1e-2)
@@ -77,10 +77,10 @@ def test_solid_tooth_is_the_plane_tooth_without_poisson(u):
 @pytest.mark.parametrize(("poisson", "share"), [(0.0, 0.01), (0.3, 0.03)])
 @pytest.mark.parametrize("u", mostly_slow((0.5, 0.85, 0.97), (0.85,)))
 def test_middle_surface_and_compression_make_the_whole(poisson, share, u):
-    """A tooth with its pressure resolved, against bulk at the middle surface plus compression.
+    """A tooth with resolved pressure, against bulk at the middle surface plus compression.
 
-    Measured: 0.3 to 0.7 % for ν = 0, 1.4 to 2.3 % for ν = 0.3; the half-space that the
-    compression stands for has no free flank on its other side.
+    Measured: 0.3 to 0.7 % for ν = 0, 1.4 to 2.3 % for ν = 0.3; the half-space of the compression
+    has no free flank on its other side.
     """
     body = replace(BODY, poisson=poisson)
     q = 5e5
@@ -115,7 +115,7 @@ def test_compliance_is_symmetric_and_semidefinite(model):
 
 
 def test_the_skew_part_is_small():
-    """Read at a depth, Betti's symmetry holds except for a few percent of the largest entry."""
+    """At a depth, Betti's symmetry holds except for a few per cent of the largest entry."""
     influence = finite()._influence
     largest = np.abs(influence[0]).max()
     assert np.abs(influence[0] - influence[0].T).max() < 0.05 * largest
@@ -123,7 +123,7 @@ def test_the_skew_part_is_small():
 
 
 def test_both_flanks_are_alike():
-    """The mirror image of a load on one flank; the neighbours change places."""
+    """The mirror image of a load on one flank; the neighbours are exchanged."""
     here, there = finite(), finite(side=-1)
     np.testing.assert_allclose(
         here.bulk((row(0.7), row(0.8, 1))), there.bulk((row(0.7), row(0.8, -1))), rtol=1e-7
@@ -141,7 +141,7 @@ def test_neighbours_yield_too():
 
 @pytest.mark.slow
 def test_mesh_refinement():
-    """Coarse, default and finer: steps that shrink, the last below 2 %."""
+    """Coarse, default and finer: the steps decrease, and the last is below 2 %."""
     meshes = (
         replace(MESH, across=2, flank=2, root=1, rim=2, width=2),
         MESH,
@@ -190,7 +190,9 @@ def test_slices_on_half_planes_miss_a_deep_rim():
 
 
 def test_polynomials_keep_to_the_tooth():
-    """Of the outline 1e-3 of the thickness at most, of its slopes 1e-2 of the tooth's height."""
+    """The error is at most 1e-3 of the thickness for the outline, and 1e-2 of the tooth height for
+    slopes.
+    """
     middle = slices().middle
     u, w = np.meshgrid(np.linspace(middle.waist, 1.0, 23), np.linspace(0.0, 1.0, 5))
     zw = np.column_stack([u.ravel(), w.ravel()])
@@ -212,13 +214,13 @@ def test_slices_converge_over_the_width():
     parts = [Slices(BODY, 1, width_degree=n).bulk((points,)) for n in (8, 13, 18)]
     steps = [np.abs(a - b).max() for a, b in pairwise(parts)]
     assert steps[1] < steps[0]
-    # What an even load does needs no degree at all except for Poisson's bending across.
+    # The effect of an even load needs no degree at all, except for Poisson's bending across.
     means = [p.mean() for p in parts]
     np.testing.assert_allclose(means, means[-1], rtol=1e-3)
 
 
 def wide(width):
-    """Two helical gears, with an axial pitch of 27.6 mm."""
+    """Return two helical gears with an axial pitch of 27.6 mm."""
     gears = (
         HelicoidGear(3e-3, teeth, width, helix_angle=math.radians(turn))
         for teeth, turn in ((25, 20.0), (50, -20.0))
@@ -227,7 +229,7 @@ def wide(width):
 
 
 def test_slices_follow_the_load_of_a_wide_helical_face():
-    """7.3 axial pitches, against the limit of the degree, with points that it does not resolve."""
+    """7.3 axial pitches, against a higher degree, and with points that it does not resolve."""
     pair = wide(0.2)
     assert pair.driver.axial_pitches == pytest.approx(pair.overlap_ratio, rel=1e-12)
     stiffness = []
@@ -241,7 +243,7 @@ def test_slices_follow_the_load_of_a_wide_helical_face():
 def test_faces_that_slices_cannot_follow_are_refused():
     with pytest.raises(Refused, match=r"21.8 axial pitches .*; allowed: up to 21; take a part"):
         Slices(wide(0.6).driver, 1)
-    # Straight teeth of any width are followed: their load is even.
+    # Straight teeth of any width are allowed, because their load is even.
     Slices(replace(BODY, face_width=5.0), 1)
 
 

@@ -1,4 +1,4 @@
-"""Gears that the tests of tooth geometry share."""
+"""Gears for the tests of tooth geometry."""
 
 import math
 
@@ -19,14 +19,14 @@ RELIEVED = Modification(
 
 
 def gear(teeth=24, **changes) -> HelicoidGear:
-    """A gear of module 2 mm, 20 mm wide."""
+    """Return a gear of module 2 mm, 20 mm wide."""
     return HelicoidGear(**{"module": 2e-3, "teeth": teeth, "face_width": 20e-3} | changes)
 
 
 def pair(
     z1=24, z2=53, ring=None, helix=0.0, off=None, modification=None, distance=None, **changes
 ) -> HelicoidPair:
-    """A cylindrical pair; `ring` names the gear that is internal."""
+    """Return a cylindrical pair; `ring` names the gear that is internal."""
     opposite = 1.0 if ring else -1.0
     internal = {"internal": True, "addendum": 0.8}
     driver = gear(
@@ -40,7 +40,7 @@ def pair(
 
 
 def face_gear(angle=90.0, inner=0.48, outer=0.56, **shaper) -> FaceGear:
-    """A face gear of 160 teeth, shaper of 28, module 6.35 mm, pressure angle 25°."""
+    """Return a face gear of 160 teeth, shaper of 28, module 6.35 mm, pressure angle 25°."""
     data = {"module": 6.35e-3, "teeth": 28, "pressure_angle": math.radians(25.0)} | shaper
     return FaceGear(160, Shaper(**data), inner, outer, shaft_angle=math.radians(angle))
 
@@ -48,7 +48,7 @@ def face_gear(angle=90.0, inner=0.48, outer=0.56, **shaper) -> FaceGear:
 def face_pair(
     teeth=25, off=None, modification=None, angle=90.0, inner=0.48, outer=0.56
 ) -> FaceGearPair:
-    """That face gear with a pinion 90 mm wide."""
+    """Return that face gear with a pinion 90 mm wide."""
     pinion = HelicoidGear(
         6.35e-3,
         teeth,

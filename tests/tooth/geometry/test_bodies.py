@@ -49,7 +49,7 @@ def test_outline_is_in_one_piece_and_climbs_steadily(body):
     line = body.outline(u, 0.3, 1)
     steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
     length = steps.sum()
-    # No jump anywhere, also not at the foot; pieces go by their length to within a factor.
+    # No jump anywhere, including at the foot; steps have equal lengths to within a factor.
     assert steps.max() < 12.0 * length / 400
     around = np.unwrap(np.arctan2(line[:, 1], line[:, 0]))
     assert (np.diff(around) < 1e-12).all()
@@ -77,7 +77,7 @@ def test_a_root_without_radius_is_a_sharp_corner():
 
 
 def test_the_rack_touches_all_of_the_root_and_cuts_none_of_it():
-    # Second way: the rack's tip circle, rolled in small steps, against points of the root.
+    # Independent check: the rack's tip circle, rolled in small steps, against points of the root.
     made = gear(20, profile_shift=0.2)
     root = root_curve(made)(np.linspace(0.0, 1.0, 40)) * np.exp(-1j * math.pi / made.teeth)
     corner = made.tip_radius * made.module
@@ -89,12 +89,12 @@ def test_the_rack_touches_all_of_the_root_and_cuts_none_of_it():
     depth = (made.profile_shift - made.dedendum + made.tip_radius) * made.module
     least = np.full(root.shape, np.inf)
     for travel in np.linspace(-3.0, 3.0, 20001) * made.module:
-        # Space at +x turned up to +y; the gear turns by −travel/r about its centre.
+        # The space at +x is turned up to +y; the gear turns by −travel/r about its centre.
         seen = root * np.exp(1j * (0.5 * math.pi - travel / made.radius)) - 1j * made.radius
         x, y = seen.real - travel, seen.imag
         outside = np.hypot(x - np.clip(x, -flat, flat), y - depth) - corner
         least = np.minimum(least, np.where(y > depth, np.inf, outside))
-    # The steps of 0.3 µm resolve the touch to their square over the radii.
+    # The error of the steps of 0.3 µm is their square over the radii.
     np.testing.assert_allclose(least[1:], 0.0, atol=2e-10)
 
 
@@ -113,7 +113,7 @@ def test_sides_mirror_each_other(body):
 
 
 def to_space(body, points, rotation):
-    """Points of the gear turned by `rotation` [rad], in the fixed frame."""
+    """Return points of the gear turned by `rotation` [rad], in the fixed frame."""
     return turned(points, rotation) @ body.placement.axes.T + body.placement.origin
 
 
@@ -129,7 +129,7 @@ def to_space(body, points, rotation):
 )
 def test_contact_lines_lie_on_the_outlines(made):
     mesh = made()
-    # Ties frames, rotations, tooth numbers, sides and flank coordinates together.
+    # This relates frames, rotations, tooth numbers, sides and flank coordinates.
     at = mesh.positions([0.3], 7)[0]
     for line in at.lines:
         for body, rotation, uw, side, step, gap in (

@@ -29,16 +29,16 @@ def test_pinion_like_the_shaper_touches_along_lines_without_error(angle):
         assert abs(at.transmission_error) < 1e-13
         for line in at.lines:
             np.testing.assert_allclose(line.gap, 0.0, atol=1e-15)
-            # No curvature along a line of contact; across it stands 1/(tens of mm).
+            # There is no curvature along a line of contact; across it, it is 1/(tens of mm).
             np.testing.assert_allclose(line.curvature_along, 0.0, atol=1e-9)
             assert (line.curvature > 10.0).all()
 
 
 @pytest.mark.parametrize("teeth", [27, 26, 25])
 def test_pinion_with_fewer_teeth_runs_without_error_too(teeth):
-    # An involute pinion rolls inside the imaginary shaper at one pressure angle, so that the
-    # aligned pair stays conjugate (Litvin & Fuentes, ch. 18). The secant that finds the least gap
-    # leaves some 1e-11 rad.
+    # An involute pinion rolls inside the imaginary shaper at one pressure angle, so the aligned
+    # pair remains conjugate (Litvin & Fuentes, ch. 18). The secant method for the least gap has an
+    # error of some 1e-11 rad.
     for at in face_pair(teeth).positions(5, 5):
         assert abs(at.transmission_error) < 1e-9
 
@@ -70,8 +70,8 @@ def test_contact_ratio_counts_the_pairs_in_contact():
 
 
 def test_gap_grows_with_the_relative_curvature():
-    # Near the point of contact the gap is κ s²/2, κ the least relative curvature and s the way
-    # along the major axis; the next term is of relative size s over a radius.
+    # Near the point of contact the gap is κ s²/2, with the least relative curvature κ and the
+    # distance s along the major axis; the next term is of relative size s over a radius.
     mesh = face_pair()
     point = next(p for p in contact_points(mesh, 0.1) if p.pair == 0)
     at = mesh.positions([0.1], 201)[0]
@@ -101,8 +101,8 @@ def test_contact_is_the_more_localised_the_fewer_teeth_the_pinion_has():
 
 @pytest.mark.parametrize("name", ["offset", "shaft_angle", "gear_shift"])
 def test_misalignment_shifts_the_bearing_smoothly(name):
-    # Lead and place of contact change in proportion at first: doubling a small misalignment
-    # doubles the shift, and the departure from that is of second order.
+    # At first, lead and place of contact change in proportion: doubling a small misalignment
+    # doubles the shift, and the deviation from that is of second order.
     size = {"offset": 40e-6, "shaft_angle": 2e-4, "gear_shift": 40e-6}[name]
 
     def contact(factor):
@@ -116,15 +116,16 @@ def test_misalignment_shifts_the_bearing_smoothly(name):
     assert along[1.0] == pytest.approx(2.0 * along[0.5], rel=0.15)
     assert along[-0.5] == pytest.approx(-along[0.5], rel=0.15)
     assert lead[1.0] == pytest.approx(2.0 * lead[0.5], rel=0.02)
-    # Litvin's remark: misaligned face gears keep transmission error nearly constant.
+    # Litvin observes that misaligned face gears keep an almost constant transmission error.
     mesh = face_pair(off=FaceMisalignment(**{name: size}))
     errors = [transmission_error(mesh, phase) for phase in (0.0, 0.2, 0.4, 0.6, 0.8)]
     assert np.ptp(errors) < 1e-3 * abs(np.mean(errors))
 
 
 def test_offset_and_gear_shift_turn_the_gear_as_kinematics_says():
-    # Moving the gear by e changes the approach by e·n, to first order: n = (sin α, cos α) across
-    # and along the pitch plane, so that the driver is late by e cos α/r_b or early by e sin α/r_b.
+    # Moving the gear by e changes the approach by e·n to first order, with n = (sin α, cos α)
+    # across and along the pitch plane; so the driver is late by e cos α/r_b or early by e sin
+    # α/r_b.
     angle, radius = math.radians(25.0), face_pair().arm
     for name, share in (("offset", math.cos(angle)), ("gear_shift", -math.sin(angle))):
         mesh = face_pair(off=FaceMisalignment(**{name: 1e-6}))
@@ -152,7 +153,7 @@ def test_newton_on_the_contact_equations_agrees_with_the_least_gap():
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-10, 1e-13])
 def test_transmission_error_is_within_its_tolerance(monkeypatch, tolerance):
-    # A gap left over is an angle of gap/arm. The exact lead is that of the contact equations; the
+    # A remaining gap is an angle of gap/arm. The exact lead is that of the contact equations; the
     # secant of the slope adds up to 1e-10 rad.
     mesh = face_pair(
         off=FaceMisalignment(shaft_angle=3e-4),
@@ -208,7 +209,7 @@ def test_ends_of_the_lines_lie_on_edges():
 
 
 def narrow_pair() -> FaceGearPair:
-    """A face gear only two modules wide, whose ends bend away beside the pinion's axis."""
+    """Return a face gear only two modules wide, whose edges curve away beside the pinion's axis."""
     shaper = Shaper(2e-3, 24, math.radians(20.0), addendum=1.15)
     pinion = HelicoidGear(2e-3, 23, 6e-3, addendum=0.88, tip_radius=0.25)
     gear = FaceGear(91, shaper, 88.5e-3, 93e-3, addendum=0.98)
@@ -216,7 +217,9 @@ def narrow_pair() -> FaceGearPair:
 
 
 def test_lines_of_a_narrow_face_end_at_its_edges_at_every_position():
-    """Of lines, too, that begin at a corner, of which only the end of the look is on both."""
+    """This includes lines that begin at a corner, of which only the end of the scanned range is on
+    both flanks.
+    """
     mesh = narrow_pair()
     found = mesh.extents(*mesh.ideal(np.arange(400) / 400))
     assert (found.start < found.end).all()
@@ -256,7 +259,7 @@ def test_pointing_limit(teeth, pressure):
     gear = face_gear(teeth=teeth, pressure_angle=math.radians(pressure))
     limit = pointing_limit(gear)
     assert tip_half_angle(FaceFlank(gear), limit) == pytest.approx(0.0, abs=1e-13)
-    # Litvin's plane section is an approximation to second order in half a pitch over the radius.
+    # Litvin's plane section is an approximation of second order in half a pitch over the radius.
     planar = planar_pointing_limit(gear)
     assert planar == pytest.approx(limit, rel=2e-3)
     assert planar != pytest.approx(limit, rel=1e-6)

@@ -31,7 +31,7 @@ def helicoid(helix=0.0, internal=False, modification=None, side=1) -> HelicoidFl
 
 
 def spread(flank):
-    """Points all over a flank, away from where a relief begins."""
+    """Return points all over a flank, away from the beginning of a relief."""
     if isinstance(flank, FaceFlank):
         return flank.at_blank(np.linspace(0.485, 0.555, 7)[:, None], np.linspace(0.084, 0.093, 5))
     low, high = sorted((flank.gear.form_roll, flank.gear.tip_roll))
@@ -83,7 +83,7 @@ def test_normal_points_out_of_the_tooth(flank):
 
 @pytest.mark.parametrize(("helix", "internal"), [(0.0, False), (0.35, False), (0.35, True)])
 def test_helicoid_curvatures(helix, internal):
-    # Developable: r_b ξ / cos β_b is the one finite radius (negative inside a ring).
+    # A developable surface: r_b ξ / cos β_b is its only finite radius (negative inside a ring).
     flank = helicoid(helix, internal)
     roll, axial = spread(flank)
     here = flank.patch(roll, axial, 0.0)
@@ -114,9 +114,9 @@ def test_modification_is_taken_off_along_the_normal(side):
 
 @pytest.mark.parametrize("angle", [90.0, 85.0, 100.0])
 def test_face_gear_is_the_envelope_of_its_shaper(angle):
-    # At a point of the gear, the distance from the shaper's flank along its base tangent is
-    # r_bs (θ − θ_involute). Over all shaper angles its least value must be nought: the shaper
-    # reaches the point, and never goes deeper.
+    # At a point of the gear, the distance from the shaper's flank along its base tangent is r_bs (θ
+    # − θ_involute). Its least value over all shaper angles must be zero: the shaper reaches the
+    # point, and never cuts deeper.
     length = np.linspace(0.5, 0.54, 3)[:, None] if angle <= 90.0 else np.array([[0.53], [0.55]])
     made = face_gear(angle)
     flank, shaper = FaceFlank(made), made.shaper
@@ -137,7 +137,7 @@ def test_face_gear_is_the_envelope_of_its_shaper(angle):
     np.testing.assert_allclose(distance(own), 0.0, atol=1e-15)
     swept = np.array([distance(own + turn) for turn in np.linspace(-0.05, 0.05, 41)])
     assert swept.min() > -1e-15
-    # Beside the angle that generates the point, the shaper is clear of it.
+    # At other angles than the one that generates the point, the shaper is clear of it.
     assert (swept[[0, 10, 30, 40]] > 1e-6).all()
 
 
@@ -161,8 +161,8 @@ def test_blank_coordinates_lead_back_to_the_point(length, depth, angle):
 
 
 def test_principal_directions_of_two_cylinders_crossed():
-    # A spur flank against another one turned about the normal by 0.3: the relative curvatures are
-    # the eigenvalues of the sum of two rank-one tensors, half-sum ± half the resultant at 2·0.3.
+    # A spur flank and another one turned about the normal by 0.3: the relative curvatures are the
+    # eigenvalues of the sum of two rank-one tensors, half-sum ± half the resultant at 2·0.3.
     first = helicoid()
     roll = np.array([0.5])
     one = first.patch(roll, np.zeros(1), 0.0)

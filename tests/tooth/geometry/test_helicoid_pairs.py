@@ -40,7 +40,7 @@ def round_the_cycle(mesh, points=11, count=7):
 
 @ALL
 def test_unmodified_pairs_run_without_transmission_error(data):
-    # The gap comes from both surfaces, not from the plane of action; round-off is all there is.
+    # The gap is computed from both surfaces, not from the plane of action; only round-off remains.
     for at in round_the_cycle(pair(**data)):
         assert abs(at.transmission_error) < 1e-13
         for line in at.lines:
@@ -115,7 +115,7 @@ def test_total_length_of_lines_over_the_cycle():
 
 
 def test_centre_distance_without_backlash():
-    # Both flanks touch: the pitch circles' teeth fill a pitch.
+    # Both flanks touch: the teeth of both gears fill a pitch at the pitch circles.
     mesh = pair(profile_shift=0.5)
     thickness = 0.0
     for made in (mesh.driver_gear, mesh.driven_gear):
@@ -131,7 +131,7 @@ def test_centre_distance_without_backlash():
 @settings(max_examples=15)
 @given(st.floats(2e-6, 40e-6), st.floats(0.0, 0.999), st.sampled_from([0.0, 0.3]))
 def test_gap_of_a_lead_crowned_pair(crowning, phase, helix):
-    # Closed form: C_β (2ζ/b)², less its least value on the lines. The ray leaves along the crowned
+    # Closed form: C_β (2ζ/b)², less its least value on the lines. The ray starts along the crowned
     # normal, whose slope of up to 4 C_β/b makes it longer by half the slope squared.
     mesh = pair(helix=helix, modification=Modification(lead_crowning=crowning))
     at = mesh.positions([phase], 31)[0]
@@ -145,7 +145,7 @@ def test_gap_of_a_lead_crowned_pair(crowning, phase, helix):
     assert at.transmission_error * mesh.arm == pytest.approx(least, abs=second_order)
     lean = math.sin(mesh.driver_gear.base_helix_angle)
     for line in at.lines:
-        # On a helical flank the normal, along which material is taken off, leans along the axis.
+        # The normal of a helical flank, along which material is removed, has an axial component.
         axial = line.points[:, 2] - lean * (line.gap + least)
         expected = crowning * (axial / 10e-3) ** 2 - least
         np.testing.assert_allclose(line.gap, expected, atol=second_order)
@@ -170,10 +170,10 @@ def test_gap_under_tip_relief(exponent):
             radius = np.hypot(*line.points[:, :2].T)
             roll = np.sqrt(radius**2 - one.base_radius**2)
             tip = one.base_radius * one.tip_roll
-            # What is taken off shortens the base tangent to the point by as much.
+            # Removed material shortens the base tangent to the point by the same length.
             lead = at.transmission_error * mesh.arm
             into = np.clip((roll + line.gap + lead - tip + length) / length, 0.0, 1.0)
-            # Along the profile the relief slopes by up to 2 %/ξ = 3.6 %; the ray leaves at that
+            # The relief has slopes along the profile of up to 2 %/ξ = 3.6 %; the ray starts at that
             # angle and is longer by half its square, 13 nm in 20 µm.
             np.testing.assert_allclose(line.gap, amount * into**exponent - lead, atol=1.5e-8)
             seen += bool((line.gap > 5e-6).any())
@@ -191,8 +191,8 @@ def test_gap_of_misaligned_spur_gears(off, slope):
     # A tilt out of the plane of axes opens the mesh by cos α, one in it by sin α of its angle.
     mesh = pair(off=off)
     at = mesh.positions([0.4], 40)[0]
-    # One end is nearer by slope × b/2 and touches before the ideal pair would. Second order in the
-    # tilt times the distances involved, 1e-8 × 50 mm.
+    # One end is nearer by slope × b/2 and touches before the ideal pair would. The error is of
+    # second order in the tilt, times the distances involved, 1e-8 × 50 mm.
     assert at.transmission_error * mesh.arm == pytest.approx(-slope * 10e-3, abs=2e-9)
     for line in at.lines:
         rise = np.polyfit(line.points[:, 2], line.gap, 1)[0]
@@ -218,7 +218,7 @@ def test_turning_by_one_pitch_gives_the_same_position(data):
 
 
 def test_mirror_image_has_the_same_gaps():
-    # Mirrored at z = 0: the hand of the helix and the deviation change sign, inclination too.
+    # Mirrored at z = 0: the hand of the helix, the deviation and the inclination change sign.
     off = Misalignment(inclination=2e-4, deviation=3e-4, centre_distance=1e-4, axial_shift=5e-4)
     image = replace(
         off, inclination=-off.inclination, deviation=-off.deviation, axial_shift=-off.axial_shift
@@ -247,7 +247,8 @@ def test_a_herringbone_half_is_a_helical_pair():
 
 @pytest.mark.parametrize("phase", [0.1, 0.45, 0.8])
 def test_contact_equations_agree_with_the_least_gap(phase):
-    # Two ways to one angle: Newton on equal points and normals, and the least gap over the lines.
+    # Two methods for one angle: Newton on equal points and normals, and the least gap over the
+    # lines.
     mesh = pair(
         helix=0.15,
         modification=Modification(lead_crowning=20e-6, profile_crowning=20e-6),
@@ -255,8 +256,8 @@ def test_contact_equations_agree_with_the_least_gap(phase):
     )
     points = contact_points(mesh, phase)
     first = min(points, key=lambda point: point.lead)
-    # The line leaves out that the profile slopes across it: slope²/(2κ), 3 nm at a slope of 1e-3.
-    # Measured: 40, 507 and 24 nm; the crowned profile slopes by up to 1e-2.
+    # The line neglects the slope of the profile across it: slope²/(2κ), 3 nm at a slope of 1e-3.
+    # Measured: 40, 507 and 24 nm; the crowned profile has slopes of up to 1e-2.
     assert 1e-9 < (transmission_error(mesh, phase) - first.lead) * mesh.arm < 6e-7
     if not first.edge:
         assert first.major @ first.normal == pytest.approx(0.0, abs=1e-12)
@@ -291,7 +292,7 @@ def test_the_cycle_begins_at_the_pitch_point_in_the_middle_of_the_common_face(da
 
 @pytest.mark.parametrize("helix", [0.0, 0.2])
 def test_the_least_gap_is_found_in_a_kink(helix):
-    """End relief on a tilted pair makes a V of the gap, whose tip lies between the stations."""
+    """End relief on a tilted pair gives the gap a V shape with its minimum between stations."""
     relieved = Modification(end_relief=20e-6, end_relief_length=4.3e-3)
     mesh = pair(helix=helix, off=Misalignment(deviation=4e-4), modification=relieved)
     found = mesh.extents(*mesh.ideal(np.arange(5) / 5))

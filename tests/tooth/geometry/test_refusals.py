@@ -1,4 +1,4 @@
-"""What cannot be built is refused, naming the dimension at fault; what is doubtful is a finding."""
+"""Impossible geometry is refused, naming the dimension at fault; doubtful geometry is a finding."""
 
 import math
 from dataclasses import replace
@@ -48,7 +48,7 @@ def test_pointed_teeth():
     (problem,) = caught.value.problems
     assert problem.key == "driver.addendum"
     largest = float(problem.allowed.split()[2])
-    # At the limit the tip land vanishes.
+    # At the limit the tip land is zero.
     assert gear(20, addendum=largest).half_angle(gear(20, addendum=largest).tip) == pytest.approx(
         0.0, abs=1e-6
     )
@@ -56,7 +56,7 @@ def test_pointed_teeth():
 
 @pytest.mark.parametrize(("distance", "told"), [(0.0745, True), (None, False)])
 def test_tips_that_find_no_room_for_want_of_distance(distance, told):
-    """Of teeth that overlap, addenda below the root were asked for, and nothing else."""
+    """For teeth that overlap, the message used to ask only for addenda below the root."""
     with pytest.raises(CaseError) as caught:
         helicoid_pair(gear(addendum=1.3), gear(53), distance)
     hints = {problem.hint for problem in caught.value.problems}
@@ -115,7 +115,9 @@ def test_each_fault_is_named(build, expected):
 
 
 def test_the_room_of_a_root_radius_is_that_of_the_space_at_its_root():
-    """Of an internal gear: narrower the deeper the space is, so that less dedendum gives more."""
+    """The space of an internal gear is narrower the deeper it is, so a smaller dedendum leaves more
+    room.
+    """
     ring = {"internal": True, "addendum": 0.8, "profile_shift": -0.5013}
     (problem,) = gear_problems(gear(56, **ring), "driven")
     assert problem.key == "driven.tip_radius"
@@ -125,7 +127,8 @@ def test_the_room_of_a_root_radius_is_that_of_the_space_at_its_root():
 
 
 def test_tips_of_internal_pairs_meet_when_the_tooth_counts_are_close():
-    # Second way: the tips' corners, followed over the rotation in which they pass each other.
+    # Independent check: the corners of the tips, followed over the rotation in which they pass each
+    # other.
     pinion = gear(24, addendum=0.6)
     outcomes = set()
     for teeth in range(28, 60):
@@ -145,14 +148,14 @@ def test_tips_of_internal_pairs_meet_when_the_tooth_counts_are_close():
 
 
 def corners_collide(mesh) -> bool:
-    """Whether a pinion's tip corner enters a ring's tooth beside the line of action."""
+    """Return whether a pinion's tip corner enters a ring's tooth beside the line of action."""
     pinion, ring = mesh.driver_gear, mesh.driven_gear
     driver, driven = mesh.ideal(0.0)
     corner = pinion.half_angle(pinion.tip)
     centre = mesh.driven.placement.origin[0]
     turn = np.linspace(-math.pi, math.pi, 40001)
     for side in (1, -1):
-        # One tooth of the pinion once round; the ring's teeth as a periodic pattern.
+        # One tooth of the pinion makes a full turn; the ring's teeth are a periodic pattern.
         at = pinion.tip * np.exp(1j * (driver + turn + side * corner)) - centre
         radius, polar = np.abs(at), np.angle(at)
         inside = (radius > ring.tip) & (radius < ring.root)

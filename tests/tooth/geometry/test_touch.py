@@ -1,4 +1,4 @@
-"""Where a pair of teeth alone touches first, against searches that use no contact equations."""
+"""First contact of a single pair of teeth, against searches that use no contact equations."""
 
 import numpy as np
 import pytest
@@ -27,10 +27,10 @@ PHASES = (0.05, 0.35, 0.75)
 
 
 def least_turn(mesh, phase, found):
-    """Least turn of the driver at which a point of its flank meets the driven flank [rad].
+    """Return the least turn of the driver at which its flank meets the driven flank [rad].
 
-    Points of the driver's flank are turned until they lie on the other, and the one that needs the
-    least is searched for all over the flank: no normals, and no line of contact.
+    Points of the driver's flank are turned until they are on the other flank, and the one with the
+    least turn is searched for over the whole flank: without normals and without a line of contact.
     """
     driver, driven = (rotation[:, None] for rotation in mesh.ideal(np.array([phase])))
     number = np.full((1, 1), float(found.pair))
@@ -56,7 +56,7 @@ def least_turn(mesh, phase, found):
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.quick(2)
 def test_a_pair_touches_where_a_search_over_its_flank_finds_it(name, phase):
-    """Lines of contact alone are 1 to 137 µrad late here, most where a pair stands far off."""
+    """Lines of contact alone are 1 to 137 µrad late here, most if a pair is far from contact."""
     mesh = CYLINDRICAL[name]
     inner = [point for point in contact_points(mesh, phase) if not point.edge]
     assert inner
@@ -66,7 +66,7 @@ def test_a_pair_touches_where_a_search_over_its_flank_finds_it(name, phase):
 
 @pytest.mark.parametrize("phase", PHASES)
 def test_a_pair_far_from_contact_is_turned_until_it_touches(phase):
-    """The gap over the arm with the teeth far apart is up to 9 µrad off, at 310 µrad."""
+    """The gap over the arm is up to 9 µrad off while the teeth are far apart, at 310 µrad."""
     driver, driven = FACE.ideal(np.array([phase]))
     for point in contact_points(FACE, phase):
         lead, gap = 0.0, 1.0

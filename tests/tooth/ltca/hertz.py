@@ -39,11 +39,11 @@ class PointContact:
 
     @property
     def axis_ratio(self):
-        """b/a."""
+        """Ratio b/a."""
         return float(axis_ratio(min(self.curvatures) / max(self.curvatures)))
 
     def _integrals(self):
-        """K(e) and (K − E)/e² of the ellipse."""
+        """Return K(e) and (K − E)/e² of the ellipse."""
         from scipy.special import ellipe, ellipkm1
 
         beta = self.axis_ratio
@@ -51,18 +51,18 @@ class PointContact:
         return k, (k - float(ellipe(m))) / m if m > 1e-6 else pi / 4.0
 
     def axes(self, force):
-        """Semi-axes a ≥ b [m] under `force` [N]."""
+        """Return the semi-axes a ≥ b [m] under `force` [N]."""
         _, part = self._integrals()
         force = np.asarray(force, dtype=float)
         a = np.cbrt(3.0 * force * part / (pi * self.modulus * min(self.curvatures)))
         return a, self.axis_ratio * a
 
     def approach(self, force):
-        """Approach δ [m] of distant points under `force` [N]."""
+        """Return the approach δ [m] of distant points under `force` [N]."""
         return np.asarray(self.coefficient * np.cbrt(np.asarray(force, dtype=float)) ** 2)
 
     def tangent(self, force):
-        """Tangent compliance dδ/dF [m/N]; infinite at no load."""
+        """Return the tangent compliance dδ/dF [m/N]; infinite at no load."""
         force = np.asarray(force, dtype=float)
         with np.errstate(divide="ignore"):
             return np.asarray(2.0 / 3.0 * self.coefficient / np.cbrt(force))
@@ -75,14 +75,14 @@ class PointContact:
         return 3.0 * k / (2.0 * pi * self.modulus * a)
 
     def pressure(self, force):
-        """Largest pressure [Pa] under `force` [N]; 0 without load."""
+        """Return the largest pressure [Pa] under `force` [N]; 0 without load."""
         a, b = self.axes(force)
         area = pi * a * b
         return np.where(area > 0.0, 1.5 * np.asarray(force) / np.where(area > 0.0, area, 1.0), 0.0)
 
 
 def compression(load, width, depth, modulus, poisson: float):
-    """Compression [m] of one body between its surface and a depth, in line contact.
+    """Return the compression [m] of one body between its surface and a depth, in line contact.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def compression(load, width, depth, modulus, poisson: float):
 
 
 def compression_tangent(width, depth, modulus, poisson: float):
-    """Derivative of :func:`compression` over the load [m²/N], the half-width growing as √q."""
+    """Return the derivative of :func:`compression` over the load [m²/N]; half-width grows as √q."""
     b, h = np.asarray(width, dtype=float), np.asarray(depth, dtype=float)
     root = np.hypot(h, b)
     shape = np.arcsinh(h / b) - poisson / (1.0 - poisson) * h / (root + h)
@@ -115,12 +115,12 @@ def compression_tangent(width, depth, modulus, poisson: float):
 
 
 def strip_shape(tau):
-    """g(τ) and τ g'(τ) of a strip, from its table."""
+    """Return g(τ) and τ g'(τ) of a strip, from its table."""
     return np.vectorize(lambda one: shape(one, strip_table()))(tau)
 
 
 def surfaces(*positions):
-    """Positions of lines between bodies that yield at their surfaces only."""
+    """Return positions of lines between bodies that yield at their surfaces only."""
     problems = []
     for lines in positions:
         count = sum(len(line.length) for line in lines)

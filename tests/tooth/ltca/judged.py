@@ -7,6 +7,6 @@ from loadshare.tooth.contact.problem import ContactProblem
 
 
 def certify_contact(problem: ContactProblem, load, force, approach) -> ContactCertificate:
-    """The verdict on forces (N,) [N] and the approach [m] claimed for a load [N]."""
+    """Return the verdict on forces (N,) [N] and the approach [m] claimed for a load [N]."""
     claimed = np.array([load]), force[None], np.array([approach])
     return certify_contacts(problem.alone, *claimed)[0]

@@ -25,7 +25,7 @@ RADIUS = 1.0 / (2.0 / 25e-3 + 2.0 / 50e-3)
 
 
 def crowned(points, length, across, along):
-    """Two crowned half-spaces that touch in the middle of a line."""
+    """Return two crowned half-spaces that touch in the middle of a line."""
     part = np.full(points, length / points)
     place = np.cumsum(part) - 0.5 * part - 0.5 * length
     line = StripLine(part, np.full(points, across), np.full(points, along), *STEEL)
@@ -33,7 +33,7 @@ def crowned(points, length, across, along):
 
 
 def uneven(seed, points=24, lines=2):
-    """Lines on a random compliance with random gaps of a few microns."""
+    """Return lines on a random compliance with random gaps of a few microns."""
     rng = np.random.default_rng(seed)
     count = points * lines
     root = rng.normal(size=(count, count)) / count
@@ -60,7 +60,7 @@ def test_two_spheres():
 
 
 def test_points_converge_to_the_ellipse():
-    """The error falls faster than in proportion to the spacing: observed order about 1.6."""
+    """The error decreases faster than in proportion to the spacing: observed order about 1.6."""
     contact = PointContact((1.0 / RADIUS, 0.3 / RADIUS), E_STAR)
     exact = float(contact.approach(200.0))
     errors = [
@@ -73,7 +73,7 @@ def test_points_converge_to_the_ellipse():
 
 @pytest.mark.parametrize("ratio", [2.0, 1.0, 0.2, 0.02])
 def test_ellipses(ratio):
-    """Whatever the axis ratio, also with the line along the minor axis: 0.5 %."""
+    """This holds for any axis ratio, including a line along the minor axis: 0.5 %."""
     contact = PointContact((1.0 / RADIUS, ratio / RADIUS), E_STAR)
     a, b = (float(x) for x in contact.axes(300.0))
     half = b if ratio > 1.0 else a
@@ -102,7 +102,7 @@ def test_line_contact_against_its_closed_form():
 @given(st.integers(0, 10_000), st.floats(-3.0, 5.0))
 @settings(max_examples=examples(20, 40))
 def test_every_load_is_certified(seed, exponent):
-    """From a thousandth of a newton up: the certificate passes by orders of magnitude."""
+    """From a thousandth of a newton up, the certificate passes by orders of magnitude."""
     problem, load = uneven(seed), 10.0**exponent
     found = solve_contact(problem, load)
     again = certify_contact(problem, load, found.force, found.approach)
@@ -120,12 +120,14 @@ def test_more_load_more_approach_and_the_tangent_is_the_slope(seed):
     middle = solve_contact(problem, 2000.0)
     assert low.approach < middle.approach < high.approach
     slope = (high.approach - low.approach) / (2000.0 * 2e-5)
-    # A point that opens or closes within the step may bend the slope by a little.
+    # A point that opens or closes within the step may change the slope slightly.
     assert middle.tangent == pytest.approx(slope, rel=1e-3)
 
 
 def test_contacts_solved_together_are_those_solved_alone():
-    """Of unequal sizes and loads, so that the smaller are filled up; round-off of one solution."""
+    """Sizes and loads are unequal, so that the smaller are padded; tolerance: round-off of one
+    solution.
+    """
     problems, loads = [uneven(1), crowned(21, 3e-3, 1 / RADIUS, 0.3 / RADIUS)], [900.0, 200.0]
     batch = ContactBatch(problems)
     for problem, load, found in zip(
@@ -171,7 +173,7 @@ def test_back_ends_exchange_and_nnls_agree(solver):
     ours = exchange(even, problem.gap, 1500.0, np.ones(48, dtype=bool))
     theirs = by_interface(even, problem.gap, 1500.0, force, backend(solver))
     np.testing.assert_allclose(theirs, ours, atol=1e-9 * 1500.0)
-    # NNLS with the load as a heavy row: the weight 1e5 leaves an error of its inverse square.
+    # NNLS with the load as a heavy row: the weight 1e5 gives an error of its inverse square.
     root = np.linalg.cholesky(even / even.max())
     gap = np.linalg.solve(root, problem.gap / even.max())
     rows = np.vstack([root.T, np.full((1, 48), 1e5)])
@@ -181,7 +183,7 @@ def test_back_ends_exchange_and_nnls_agree(solver):
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_an_exchange_that_goes_in_a_circle_is_reported(solver):
-    """It closes and opens the same points of this definite matrix for ever; a solver does not."""
+    """It closes and opens the same points of this definite matrix endlessly; a solver does not."""
     matrix = np.array(
         [[91.5, 21, -25, 81], [21, 34.5, 28, 11], [-25, 28, 50.5, -31], [81, 11, -31, 75.5]]
     )
@@ -199,7 +201,7 @@ def test_an_exchange_that_goes_in_a_circle_is_reported(solver):
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_the_solver_interface_takes_over_from_the_exchange(monkeypatch, solver):
-    """Every programme of the whole contact by a back-end: the same answer, as tightly settled."""
+    """A back-end solves every programme of the contact: the same answer, as well converged."""
     problem = uneven(9)
     ours = solve_contact(problem, 700.0)
     monkeypatch.setattr(contact_programme, "TEETH", TEETH._replace(exchanges=0))
@@ -209,8 +211,8 @@ def test_the_solver_interface_takes_over_from_the_exchange(monkeypatch, solver):
 
 
 def test_scaling_of_units():
-    """Half the modulus and twice the curvature leave the widths as they are and double every
-    compliance; with twice the gaps the same forces give twice the approach.
+    """Half the modulus and twice the curvature leave the widths unchanged and double every
+    compliance; with twice the gaps, the same forces give twice the approach.
     """
     one = uneven(11)
     soft = tuple(
@@ -247,7 +249,7 @@ def test_wrong_answers_fail_the_certificate():
 
 def test_what_does_not_pass_is_refused(monkeypatch):
     problem = uneven(5)
-    # Any forces count as settled.
+    # Any forces count as converged.
     monkeypatch.setattr(contact_programme, "TEETH", TEETH._replace(settled=1.0))
     with pytest.raises(Refused, match="does not pass its certificate") as refusal:
         solve_contact(problem, 500.0)

@@ -40,7 +40,7 @@ def test_balls_of_25_and_50_mm():
 
 @given(st.floats(1e-6, 1.0))
 def test_axis_ratio_solves_its_equation(ratio):
-    """A/B = (K − E)/((a/b)²E − K), Johnson eq. (4.25), where its terms do not cancel."""
+    """A/B = (K − E)/((a/b)²E − K), Johnson eq. (4.25), except where its terms cancel."""
     from scipy.special import ellipe, ellipk
 
     beta = float(axis_ratio(ratio))
@@ -116,15 +116,15 @@ def test_strip_shape_is_its_integral(tau):
         points=[min(tau, 1.0)],
     )[0]
     value, slope = strip_shape(np.array([tau, -tau]))
-    # Below the table's first knot, 1e-7, the shape is a straight line, which a logarithm is not.
+    # Below the table's first knot, 1e-7, the shape is linear, unlike the logarithm.
     near = 1e-8 if tau > 1e-7 else 0.5
     np.testing.assert_allclose(value, [expected, -expected], rtol=near)
     assert slope[0] == -slope[1]
 
 
 def test_a_long_row_of_strips_is_the_compression_to_the_depth():
-    """Weber and Banaschek's plane formula, once the line is long against the depth: the 3-D
-    strips of a line 200 depths long, in its middle, differ from it by (h/L)².
+    """Weber and Banaschek's plane formula, for a line that is long compared with the depth: in the
+    middle of a line 200 depths long, the 3-D strips differ from it by (h/L)².
     """
     n, depth, length, q = 401, 4e-3, 0.8, 3e5
     line = StripLine(
@@ -138,8 +138,8 @@ def test_a_long_row_of_strips_is_the_compression_to_the_depth():
     moved = surfaces([line]).compliance(force[None])[0][0] @ force
     width = float(half_width(q, 90.0, E_STAR))
     closed = 2.0 * float(compression(q, width, depth, 206e9, 0.3))
-    # The plane formula reads the depth's field at the edge of a contact of width b, the strips at
-    # its middle: they differ by (b/h)².
+    # The plane formula evaluates the field at depth at the edge of a contact of width b, the strips
+    # at its middle: they differ by (b/h)².
     assert moved[n // 2] == pytest.approx(closed, rel=3e-3)
     np.testing.assert_allclose(line.pressure(force), 2.0 * q / (np.pi * width), rtol=1e-12)
 
@@ -154,14 +154,14 @@ def test_strip_tangent_is_the_derivative_of_the_yielding():
     for j, step in enumerate(1e-3 * np.eye(n)):
         up, down = (surface.compliance(f[None])[0][0] @ f for f in (force + step, force - step))
         numeric[:, j] = (up - down) / 2e-3
-    # The table's slope is good to 1e-7 of a strip's own compliance.
+    # The table's slope is accurate to 1e-7 of a strip's own compliance.
     np.testing.assert_allclose(tangent, numeric, atol=1e-6 * tangent.max())
 
 
 @pytest.mark.parametrize("load", [1e-3, 1.0, 1e2, 1e4])
 def test_surfaces_of_lines_are_those_of_their_strips(load):
-    """The series far from a strip against the table, as tight as that is: from strips a thousand
-    half-widths apart to overlapping ones. Lines do not feel one another.
+    """The series far from a strip is compared with the table, to the accuracy of the table: from
+    strips a thousand half-widths apart to overlapping ones. Lines do not affect one another.
     """
     rng = np.random.default_rng(2)
     lines = [
@@ -169,7 +169,7 @@ def test_surfaces_of_lines_are_those_of_their_strips(load):
         for n in (17, 12)
     ]
     force = load * rng.uniform(0.5, 1.5, 29)
-    # A second position with one of the lines fills up with points that yield nothing.
+    # A second position with one of the lines is padded with points that do not yield.
     both = np.stack([force, np.where(np.arange(29) < 17, force, 0.0)])
     secant, tangent = surfaces(lines, lines[:1]).compliance(both)
     np.testing.assert_array_equal(secant[1, :17, :17], secant[0, :17, :17])
@@ -188,7 +188,7 @@ def test_surfaces_of_lines_are_those_of_their_strips(load):
         tight = 1e-9 * wanted.max()
         np.testing.assert_allclose(secant[part, part], wanted, atol=tight)
         wanted = wanted - 0.5 * scale * (far_slope - near_slope)
-        # The table's slope is good to 1e-7.
+        # The table's slope is accurate to 1e-7.
         np.testing.assert_allclose(tangent[part, part], wanted, atol=1e2 * tight)
     assert not secant[:17, 17:].any()
 

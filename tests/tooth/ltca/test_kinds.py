@@ -1,4 +1,4 @@
-"""Every kind of pair through the whole analysis: external, herringbone, internal, face gear."""
+"""The whole analysis for every kind of pair: external, herringbone, internal, face gear."""
 
 import math
 from functools import cache
@@ -59,8 +59,8 @@ def test_certified_and_in_balance_with_the_torque(kind):
             float(np.sum(np.cross(one.line.points, one.line.normals)[:, 2] * one.force))
             for one in row[-1]
         )
-        # The normal's arm about the driver's axis is r_b cos β_b except for what the gap's own
-        # normals lean.
+        # The normal's arm about the driver's axis is r_b cos β_b, except for the inclination of the
+        # gap's own normals.
         assert pair.helices * about_axis == pytest.approx(torque, rel=1e-3)
     assert np.all(found.law.b >= 0.0)
     assert np.all(found.law.c >= 0.0)
@@ -76,8 +76,8 @@ def test_one_helix_of_two_carries_half():
 
 @pytest.mark.parametrize("model", ["slices", "finite elements"])
 def test_a_line_about_to_leave_the_flanks_lets_go_of_its_load(model):
-    """The shorter it was, the wider its contact, and the more it bore: 6 % of the load next to
-    none on a helical pair.
+    """The shorter it was, the wider was its contact, and the more it carried: 6 % of the load when
+    almost nothing of it was left, for a helical pair.
     """
     pair = helicoid_pair(
         HelicoidGear(3e-3, 25, 20e-3, helix_angle=0.3),
@@ -89,7 +89,7 @@ def test_a_line_about_to_leave_the_flanks_lets_go_of_its_load(model):
     shares = [min(shares.values()) for shares in found.shares()[1:]]
     assert np.all(np.diff(shares) < 0.0)
     assert shares[-1] < 0.003
-    # The approach goes on from where there is no line any more.
+    # The approach is continuous with that without the line.
     assert found.approach[-1, -1] == pytest.approx(found.approach[0, -1], rel=0.02)
 
 

@@ -48,7 +48,7 @@ def test_every_contact_is_certified_and_carries_the_load():
 
 
 def test_the_contact_balances_the_torque():
-    """Forces along their normals, at their points, make the driver's torque about its axis."""
+    """Forces along their normals, at their points, add up to the driver's torque about its axis."""
     found = analysed()
     centre = np.zeros(3)  # the driver's axis
     for row in found.lines:
@@ -69,7 +69,7 @@ def test_tangent_is_the_slope_of_the_angle():
     near = (0.9, 0.95, 1.0, 1.0 - 1e-4, 1.0 + 1e-4)
     found = ltca(CROWNED, TORQUE, 3, near, "slices", points=20)
     slope = found.increment(1.0 - 1e-4, 1.0 + 1e-4)
-    # The set of touching points may change within the step and bends the slope slightly.
+    # The set of touching points may change within the step, which changes the slope slightly.
     np.testing.assert_allclose(found.tangent(1.0), slope, rtol=1e-3)
     between = found.increment(0.95, 1.0)
     low, high = found.tangent(0.95), found.tangent(1.0)
@@ -79,7 +79,7 @@ def test_tangent_is_the_slope_of_the_angle():
 
 @pytest.mark.parametrize("crowned", [False, True])
 def test_the_law_goes_through_its_three_loads_and_near_the_others(crowned):
-    """Measured: 0.21 % at most for plain flanks, 0.15 % for crowned ones."""
+    """Measured misfit: 0.21 % at most for plain flanks, 0.15 % for crowned ones."""
     found = analysed(crowned=crowned)
     at_fit = np.isclose(found.torque[:, None], TORQUE * np.array([0.1, 0.5, 0.9])).any(axis=1)
     assert not found.law.bounded.any()
@@ -94,7 +94,7 @@ def test_crowning_makes_a_point_contact_and_plain_flanks_a_line():
     crowned, plain = analysed(), analysed(crowned=False)
     assert np.all(crowned.law.c > 5.0 * plain.law.c)
     assert np.all(crowned.secant() < plain.secant())
-    # A whole cycle sees as many pairs on average as the contact ratio says, to 1/positions.
+    # The mean number of pairs over a cycle is the contact ratio, to 1/positions.
     assert plain.contact_ratio[-1] == pytest.approx(PLAIN.contact_ratio, abs=1.0 / 5.0)
 
 
@@ -107,7 +107,7 @@ def test_load_spreads_with_torque():
 
 
 def test_symmetric_pairs_share_symmetrically():
-    """A crowned spur pair is its own mirror image in the middle of the face."""
+    """A crowned spur pair is symmetric about the middle of the face."""
     for row in analysed().lines:
         for one in row[-1]:
             np.testing.assert_allclose(one.force, one.force[::-1], atol=1e-6 * one.force.max())
@@ -122,8 +122,8 @@ def test_two_halves_of_a_herringbone_are_twice_as_stiff():
 
 
 def test_light_load_works():
-    """Down to a ten-millionth of the rated torque, where the ellipse is smaller than a strip: the
-    contact is certified and the gears meet ever more softly.
+    """Down to 1e-7 of the rated torque, where the ellipse is smaller than a strip, the contact is
+    certified and the mesh becomes ever softer.
     """
     parts = (1e-7, 1e-5, 1e-3, 0.1)
     found = ltca(CROWNED, TORQUE, 2, parts, "slices", points=20)
@@ -133,7 +133,7 @@ def test_light_load_works():
 
 
 def test_a_secant_is_that_of_the_fitted_loads_only():
-    """Below them Δφ − a means nothing: of pair p12 it made −6.8 to 2.9 K at 0.01 T."""
+    """Below them Δφ − a is meaningless: for pair p12 it gave −6.8 to 2.9 K at 0.01 T."""
     found = ltca(CROWNED, TORQUE, 2, (0.01, 0.1, 1.0), "slices", points=20)
     assert np.all(found.secant(0.1) < found.secant(1.0))
     with pytest.raises(ValueError, match=r"0\.01 of the rated torque lies below the loads"):
@@ -151,7 +151,7 @@ def test_edges_are_found_with_their_share():
 
 
 def test_points_on_a_line_change_little():
-    """Steps that shrink; the default's is below 0.5 %."""
+    """The steps decrease; the default's is below 0.5 %."""
     found = [ltca(CROWNED, TORQUE, 2, compliance="slices", points=n) for n in (16, 32, 64)]
     stiffness = np.array([one.secant() for one in found])
     steps = np.abs(np.diff(stiffness, axis=0)) / stiffness[-1]
@@ -170,8 +170,8 @@ def test_slices_stand_near_finite_elements():
 
 @pytest.mark.slow
 def test_mesh_and_points_at_the_default():
-    """Finite elements: refinement of the mesh changes K by a shrinking amount, 2 % at most from
-    the default on.
+    """Finite elements: refinement of the mesh changes K by decreasing amounts, 2 % at most from the
+    default on.
     """
     meshes = (
         Divisions(2, 2, 1, 1, 2, 3),
@@ -221,14 +221,14 @@ def test_fit_finds_the_law_and_bounds_it():
         found.tangent(500.0), 1.0 / (law[:, 1] + 2e0 / 3e0 * law[:, 2] / np.cbrt(500.0)), rtol=1e-10
     )
 
-    # A progressive angle asks for c < 0: the best straight line is taken and marked.
+    # A progressive angle would need c < 0: the best straight line is taken and marked.
     steep = (1e-7 * torque + 1e-11 * torque**2)[None]
     bounded = fit_law(torque, steep)
     assert bounded.bounded[0]
     assert bounded.c[0] == 0.0
     line = np.polyfit(torque, steep[0], 1)
     assert bounded.b[0] == pytest.approx(line[0], rel=1e-9)
-    # A strongly degressive one asks for b < 0.
+    # A strongly degressive one would need b < 0.
     flat = (1e-5 * np.log1p(torque))[None]
     bounded = fit_law(torque, flat)
     assert bounded.bounded[0]

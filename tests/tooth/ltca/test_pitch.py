@@ -1,4 +1,4 @@
-"""Pitch deviations: teeth that stand ahead or back take more or less of the load."""
+"""Pitch deviations: teeth ahead of or behind their place take more or less of the load."""
 
 from dataclasses import replace
 
@@ -19,11 +19,11 @@ from loadshare.tooth.unloaded.positions import transmission_error
 from loadshare.tooth.unloaded.touch import contact_points
 
 BACK = 10e-6
-"""By which tooth 2 of the driver stands back [m]."""
+"""Distance by which tooth 2 of the driver is behind its place [m]."""
 
 
 def pair(driver=(), driven=(), first=1):
-    """Two spur gears: ε_α = 1.68, pairs 0 and −1 in contact from phase 0.12 to 0.81."""
+    """Return two spur gears: ε_α = 1.68, pairs 0 and −1 in contact from phase 0.12 to 0.81."""
     common = {"module": 3e-3, "face_width": 20e-3}
     gears = [
         HelicoidGear(teeth=teeth, pitch=PitchDeviations(tuple(ahead), start), **common)
@@ -33,16 +33,16 @@ def pair(driver=(), driven=(), first=1):
 
 
 def independent(gears):
-    """Teeth that do not move their neighbours."""
+    """Return compliances of teeth that do not move their neighbours."""
     sides = (gears.driver, 1), (gears.driven, gears.driven_side)
     return PairCompliance(*(Slices(*side, rigid_body=True) for side in sides), "slices")
 
 
 def test_a_tooth_that_stands_back_waits_for_the_load():
-    """Two springs side by side, one with a gap g: it takes load once the other yields by g.
+    """Two springs in parallel, one with a gap g: it takes load once the other yields by g.
 
-    Both springs are those of the pairs alone. Z is the yielding of the first; the second's is
-    Z − g, with g = 10 µm times cos α along the normal.
+    Both springs are those of the single pairs. Z is the deflection of the first; that of the second
+    is Z − g, where g is 10 µm times cos α along the normal.
     """
     gears = pair([0.0, -BACK])
     (place,) = gears.positions([0.5], 12)
@@ -77,7 +77,7 @@ def test_a_tooth_that_stands_back_waits_for_the_load():
 
 
 def _load_for(problem, approach):
-    """Load under which a contact yields by so much, by bisection."""
+    """Return the load at which a contact yields by `approach`, by bisection."""
     low, high = 1.0, 1e6
     while high - low > 1e-9 * high:
         middle = 0.5 * (low + high)
@@ -92,7 +92,7 @@ def _load_for(problem, approach):
     ("driver", "driven", "sign"), [((5e-6,) * 25, (), -1.0), ((), (5e-6,) * 50, 1.0)]
 )
 def test_a_whole_gear_ahead_is_turned(driver, driven, sign):
-    """All teeth ahead by F is the gear turned by F/r: a lead of −F/r1, or F/r2 times the ratio."""
+    """All teeth ahead by F turn the gear by F/r: a lead of −F/r1, or F/r2 times the ratio."""
     gears, plain = pair(driver, driven), pair()
     turn = sign * 5e-6 / 37.5e-3  # the driven gear's F/r2 times its ratio of 2 is as much
     for phase in (0.0, 0.3, 0.9):
@@ -106,7 +106,7 @@ def test_a_whole_gear_ahead_is_turned(driver, driven, sign):
 
 
 def test_the_first_contact_is_on_the_tooth_that_stands_ahead():
-    """In the double zone the tooth ahead touches first; where it is alone there is no choice."""
+    """In the double zone the tooth ahead touches first; in the single zone there is no choice."""
     gears = pair([0.0, 0.0, 8e-6], first=3)  # tooth 3 is pair 0, tooth 2 is pair 1
     assert gears.driver_gear.tooth_of(0) == 3
     assert gears.driver_gear.tooth_of(-1) == 4
@@ -131,7 +131,7 @@ def test_a_pair_file_takes_them(tmp_path):
     assert "In contact under T are the teeth" in law.findings[-1]
     plain = load_pair(written(tmp_path, SPUR.replace("positions = 2", "positions = 4")))
     assert given.hash != plain.hash
-    # The tooth that stands back softens the mesh where two pairs would carry.
+    # The tooth behind its place softens the mesh where two pairs would carry.
     late, even = found.angle[:, -1], plain.analyse().angle[:, -1]
     assert late[0] == even[0]
     assert np.all(late[1:] > 1.1 * even[1:])
@@ -139,7 +139,7 @@ def test_a_pair_file_takes_them(tmp_path):
 
 
 def test_single_deviations_add_up_the_other_way(tmp_path):
-    """A pitch that is too long puts the next tooth back; the last one closes the circle."""
+    """A pitch that is too long moves the next tooth back; the last pitch closes the circle."""
     single = ["3 um", "-1 um", *["0 um"] * 22, "-2 um"]
     text = SPUR + f"\n[driver.pitch]\nsingle = {single}\n".replace("'", '"')
     ahead = load_pair(written(tmp_path, text)).geometry.driver_gear.pitch.cumulative
@@ -151,7 +151,7 @@ def test_a_face_gear_takes_them(tmp_path):
     text = FACE + '\n[driven.pitch]\ncumulative = ["-15 um"]\n'
     gears = load_pair(written(tmp_path, text)).geometry
     plain = load_pair(written(tmp_path, FACE)).geometry
-    # Pair 0 alone at phase 0.4: its tooth stands back by F, towards the pinion.
+    # Pair 0 is alone at phase 0.4: its tooth is behind by F, towards the pinion.
     late = [transmission_error(p, 0.4) for p in (gears, plain)]
     assert late[0] - late[1] == pytest.approx(-15e-6 / 244.5e-3 * 120 / 25, rel=1e-3)
 

@@ -20,7 +20,7 @@ from loadshare.tooth.cylindrical.pair import HelicoidPair
 HELIX = math.radians(15.8)
 SINGLE, CYCLE = 12.37047, 17.46485
 THEORY = 0.8
-"""The standard's correction of the theory to the tests."""
+"""The standard's correction from theory to tests."""
 
 
 def pair(wheel_bore=None):
@@ -31,14 +31,14 @@ def pair(wheel_bore=None):
 
 
 def cycle_stiffness(gears, model, phases=4):
-    """Mean over the cycle at 300 N/mm [N/(mm·µm)], along the base tangent, per face width."""
+    """Return the mean over the cycle at 300 N/mm, along the base tangent [N/(mm·µm)]."""
     torque = 300e3 * 0.1 * gears.driver_gear.radius
     found = ltca(gears, torque, phases, compliance=model, points=24)
     return float(np.mean(found.secant())) / gears.driver_gear.base_radius**2 / 0.1 * 1e-9
 
 
 def test_slices_on_half_planes_are_the_standards_theory():
-    """Without the 0.8 the standard's c_γα is plane theory, as slices on half-planes are: 5 %."""
+    """Without the 0.8, the standard's c_γα is plane theory, like slices on half-planes: 5 %."""
     gears = pair()
     sides = (gears.driver, 1), (gears.driven, gears.driven_side)
     plane = PairCompliance(*(Slices(*side, rigid_body=True) for side in sides), "slices")
@@ -46,22 +46,25 @@ def test_slices_on_half_planes_are_the_standards_theory():
 
 
 def test_slices_on_a_solid_wheel_stand_near_the_tests():
-    """A wheel solid to 0.72 of its root: the slices find the standard's factor too, within 10 %."""
+    """For a wheel solid to 0.72 of its root radius, the slices also give the standard's factor,
+    within 10 %.
+    """
     assert cycle_stiffness(pair(0.30), "slices", 8) == pytest.approx(CYCLE, rel=0.10)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("wheel_bore", [0.34, 0.30, 0.26])
 def test_finite_elements_stand_near_the_tests(wheel_bore):
-    """A wheel solid to the bore, as C_R = 1 means: within 10 % of the figure from tests."""
+    """A wheel solid to the bore, as for C_R = 1: within 10 % of the figure from tests."""
     found = cycle_stiffness(pair(wheel_bore), "finite elements")
     assert found == pytest.approx(CYCLE, rel=0.10)
 
 
 @pytest.mark.slow
 def test_single_pair_stiffness_stands_near_the_tests():
-    """c': the stiffest position of one pair alone, of the spur pair with about the virtual numbers
-    of teeth (18.9 and 114.5), times cos β; wheel solid to the same part of its root as above.
+    """c' is the stiffest position of one pair alone, for the spur pair with about the virtual
+    numbers of teeth (18.9 and 114.5), times cos β; the wheel is solid to the same fraction of its
+    root radius as above.
     """
     common = {"module": 8e-3, "face_width": 0.1, "dedendum": 1.4}
     pinion = HelicoidGear(teeth=19, profile_shift=0.145, **common)

@@ -29,7 +29,7 @@ PAIRS = {
 @pytest.mark.parametrize("count", [1, 3, 5, 20])
 @pytest.mark.parametrize("changes", [(), (0.123, 0.81), (0.0, 0.5)])
 def test_jumping_cubics_are_integrated_exactly(count, changes):
-    """Gauss's rule with two nodes on every stretch between jumps: round-off is left."""
+    """Gauss's rule with two nodes on every interval between jumps: only round-off remains."""
     found = cells(count, changes)
     assert np.all((found.phase >= 0.0) & (found.phase < 1.0))
     assert found.weight.sum(axis=1) == pytest.approx(1.0, abs=1e-14)
@@ -37,14 +37,16 @@ def test_jumping_cubics_are_integrated_exactly(count, changes):
     jumps = sum(1.0 - change for change in changes)
     assert found.mean(one + np.zeros_like(found.phase)).mean() == pytest.approx(jumps, abs=1e-14)
     if count > 1:
-        # Position 1 stands for a part of the cycle that does not wrap round.
+        # Position 1 represents a part of the cycle that does not wrap around.
         low, high = 0.5 / count, 1.5 / count
         wanted = (high**4 - low**4) / 4.0 * count
         assert found.mean(found.phase**3)[1] == pytest.approx(wanted, rel=1e-13)
 
 
 def test_contact_changes_where_pairs_come_and_go():
-    """A spur pair: two pairs between the changes for ε_α − 1 of the cycle, one else."""
+    """In a spur pair, two pairs of teeth are in contact between the changes for ε_α − 1 of the
+    cycle, else one.
+    """
     pair = PAIRS["spur"]
     first, last = pair.changes
     for low, high in ((first, last), (last, first + 1.0)):
@@ -61,16 +63,16 @@ def test_contact_changes_where_pairs_come_and_go():
 @pytest.mark.parametrize("name", mostly_slow(PAIRS, ("relieved", "internal")))
 @pytest.mark.quick(1)
 def test_the_mean_does_not_hang_on_the_positions(name):
-    """Mean deflection under T against 401 positions, which are within 4e-4 themselves.
+    """Mean deflection under T against 401 positions, which are accurate to 4e-4 themselves.
 
-    At 1, 2, 5 positions it is up to 32, 8, 5 % off of a spur pair; the means are 3.3e-4 off at
-    most, relieved tips included.
+    At 1, 2, 5 positions it is up to 32, 8, 5 % off for a spur pair; the means are 3.3e-4 off at
+    most, including relieved tips.
     """
     wanted = ltca(PAIRS[name], 100.0, 401, (1.0,), "slices").angle[:, -1].mean()
     for count in (1, 2, 5, 10):
         found = ltca(PAIRS[name], 100.0, count, (1.0,), "slices", means=True)
         assert found.law_angle[:, -1].mean() == pytest.approx(wanted, rel=5e-4)
-        # So is the law's, at the loads of its fit.
+        # So is the mean of the law, at the loads of its fit.
         fit = found.law.angle(90.0).mean()
         assert fit == pytest.approx(
             found.law_angle[:, np.isclose(found.torque, 90.0)].mean(), rel=1e-9
@@ -78,7 +80,7 @@ def test_the_mean_does_not_hang_on_the_positions(name):
 
 
 def test_five_points_alias_a_spur_pair():
-    """What the means are for: −5.3 % of the mean deflection, +4.4 % of the mean stiffness."""
+    """The error that means avoid: −5.3 % of the mean deflection, +4.4 % of the mean stiffness."""
     found = ltca(PAIRS["spur"], 100.0, 5, (1.0,), "slices", means=True)
     assert found.approach[:, -1].mean() / found.elastic[:, -1].mean() == pytest.approx(
         0.947, abs=2e-3
@@ -88,7 +90,7 @@ def test_five_points_alias_a_spur_pair():
 @pytest.mark.parametrize("name", mostly_slow(PAIRS, ("relieved", "internal")))
 @pytest.mark.quick(1)
 def test_the_shape_converges(name):
-    """Order 1 or better on average over the cycle: only the part about a jump keeps its error."""
+    """Order 1 or better on average over the cycle: only the part around a jump keeps its error."""
     course = {
         count: ltca(PAIRS[name], 100.0, count, (1.0,), "slices", means=True).law_angle[:, -1]
         for count in (5, 15, 45, 135)
@@ -111,7 +113,7 @@ def test_means_need_equal_parts():
 
 @pytest.mark.parametrize("pitches", [1.0, 1.0 + 1e-7, 2.0])
 def test_faces_of_whole_axial_pitches_have_means(pitches):
-    """Pairs come and go at once, next to where nearly nothing is left of their lines."""
+    """Pairs enter and leave at the same time, where almost nothing is left of their lines."""
     width = pitches * math.pi * 3e-3 / math.sin(math.radians(15.0))
     angle = math.radians(15.0)
     ends = (gear(z, face_width=width, helix_angle=way * angle) for z, way in ((25, 1), (50, -1)))
@@ -123,7 +125,7 @@ def test_faces_of_whole_axial_pitches_have_means(pitches):
 
 @pytest.mark.parametrize("beside", [1e-15, 1e-13, 1e-9, 1e-7, 1e-6, 1e-5])
 def test_a_line_of_which_nearly_nothing_is_left_carries_nothing(beside):
-    """It would be a contact that is metres wide, or none with which the contact settles."""
+    """Otherwise its contact would be metres wide, or the iteration would not converge."""
     mesh = PAIRS["helical"]
     phases = [(change + way * beside) % 1.0 for change in mesh.changes for way in (-1, 1)]
     found = ltca(mesh, 100.0, phases, (0.1, 1.0), "slices", points=8)

@@ -10,8 +10,8 @@ _known: dict[tuple[str, str], object] = {}
 
 @pytest.fixture(autouse=True)
 def known_effects(monkeypatch):
-    """What rims and sampling do to a pair goes with each of its laws: it is found once for all
-    tests, of which `test_sureness` asks for it without a law, and finds it anew.
+    """Find the effect of rims and sampling on each pair only once for all tests. `test_sureness`
+    asks for it without a law, and computes it again.
     """
     for name in ("rim_effects", "sampled_deflection"):
         monkeypatch.setattr(sensitivity, name, _found_once(getattr(sensitivity, name)))
@@ -30,7 +30,7 @@ def _found_once(find):
 
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path, monkeypatch):
-    """No test reads or fills the user's cache."""
+    """Keep tests from reading or filling the user's cache."""
     folder = tmp_path / "cache"
     monkeypatch.setenv("LOADSHARE_CACHE", str(folder))
     return folder
@@ -43,20 +43,20 @@ def laws(tmp_path_factory):
 
 @pytest.fixture
 def shared_cache(own_cache, laws, monkeypatch):
-    """Laws that other tests of the module have computed are known."""
+    """Use the laws that other tests of the module have computed."""
     monkeypatch.setenv("LOADSHARE_CACHE", str(laws))
 
 
 @pytest.fixture
 def empty_cache(shared_cache, own_cache, monkeypatch):
-    """No law is known, also where others share theirs."""
+    """Use an empty cache, even in modules whose tests share laws."""
     monkeypatch.setenv("LOADSHARE_CACHE", str(own_cache))
     return own_cache
 
 
 @pytest.fixture
 def spur(tmp_path):
-    """A small spur pair that slices solve in a moment."""
+    """Write a small spur pair that slices solve quickly."""
     file = tmp_path / "spur.toml"
     file.write_text(SPUR, encoding="utf-8")
     return file

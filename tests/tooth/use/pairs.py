@@ -1,4 +1,4 @@
-"""Pair files of the tests, and a case whose one mesh names one."""
+"""Pair files of the tests, and a case whose one mesh names a pair file."""
 
 from pathlib import Path
 
@@ -71,7 +71,7 @@ pressure_angle = "20 deg"
 
 
 def written(folder, text, name="pair.toml"):
-    """A file with a text."""
+    """Write a text to a file; return the file."""
     file = folder / name
     file.write_text(text, encoding="utf-8")
     return file

@@ -1,4 +1,4 @@
-"""The page on tooth contact names every key and shows what the pair files give."""
+"""The page on tooth contact names every key and shows the results of the pair files."""
 
 import re
 

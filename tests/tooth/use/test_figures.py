@@ -1,4 +1,4 @@
-"""Pictures of a pair against what was computed."""
+"""Pictures of a pair against the computed values."""
 
 import math
 
@@ -19,7 +19,7 @@ def analysed(spur):
 
 
 def rows_of(figure):
-    """All data of a figure."""
+    """Return all data of a figure."""
     return [row for rows in figure.spec["datasets"].values() for row in rows]
 
 
@@ -70,7 +70,7 @@ def test_the_pattern_is_as_wide_as_the_contact(analysed):
     largest = max(float(load.half_width.max()) for row in found.lines for load in row[-1])
     assert len(figure.spec["datasets"]) == 2
     for rows in figure.spec["datasets"].values():
-        # Corners 1 and 2 of a cell stand across the line from one another.
+        # Corners 1 and 2 of a cell are opposite each other across the line.
         sides = [{row["cell"]: row["y"] for row in rows if row["order"] == k} for k in (1, 2)]
         widest = max(abs(sides[1][cell] - sides[0][cell]) for cell in sides[0])
         assert widest == pytest.approx(2e3 * largest, rel=1e-3)

@@ -1,4 +1,4 @@
-"""Laws by the contact analysis of a case's own teeth, and what results say of a law's basis."""
+"""Laws from the contact analysis of a case's own teeth, and what results state about them."""
 
 import json
 
@@ -174,7 +174,7 @@ def test_the_rim_follows_from_real_dimensions(case, planetary):
     assert (pair.driver.rim, pair.driven.rim) == (0.02, 0.06)
     ring = inline_pair(planetary, "p1-r").geometry.driven_gear
     assert ring.rim_radius == 0.125
-    # A rim on a web counts before the bore, from the root: 37.86 − 1.05·3 mm.
+    # A rim on a web takes precedence over the bore; it counts from the root: 37.86 − 1.05·3 mm.
     on_web = case.replace({"gears.a.rim": "5 mm"})
     gear = inline_pair(on_web, "a-b").geometry.driver_gear
     assert gear.root - gear.rim_radius == pytest.approx(5e-3, rel=1e-12)
@@ -186,7 +186,7 @@ def test_the_rim_follows_from_real_dimensions(case, planetary):
 
 
 def test_a_thicker_body_yields_more(case):
-    """40 mm of bore against 60 mm: the mean law at the rated torque is softer."""
+    """For a bore of 40 mm instead of 60 mm, the mean law at the rated torque is softer."""
     angles = []
     for bore in ("40 mm", "60 mm"):
         a, b, c = coefficients(case.replace({"gears.a.bore": bore}))
@@ -195,7 +195,7 @@ def test_a_thicker_body_yields_more(case):
 
 
 def test_the_rated_torque_does_not_hang_on_the_load(case):
-    """Left out, it is 50 N/mm² · 20 mm · 3 mm · r; a sweep of the load keeps one law."""
+    """If left out, it is 50 N/mm² · 20 mm · 3 mm · r, so a sweep of the load keeps one law."""
     case = case.replace({'meshes."a-b".rated_torque': None})
     pair = inline_pair(case, "a-b")
     assert pair.torque == pytest.approx(50e6 * 20e-3 * 3e-3 * pair.geometry.driver_gear.radius)
@@ -245,7 +245,7 @@ def test_problems_stand_with_the_keys_of_the_case(case):
 
 
 def test_a_tip_that_cuts_counts_its_alteration(case):
-    """Of an addendum of 1.2, at most 1.26971 was allowed."""
+    """An addendum of 1.2 used to be refused with "at most 1.26971"."""
     few = {"teeth": 16, "profile_shift": 0.1}
     many = {"teeth": 60, "profile_shift": 0.0, "addendum": 1.2, "tip_alteration": "0.4 mm"}
     gears = {f"gears.{g}.{key}": v for g, of in (("a", few), ("b", many)) for key, v in of.items()}
@@ -292,7 +292,7 @@ def test_a_result_says_what_its_laws_are_from(case, tmp_path):
     ],
 )  # fmt: skip
 def test_loads_outside_the_range_of_a_law_are_reported(case, word, torque, start):
-    """ISO 6336-1 from F_t/b = 100 N/mm: 75.74 N·m on 37.87 mm and 20 mm."""
+    """ISO 6336-1 holds from F_t/b = 100 N/mm on: 75.74 N·m on 37.87 mm and 20 mm."""
     changes = {"operating.torque": torque, 'meshes."a-b".law': word}
     if word == "iso":
         changes['meshes."a-b".rated_torque'] = None
@@ -317,7 +317,7 @@ def test_the_basis_is_no_part_of_the_mechanics(case):
 
 
 def test_it_does_not_matter_which_gear_a_mesh_names_first(case):
-    """The analysis of the one pair runs through the cycle of the other backwards."""
+    """The analysis of the one pair goes through the cycle of the other backwards."""
     case = case.replace({"operating.positions": 5, 'meshes."a-b".rated_torque': "130 N*m"})
     rated = f"{130.0 * 49 / 25!r} N*m"
     named = {'meshes."a-b"': None, 'meshes."b-a"': {"law": "ltca", "rated_torque": rated}}

@@ -1,4 +1,4 @@
-"""Law files and the cache in which they are kept."""
+"""Law files, and the cache in which they are stored."""
 
 import math
 from pathlib import Path
@@ -31,7 +31,7 @@ def test_a_law_file_holds_the_law_bit_for_bit(spur, tmp_path):
         np.testing.assert_array_equal(values, getattr(found.law, key))
     assert again.computed.pair_hash == pair.hash
     assert again.computed.torque.si == 100.0
-    # Three loads are met exactly; the misfit is that at the others.
+    # Three loads are met exactly; the misfit is that at the other loads.
     assert all(0.0 < part < 0.05 for part in again.misfit)
 
 
@@ -89,7 +89,7 @@ def test_a_case_that_is_solved_again_has_the_law_of_the_file_as_it_is(spur, tmp_
 
 
 def test_a_law_file_describes_its_gears(tmp_path):
-    """Of 25 and 49 teeth: r_b = z m cos α_t/(2 cos β), tan α_t = tan 20°/cos 8°."""
+    """For 25 and 49 teeth: r_b = z m cos α_t/(2 cos β), tan α_t = tan 20°/cos 8°."""
     text = SPUR.replace("[driven]", 'helix_angle = "8 deg"\n[driven]\nprofile_shift = -0.1')
     pair = load_pair(written(tmp_path, text.replace("teeth = 50", "teeth = 49")))
     gears = load_law(written(tmp_path, law_text(computed_law(pair)), "law.toml")).computed.gears

@@ -1,4 +1,4 @@
-"""Pair files: what they give, and how their mistakes are reported."""
+"""Pair files: their results, and the reports on their mistakes."""
 
 import math
 import re
@@ -139,7 +139,7 @@ def test_problems_of_the_geometry_stand_where_they_were_written(tmp_path):
     ],
 )  # fmt: skip
 def test_a_limit_that_is_told_may_be_written(text, key, line, tmp_path):
-    """With its six figures: a limit is rounded to the side on which the value is allowed."""
+    """A limit of six digits is rounded towards the side on which the value is allowed."""
     gear, name = key.split(".")
     problem = problems_in(written(tmp_path, text))[key]
     limit = re.search(r"(-?\d[\d.]*( mm)?)( |$)", problem.allowed.removeprefix("at least L1 = "))
@@ -186,7 +186,7 @@ tip_radius = 0.2
 addendum = {}
 [driven]
 tip_radius = 0.2"""
-"""To be pointed with an addendum of 1.21484, and a pinion that would carry there."""
+"""Makes tips pointed at an addendum of 1.21484, on a pinion that would carry there."""
 
 
 @pytest.mark.parametrize(
@@ -200,7 +200,9 @@ tip_radius = 0.2"""
 def test_thin_tips_are_named_where_contact_is_refused(
     tmp_path, addendum, torque, model, positions, what
 ):
-    """A law had a negative stiffness, elements a traceback, and the remedy was more points."""
+    """The law used to have a negative stiffness, elements gave a traceback, and the remedy named
+    was more points.
+    """
     text = SPUR.replace("20 deg", "25 deg").replace("100 N*m", torque).replace("slices", model)
     text = text.replace("positions = 2\npoints = 8", f"positions = {positions}\npoints = 16")
     pair = load_pair(written(tmp_path, text.replace("[driven]", SHARP.format(addendum))))
@@ -299,13 +301,13 @@ positions = 1
 
 
 def test_a_pinion_of_few_teeth_has_room_in_its_elements(tmp_path):
-    """Its contact ratio of 4.9 asks for a model of nine teeth, more than it has."""
+    """Its contact ratio of 4.9 would need a model of nine teeth, more than it has."""
     text = FEW + "points = 4\nlayers = 2\n"
     found = [
         load_pair(written(tmp_path, text + more)).analyse().elastic[0, -1]
         for more in ("", "teeth = 7\n")
     ]
-    # Without the word the driven gear has nine.
+    # Without that key, the driven gear has nine.
     assert found[0] == pytest.approx(found[1], rel=1e-2)
 
 
@@ -320,7 +322,7 @@ def test_a_model_has_fewer_teeth_than_its_gears(text, few, tmp_path):
 
 
 def test_a_pinion_of_few_teeth_keeps_a_body(tmp_path):
-    """1.5 tooth heights would leave a bore that hardly holds what winds up about it."""
+    """1.5 tooth heights would leave a bore too small to hold the body that winds up about it."""
     pair = load_pair(written(tmp_path, FEW)).revised(compliance="slices")
     gear = pair.geometry.driver_gear
     assert gear.root - 1.5 * (gear.tip - gear.root) < 0.25 * gear.root
@@ -338,7 +340,7 @@ def test_options_of_the_finite_elements_reach_them(tmp_path):
     finer = text.replace("layers = 2", "layers = 5")
     fine = load_pair(written(tmp_path, finer)).revised(positions=1).analyse()
     change = float(coarse.secant()[0] / fine.secant()[0]) - 1.0
-    # Fewer elements are stiffer, and quadratic ones already near.
+    # Fewer elements are stiffer, and quadratic ones are already close.
     assert 0.0 < change < 0.05
 
 
@@ -346,7 +348,8 @@ def test_a_misaligned_pair_as_a_whole_is_turned_and_its_law_is_not(tmp_path):
     aligned = load_pair(written(tmp_path, FACE))
     text = FACE + '[misalignment]\ngear_shift = "20 um"\n'
     shifted = load_pair(written(tmp_path, text))
-    # Shifted towards the pinion by s, the flank is met earlier by s sin α along the line of action.
+    # If it is shifted towards the pinion by s, the flank is met earlier by s sin α along the line
+    # of action.
     lead = -20e-6 * math.sin(math.radians(25)) / aligned.geometry.arm
     assert aligned.offset == 0.0
     assert shifted.offset == pytest.approx(lead, rel=0.02)
@@ -357,8 +360,9 @@ def test_a_misaligned_pair_as_a_whole_is_turned_and_its_law_is_not(tmp_path):
 @pytest.mark.parametrize("key", ["deviation", "inclination"])
 @pytest.mark.quick(1)
 def test_a_tilt_about_the_middle_of_the_face_leaves_the_loaded_angle(tmp_path, key):
-    """A case cannot state it, so the law keeps it: with the whole face in contact, both halves
-    of the tilt cancel, and what is left of the lead at one end is not taken off the law."""
+    """A case cannot state it, so the law keeps it: with the whole face in contact, both halves of
+    the tilt cancel, and the lead at one end must not be subtracted from the law.
+    """
     heavy = SPUR.replace("100 N*m", "300 N*m").replace("points = 8", "points = 16")
     tilt = f'[misalignment]\n{key} = "0.5 mrad"\n'
     pairs = [load_pair(written(tmp_path, text)) for text in (heavy, heavy + tilt)]
@@ -376,13 +380,14 @@ def test_a_tilt_about_the_middle_of_the_face_leaves_the_loaded_angle(tmp_path, k
 
 
 def test_a_tilt_of_a_face_gear_stays_in_its_law(tmp_path):
-    """Beside a shift, which the law leaves out as if there were no tilt."""
+    """The same pair also has a shift, which the law leaves out as without a tilt."""
     tilt = '[misalignment]\nshaft_angle = "0.1 mrad"\n'
     shift = 'gear_shift = "20 um"\n'
     texts = FACE + tilt, FACE + tilt + shift, FACE + "[misalignment]\n" + shift
     tilted, both, shifted = (load_pair(written(tmp_path, text)) for text in texts)
     assert tilted.offset == 0.0
-    # A tilt about where the axes cross lifts the middle of the teeth, at 244.5 mm, as a shift does.
+    # A tilt about the point where the axes cross moves the middle of the teeth, at 244.5 mm, like a
+    # shift.
     lead = transmission_error(tilted.geometry, 0.0)
     assert lead == pytest.approx(shifted.offset * 0.1e-3 * 244.5e-3 / 20e-6, rel=0.1)
     assert both.offset == pytest.approx(shifted.offset, rel=0.05)
@@ -397,7 +402,7 @@ def test_shipped_pairs_are_sound(name):
 
 
 def test_shipped_teeth_have_the_papers_ratio():
-    """I12·I46 lies between 13.9230 and 13.9244, whatever the paper's teeth are."""
+    """I12·I46 is between 13.9230 and 13.9244 for any teeth that the paper may have used."""
     first, second, third = (load_pair(PAIRS / f"{n}.toml").content for n in ("p12", "p46", "p610"))
     ratio = first.driven.teeth / first.driver.teeth * second.driven.teeth / second.driver.teeth
     assert 13.9230 < ratio < 13.9244

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("shared_cache")
 
 @pytest.fixture
 def case(spur, tmp_path):
-    """A case whose one mesh names the spur pair."""
+    """Write a case whose one mesh names the spur pair."""
     return load_case(written(tmp_path, CASE + 'geometry = "spur.toml"\n', "case.toml"))
 
 
@@ -154,7 +154,7 @@ tip_radius = 0.38
 
 @pytest.fixture
 def toothed(spur, tmp_path):
-    """The case whose gears say all of their teeth, as the pair has them."""
+    """Write the case with gears that state all of their teeth, as in the pair."""
     text = CASE + 'geometry = "spur.toml"\n'
     for name, teeth in (("35.238", 25), ("70.476", 50)):
         text = text.replace(f'base_radius = "{name} mm"\n', TEETH.format(teeth=teeth))
@@ -204,7 +204,7 @@ def test_the_hand_of_the_helix_is_compared(toothed, tmp_path):
     found = problems_of(left)
     assert found["gears.a.helix_angle"].allowed == "8 deg"
     assert found["gears.b.helix_angle"].allowed == "-8 deg"
-    # Either hand will do for the halves of a herringbone gear, whose face is that of both.
+    # Either hand is allowed for the halves of a herringbone gear, whose face is that of both.
     double = "helices = 2\nhelix_gap = '6 mm'\n" + text
     written(tmp_path, double, "spur.toml")
     assert set(problems_of(left)) == {"gears.a.face_width", "gears.b.face_width"}
@@ -213,7 +213,9 @@ def test_the_hand_of_the_helix_is_compared(toothed, tmp_path):
 
 
 def test_a_face_may_be_that_of_the_overlap(toothed):
-    """Faces of 30 mm that overlap over 20 mm: a pair of the overlap fits, one of 25 mm does not."""
+    """Faces of 30 mm overlap over 20 mm: a pair with the overlap as its width fits, one of 25 mm
+    does not.
+    """
     wide = {f"gears.{name}.face_width": "30 mm" for name in "ab"}
     apart = {"gears.a.centre": ["0 mm", "0 mm", "0 mm"]}
     resolve(toothed.replace(wide | apart | {"gears.b.centre": ["112.5 mm", "0 mm", "10 mm"]}))
@@ -222,7 +224,7 @@ def test_a_face_may_be_that_of_the_overlap(toothed):
 
 
 def test_a_law_file_of_other_gears_is_reported(case, spur, tmp_path):
-    """Driver and driven gear exchanged: the law is at the wrong gear."""
+    """Driver and driven gear are exchanged, so the law is at the wrong gear."""
     resolve(case)
     written(tmp_path, law_text(known_law(load_pair(spur))), "law.toml")
     exchanged = case.replace(
@@ -271,7 +273,9 @@ def test_another_kind_of_gear_is_reported(case, tmp_path):
 
 @pytest.mark.parametrize("key", ["geometry", "law_file"])
 def test_a_face_gear_of_another_shaft_angle_is_reported(tmp_path, key):
-    """In a case its axis is at right angles to the pinion's; the law was taken unsaid."""
+    """In a case its axis is at right angles to the pinion's; the law used to be accepted without a
+    message.
+    """
     wide = FACE.replace('face_width = "20 mm"', 'face_width = "24 mm"')
     oblique = wide.replace("outer", 'shaft_angle = "80 deg"\nouter')
     file = written(tmp_path, oblique, "face.toml")
@@ -341,7 +345,7 @@ def test_a_case_built_in_python_counts_from_the_working_folder(case, spur, tmp_p
 
 @pytest.mark.slow
 def test_the_seeds_ranges():
-    """Fig. 7 of the paper. The remaining difference is given on the page; this keeps it."""
+    """Fig. 7 of the paper. The page states the remaining difference; this test guards it."""
     case = load_case(PAIRS.parent / "from_geometry.toml")
     found = resolve(case)
     ranges = {"1-2": (7.46e5, 9.27e5), "4-6": (3.77e6, 4.78e6), "6-10": (6.17e6, 6.68e6)}

@@ -1,4 +1,4 @@
-"""How far a law depends on rims and sampling, reported with the law."""
+"""The dependence of a law on rims and sampling, reported with the law."""
 
 import re
 
@@ -27,7 +27,7 @@ def test_a_thinner_rim_is_stiffer_and_a_thicker_one_softer(text, tmp_path):
 
 
 def test_the_effect_is_that_of_another_pair_file(tmp_path):
-    """The second way: the pair with that rim, analysed as it is, over 40 positions."""
+    """Independent check: the pair with that rim, analysed directly over 40 positions."""
     effect = rim_effects(load_pair(written(tmp_path, BORED)))["driven"]
     root = 71.25  # of 50 teeth of module 3 mm
     assert effect.thickness[1] == pytest.approx((root - 60.0) * 1e-3)
@@ -36,7 +36,7 @@ def test_the_effect_is_that_of_another_pair_file(tmp_path):
         text = BORED.replace('rim = "60 mm"', f'rim = "{root - 1e3 * thickness} mm"')
         found = ltca(load_pair(written(tmp_path, text)).geometry, 100.0, 40, (1.0,), "slices")
         means.append(found.approach[:, -1].mean())
-    # 40 positions alias the mean of this pair by 0.8 %, but of all three alike.
+    # 40 positions alias the mean of this pair by 0.8 %, but equally for all three.
     assert means[1] / np.array(means) == pytest.approx(effect.stiffness, rel=2e-3)
 
 
@@ -89,7 +89,7 @@ def test_a_law_file_holds_it(tmp_path):
 
 
 def narrow(modules: float, compliance: str) -> str:
-    """A helical pair of 30° on a face of so many modules."""
+    """Return a helical pair of 30° on a face of `modules` modules."""
     text = SPUR.replace("[driven]", 'helix_angle = "30 deg"\n[driven]').replace("100 N", "500 N")
     text = text.replace('"20 mm"', f'"{3.0 * modules} mm"')
     return text.replace('compliance = "slices"', f'compliance = "{compliance}"')
@@ -103,7 +103,7 @@ def test_what_slices_leave_out_of_narrow_helical_teeth_is_noted(tmp_path, module
     pair = load_pair(written(tmp_path, narrow(modules, "slices")))
     law = law_of(pair, pair.analyse())
     assert any("bend sideways" in line for line in law.findings) is noted
-    # A case that computes its law says so with the law.
+    # A case that computes its law reports this with the law.
     assert ("bending sideways" in law.as_law()["basis"]) is noted
     solid = law.computed.model_copy(update={"compliance": "finite elements"})
     other = law.model_copy(update={"computed": solid})
@@ -121,13 +121,13 @@ def test_the_note_says_what_finite_elements_yield_more(tmp_path):
         if model == "slices":
             (line,) = [line for line in law.findings if "bend sideways" in line]
     noted = float(re.search(r"some (\d+) % more", line)[1]) / 100.0
-    # Finite elements of spur gears yield some 4 % more anyway.
+    # Finite elements of spur gears yield some 4 % more in any case.
     missed = yielded["finite elements"] / yielded["slices"] - 1.04
     assert missed == pytest.approx(noted, rel=0.15)
 
 
 def law_angles(law: MeshLaw, torque: float) -> np.ndarray:
-    """Elastic angle at every position [rad]."""
+    """Return the elastic angle at every position [rad]."""
     return np.array(
         [b.si * torque + c.si * torque ** (2.0 / 3.0) for b, c in zip(law.b, law.c, strict=True)]
     )
