@@ -23,7 +23,7 @@ from loadshare.job.ladder import climb, climb_all, rungs
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.settings import CERTIFY, JOB
-from loadshare.solver import Options
+from loadshare.solver import Options, position
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.hot import contact_states, vectorised
 from loadshare.solver.hot.exchange import Found, exchange, first_sets
@@ -469,6 +469,20 @@ def test_the_rungs_after_the_hot_path_give_up_after_so_many_steps():
     with pytest.raises(Refused, match="in the steps allowed"):
         climb(train, 1, Options(), CERTIFY.tolerance, steps=1)
     assert climb(train, 1, Options(), CERTIFY.tolerance, steps=JOB.steps).certificate.passed
+
+
+def test_a_plan_that_never_arrives_leaves_steps_to_the_others(monkeypatch):
+    """One of a floating branch without load went on and on, and no other was tried."""
+    settled = position.settle
+
+    def endless(scene, plan, solver, options, method, work):
+        while method == "newton":
+            work.step()
+        return settled(scene, plan, solver, options, method, work)
+
+    monkeypatch.setattr(position, "settle", endless)
+    train = build_train(lost_contact())
+    assert climb(train, 1, Options(), CERTIFY.tolerance, JOB.steps).certificate.passed
 
 
 def test_what_a_part_of_the_load_displaces_too_far_is_refused_at_once():

@@ -1,5 +1,7 @@
 """How a solve can end without an answer, and how much work it may do."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
@@ -13,6 +15,11 @@ class Work:
     """Newton steps that exact solves may still take in the search for one answer."""
 
     left: float = math.inf
+    whole: Work | None = None
+
+    def half(self) -> Work:
+        """Return half of what is left, so that one who never arrives leaves some to the others."""
+        return Work(self.left / 2, self)
 
     def step(self) -> None:
         """Count one step.
@@ -25,3 +32,5 @@ class Work:
         if self.left <= 0:
             raise Unsolved("no consistent active set was found in the steps allowed")
         self.left -= 1
+        if self.whole is not None:
+            self.whole.step()

@@ -32,7 +32,7 @@ class Known:
     ----------
     settled : dict of plan to Settled or Unsolved
     work : Work
-        Newton steps left to all plans together.
+        Newton steps left to all plans together; each may take half of them.
     each : float
         Newton steps allowed to every plan, whatever the others took.
     """
@@ -126,7 +126,7 @@ def _once(
     key = (*plan.rows.values(), *plan.radials.values(), plan.condensed, method)
     if key not in known.settled:
         try:
-            work = known.work if math.isinf(known.each) else Work(known.each)
+            work = known.work.half() if math.isinf(known.each) else Work(known.each)
             known.settled[key] = settle(scene, plan, solver, options, method, work)
         except Unsolved as failure:
             known.settled[key] = failure
