@@ -556,8 +556,18 @@ def test_extremes_need_not_go_together():
     b, c = f'meshes."{mesh}".law.b [rad/(N*m)]', f'meshes."{mesh}".law.c [rad/(N*m)^(2/3)]'
     found = ls.solve_many(case, {b: [9e-7, 0.0, 1e-7], c: [0.0, 2e-6, 0.0]})
     assert found.certified.all()
-    with pytest.raises(ls.CaseError, match="both 0"):
+    with pytest.raises(ls.CaseError, match=r"both 0.* In sample 2, counted from 0\."):
         ls.solve_many(case, {b: [9e-7, 0.0, 0.0], c: [0.0, 2e-6, 0.0]})
+
+
+def test_what_is_wrong_with_a_sample_is_told_with_its_number():
+    """Of each of its problems: which meshes lack a backlash hangs on the torque of the sample."""
+    case = shipped(LIMIT_RING).replace({'meshes."1-2".backlash': "100 um"})
+    with pytest.raises(ls.CaseError, match=r"1-3\S*backlash: is missing") as caught:
+        ls.solve_many(case, {"operating.power [kW]": [2000.0, 1500.0, -500.0]})
+    assert {p.hint.rpartition(" In ")[2] for p in caught.value.problems} == {
+        "sample 2, counted from 0."
+    }
 
 
 def test_shares_are_computed_when_they_are_read(tmp_path):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -114,6 +115,12 @@ def _there(samples: Samples, wanted: tuple[int, ...]) -> tuple[int, ...]:
     return tuple(k for k in wanted if k <= samples.train.count) or (1,)
 
 
+def _in_sample(number: int, error: CaseError) -> CaseError:
+    """Return an error with the sample in which it is."""
+    where = f"In sample {number}, counted from 0."
+    return CaseError([replace(p, hint=f"{p.hint} {where}".strip()) for p in error.problems])
+
+
 _recent: Recent[Machine] = Recent()
 
 
@@ -199,14 +206,14 @@ def solve_many(
     """
     case, kept, tolerance = opened(case), checked(keep), checked_tolerance(tolerance)
     columns = columns_of(samples)  # Once: it may hold a generator.
-    groups = groups_of(case, columns)
-    trains = [group.train for _, group in groups]
-    wanted = wanted_of(trains, positions)
-    found = Table(trains, wanted, len(columns[0].values), kept)
     try:
+        groups = groups_of(case, columns)
+        trains = [group.train for _, group in groups]
+        wanted = wanted_of(trains, positions)
+        found = Table(trains, wanted, len(columns[0].values), kept)
         found.fill(_solved(case, groups, wanted, tolerance, engine, workers, least_norm), progress)
     except CaseError as error:
         # The value that it names may be another sample's.
-        wrong = unusable(case, {column.key: column.values for column in columns})
-        raise next(iter(wrong.values()), error) from None
+        first = next(unusable(case, {c.key: c.values for c in columns}), None)
+        raise _in_sample(*first) if first else error from None
     return found.dataset(case, tolerance)

@@ -6,7 +6,7 @@ samples are grouped by the values of the other keys, and every group has a train
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -225,8 +225,8 @@ def _check(case: spec.Case, columns: Sequence[Column], arrays: Mapping[Path, Arr
             parts += np.array_split(rows, 2)[::-1]
 
 
-def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> dict[int, CaseError]:
-    """Return the samples that cannot be made into a train, and why.
+def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> Iterator[tuple[int, CaseError]]:
+    """Yield which samples make no train, counted from 0, and why; in order, each when asked for.
 
     Parameters
     ----------
@@ -235,21 +235,19 @@ def unusable(case: spec.Case, samples: Mapping[str, ArrayLike]) -> dict[int, Cas
         See `columns_of`.
     """
     table = {column.key: np.asarray(column.values) for column in columns_of(samples)}
-    found: dict[int, CaseError] = {}
 
-    def judge(rows: Numbers) -> None:
+    def judge(rows: Numbers) -> Iterator[tuple[int, CaseError]]:
         try:
             for _, group in samples_of(case, {key: values[rows] for key, values in table.items()}):
                 group.build()
         except CaseError as error:
             if len(rows) == 1:
-                found[int(rows[0])] = error
+                yield int(rows[0]), error
             else:
                 for half in np.array_split(rows, 2):
-                    judge(half)
+                    yield from judge(half)
 
-    judge(np.arange(len(next(iter(table.values())))))
-    return found
+    yield from judge(np.arange(len(next(iter(table.values())))))
 
 
 def _groups(columns: Sequence[Column], count: int) -> list[Numbers]:
