@@ -108,6 +108,7 @@ def test_all_problems_are_reported_at_once(tmp_path):
             "analysis.teeth",
             "is even",
         ),
+        (('title = "', 'helix_gap = "6 mm"\ntitle = "'), "helix_gap", "is between the halves"),
         (('title = "', 'assumed = ["driver.modul"]\ntitle = "'), "assumed[0]", "matches no key"),
     ],
 )

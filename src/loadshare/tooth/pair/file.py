@@ -282,7 +282,7 @@ def built(content: HelicoidContent | FaceGearContent) -> HelicoidPair | FaceGear
 def _helicoid(content: HelicoidContent) -> HelicoidPair:
     helices: dict[str, Any] = {
         "helices": content.helices,
-        "helix_gap": content.helix_gap.si if content.helices == 2 else 0.0,
+        "helix_gap": content.helix_gap.si,
     }
     driver = _gear(content.driver, helices)
     kind = -1 if content.driver.internal != content.driven.internal else 1

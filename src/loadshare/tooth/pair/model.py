@@ -307,6 +307,13 @@ class HelicoidContent(PairContent):
     misalignment: Parallel = Parallel()
     """How far the axes are off."""
 
+    def rules(self) -> Iterator[Rule]:
+        """Yield a gap between halves that there are not."""
+        yield from super().rules()
+        if self.helices == 1 and self.helix_gap.si:
+            hint = "Leave it out, or give helices = 2."
+            yield Rule("is between the halves of a herringbone pair", ("helix_gap",), hint=hint)
+
 
 class FaceGearContent(PairContent):
     """A spur pinion that drives a face gear."""
