@@ -175,6 +175,9 @@ def test_pint_quantities_of_any_registry():
     assert read(q.Angle, theirs.Quantity(20, "deg")).text == "20.0 deg"
     stiffness = read(Annotated[q.Quantity, q.TORSIONAL_STIFFNESS], theirs.Quantity(5e5, "N*m/rad"))
     assert stiffness.si == 5e5
+    for rise in (theirs.Quantity(5, "delta_degC"), theirs.Quantity(9, "delta_degF")):
+        assert read(q.Temperature, rise).si == pytest.approx(5.0)
+    assert read(q.Expansion, theirs.Quantity(1e-5, "1/delta_degC")).si == 1e-5
     ours = units.registry().Quantity(1.0, "kN*m")
     assert read(q.Torque, ours).si == pytest.approx(1e3)
 

@@ -266,7 +266,10 @@ def as_text(given: object) -> object:
         # Testing for NumPy's types would import it for every command.
         is_scalar = hasattr(given, "dtype") and getattr(given, "ndim", None) == 0
         return given.item() if is_scalar else given  # type: ignore[attr-defined]
-    return _texts(magnitude.tolist() if getattr(magnitude, "ndim", 0) else magnitude, f"{units:~C}")
+    if "Δ" in (unit := f"{units:~C}"):
+        # pint's own sign for degrees of a difference; the base unit is the kelvin.
+        return as_text(given.to_base_units())  # type: ignore[attr-defined]
+    return _texts(magnitude.tolist() if getattr(magnitude, "ndim", 0) else magnitude, unit)
 
 
 def _texts(magnitude: Any, unit: str) -> object:

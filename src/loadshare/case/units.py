@@ -65,7 +65,7 @@ OTHERS = {
     **dict.fromkeys(("thou", "mil"), "in: one thousandth is 0.001 in"),
     **dict.fromkeys(("PS", "CV"), "W, kW or hp: 1 PS is 735.49875 W"),
     **dict.fromkeys(("kgf", "kp"), "N: 1 kgf is 9.80665 N"),
-    **dict.fromkeys(("°C", "degC", "C"), "K: a rise of 1 °C is 1 K"),
+    **dict.fromkeys(("°C", "degC", "C", "delta_degC", "Δ°C"), "K: a rise of 1 °C is 1 K"),
     **dict.fromkeys(("gon", "grad", "grade"), "deg: 1 gon is 0.9 deg"),
     "feet": "ft",
     "bar": "MPa: 1 bar is 0.1 MPa",
