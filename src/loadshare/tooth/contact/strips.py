@@ -201,8 +201,8 @@ class StripLine:
         if np.any(self.curvature <= 0.0):
             raise Refused(
                 "the flanks do not part on both sides of a contact line (relative curvature "
-                f"{float(np.min(self.curvature)):.4g} 1/m); make the modifications smaller, or "
-                "longer"
+                f"{float(np.min(self.curvature)):.4g} 1/m); make the modifications "
+                "(driver.modification, driven.modification) smaller, or longer"
             )
 
     @cached_property
