@@ -169,6 +169,8 @@ def test_another_file_says_what_it_is(tmp_path, cases, name, message):
 def test_a_file_that_is_not_there_is_reported(tmp_path):
     missing = message_of(tmp_path / "missing.toml", tmp_path)
     assert missing == "missing.toml: no such file or directory."
+    with pytest.raises(ls.CaseError, match=r'^"": no such file or directory\.$'):
+        ls.load_case("")
 
 
 def test_what_is_no_path_is_reported_with_what_is_wanted():

@@ -81,6 +81,9 @@ def load_case(
         kind = type(path).__name__
         wanted = "a Case or the path of a case file is wanted; Case(data) makes one of a dictionary"
         raise TypeError(f"{wanted}, not {kind}")
+    if path == "":
+        # As a path it would be the folder in which the process is.
+        raise CaseError([Problem('""', "", "", NO_FILE)])
     path = FilePath(path)
     data, origin, problems = _changed(path, _origin(path, allow_outside), changes)
     try:
