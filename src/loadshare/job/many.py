@@ -115,8 +115,12 @@ def _there(samples: Samples, wanted: tuple[int, ...]) -> tuple[int, ...]:
     return tuple(k for k in wanted if k <= samples.train.count) or (1,)
 
 
-def _in_sample(number: int, error: CaseError) -> CaseError:
-    """Return an error with the sample in which it is."""
+def _located(wrong: Sequence[tuple[int, CaseError]]) -> CaseError:
+    """Return the first of some errors, with its sample unless all samples seem to have it."""
+    (number, error), *others = wrong
+    said = [[(p.key, p.message) for p in each.problems] for _, each in wrong]
+    if others and said[0] == said[1] and (number, others[0][0]) == (0, 1):
+        return error
     where = f"In sample {number}, counted from 0."
     return CaseError([replace(p, hint=f"{p.hint} {where}".strip()) for p in error.problems])
 
@@ -214,6 +218,6 @@ def solve_many(
         found.fill(_solved(case, groups, wanted, tolerance, engine, workers, least_norm), progress)
     except CaseError as error:
         # The value that it names may be another sample's.
-        first = next(unusable(case, {c.key: c.values for c in columns}), None)
-        raise _in_sample(*first) if first else error from None
+        wrong = list(islice(unusable(case, {c.key: c.values for c in columns}), 2))
+        raise _located(wrong) if wrong else error from None
     return found.dataset(case, tolerance)
