@@ -17,16 +17,18 @@ from loadshare.job.judging import Judging
 from loadshare.job.ways import (
     Start,
     Way,
+    by_any_way,
     by_rule,
     from_near,
-    from_rest,
     search_all,
     start_of,
+    take_over,
     taught,
+    ways_from_rest,
 )
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.structure import Structure, structure_of
-from loadshare.settings import JOB
+from loadshare.settings import CERTIFY, JOB
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import pin, without_noise
 from loadshare.solver.hot.determined import determined
@@ -228,10 +230,7 @@ class Machine:
             for number, way in enumerate(ways):
                 fresh = np.flatnonzero(~found.solved & ~searched & (tries == number))
                 if len(fresh):
-                    other, more = way(loading.take(fresh), fresh)
-                    found.put(fresh, more)
-                    better = np.flatnonzero(more.solved)
-                    iterate.put(fresh[better], other.take(better))
+                    take_over(iterate, found, fresh, *way(loading.take(fresh), fresh))
                     tries[fresh] += 1
             if not (starts or searched.any()) and found.solved.all():
                 self._last = start_of(self.structure, loading, iterate, found)
@@ -268,7 +267,7 @@ class Machine:
         If a start or compiled code fails, samples are solved once more from rest, then with NumPy,
         at last by exchanging one element at a time.
         """
-        rule, numpy = self._rule if starts else None, vectorised.settle
+        rule = self._rule if starts else None
         if starts and rule is None:
             some = samples_to_learn(loading.count)
             rule = taught(self.structure, loading.take(some), engine) if len(some) else None
@@ -279,18 +278,14 @@ class Machine:
         if loading.count > len(starts) > 0 or self._beside(loading.count) is not None:
             near = partial(self._near_ones, loading.count, starts, engine)
             ways.append(lambda some, rows: from_near(self.structure, some, engine, near(rows)))
-        ways.append(lambda some, _: from_rest(self.structure, some, engine))
-        if engine is not numpy:
-            ways.append(lambda some, _: from_rest(self.structure, some, numpy))
-        ways.append(lambda some, _: from_rest(self.structure, some, numpy, singly=True))
-        return ways, rule is not None
+        return ways + ways_from_rest(self.structure, engine), rule is not None
 
     def _at_starts(self, indices: Sequence[int], engine: Engine) -> list[Start | None]:
-        """Return the train's own solutions at some positions; None if the hot path finds none."""
+        """Return the train's own solutions at some positions; None where there is none."""
         new = [index for index in indices if index not in self._starts]
         if new:
             loading = loading_of(self.structure, self.situations(new))
-            iterate, found = from_rest(self.structure, loading, engine)
+            iterate, found = by_any_way(self.structure, loading, engine, CERTIFY.tolerance)
             every = start_of(self.structure, loading, iterate, found)
             for k, index in enumerate(new):
                 start = every.of(k)

@@ -52,6 +52,27 @@ def from_rest(
     return iterate, exchange(structure, loading, iterate, engine, singly=singly)
 
 
+def ways_from_rest(structure: Structure, engine: Engine) -> list[Way]:
+    """Return ways from rest: with an engine, with NumPy, at last one element after another."""
+    numpy = vectorised.settle
+    kinds = [(engine, False), (numpy, False), (numpy, True)]
+
+    def way(engine: Engine, singly: bool) -> Way:
+        return lambda some, _: from_rest(structure, some, engine, singly)
+
+    return [way(*kind) for kind in kinds[engine is numpy :]]
+
+
+def take_over(
+    iterate: Iterate, found: Found, rows: Numbers, other: Iterate, more: Found
+) -> Numbers:
+    """Take over what another way has found of some samples; return which of these it solved."""
+    found.put(rows, more)
+    solved = np.flatnonzero(more.solved)
+    iterate.put(rows[solved], other.take(solved))
+    return solved
+
+
 def from_near(
     structure: Structure, loading: Loading, engine: Engine, near: Sequence[tuple[Numbers, Start]]
 ) -> tuple[Iterate, Found]:
@@ -80,6 +101,21 @@ def taught(structure: Structure, loading: Loading, engine: Engine) -> Rule | Non
     if not len(known):
         return None
     return rule_of(structure, loading.take(known), found.states[known], iterate.take(known))
+
+
+def by_any_way(
+    structure: Structure, loading: Loading, engine: Engine, tolerance: float
+) -> tuple[Iterate, Found]:
+    """Solve samples from rest, by one way after another, and by a search if none of them does."""
+    first, *others = ways_from_rest(structure, engine)
+    iterate, found = first(loading, np.arange(loading.count))
+    for way in others:
+        rows = np.flatnonzero(~found.solved)
+        if len(rows):
+            take_over(iterate, found, rows, *way(loading.take(rows), rows))
+    rows, led = np.flatnonzero(~found.solved), np.zeros(loading.count, dtype=bool)
+    search_all(structure, loading, iterate, found, rows, led, tolerance, engine)
+    return iterate, found
 
 
 def search_all(
@@ -121,8 +157,7 @@ def search_all(
         one, more = search(structure, alone)
         if not more.solved[0]:
             continue
-        iterate.put(row, one)
-        found.put(row, more)
+        take_over(iterate, found, row, one, more)
         some = left[~led[left]]
         if leads and len(some):
             start = start_of(structure, alone, one, more)
