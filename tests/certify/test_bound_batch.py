@@ -50,6 +50,7 @@ NAMES = (
     "idle ball bearing",
     "idler on a spline",
     "pushed planets",
+    "squeezed ring",
 )
 LIKE_OTHERS = {
     "fgfbstts/full_float",

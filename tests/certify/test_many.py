@@ -105,6 +105,19 @@ def pushed() -> ls.Case:
     return shipped("planetary/four_planets").replace({"operating.forces": forces})
 
 
+def squeezed() -> ls.Case:
+    """A rigid ring that both of its neighbours press, in bearings that yield."""
+    towards = {"6": ["-34.6 um", "20 um"], "7": ["34.6 um", "-20 um"]}
+    return shipped("fgfbstts/limit_ring").replace(
+        {
+            **{f"gears.{gear}.support": "1e9 N/m" for gear in towards},
+            "rings.4.measured": "nominal",
+            "rings.4.float": "50 um",
+            "errors": {gear: {"installation": place} for gear, place in towards.items()},
+        }
+    )
+
+
 WAYS = {name: (lambda name=name: shipped(name)) for name in SHIPPED} | {
     "clocked rigid shaft": clocked,
     "round ring": round_ring,
@@ -116,6 +129,7 @@ WAYS = {name: (lambda name=name: shipped(name)) for name in SHIPPED} | {
     "ball bearings": rolling,
     "idler on a spline": idler_on_a_spline,
     "pushed planets": pushed,
+    "squeezed ring": squeezed,
     "no load": lambda: loaded(shipped("fgfbstts/limit_ring"), "0 N*m"),
 }
 

@@ -600,3 +600,19 @@ def test_wide_trains_are_solved_in_smaller_blocks():
     assert few.together == JOB.together
     places = 8 * 3 * len(wide.train.gears)
     assert places * wide.together <= JOB.allocated < places * (wide.together + 1)
+
+
+def test_the_clocking_of_a_rigid_shaft_varies_within_a_batch():
+    """It shifts the flanks of one gear, and where that gear is at zero coordinates."""
+    rigid = {f"shafts.wheel{p}-pinion{p}.stiffness": "rigid" for p in "AB"}
+    case = shipped("two_path/clocking_error").replace(rigid)
+    key, clockings = "shafts.wheelA-pinionA.clocking", [-5.0, -1.0, 0.0, 0.7, 5.0]
+    assert len(samples_of(case, {f"{key} [mrad]": clockings})) == 1
+    found = ls.solve_many(case, {f"{key} [mrad]": clockings}, positions=[1])
+    torques = found.torque.sel(position=1, mesh="in-wheelA").values
+    for torque, clocking in zip(torques, clockings, strict=True):
+        (alone,) = ls.solve(case.replace({key: f"{clocking} mrad"}), positions=[1]).positions
+        assert torque == pytest.approx(alone.torque["in-wheelA"], rel=1e-12, abs=1e-9)
+    # Clocked by more than the meshes yield, one path carries all or nothing.
+    assert torques[0] == pytest.approx(367.0, rel=1e-12)
+    assert abs(torques[-1]) < 1e-9

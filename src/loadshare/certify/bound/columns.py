@@ -157,6 +157,14 @@ class Columns:
         return part.reshape(-1, len(self.coordinates))
 
     @cached_property
+    def between_fixed(self) -> Flags:
+        """Drums whose neighbours cannot be displaced, so that opposed arcs hold the same body."""
+        gears = self.train.gears
+        return np.array(
+            [not any(gears[n].moves for n in r.neighbours) for r in self.train.drums], dtype=bool
+        )
+
+    @cached_property
     def moments(self) -> Array:
         """Torque that each spline transmits to its gear per flank force, (splines, flanks) [m]."""
         found = np.zeros((len(self.train.splines), self.flanks.stop))

@@ -110,7 +110,10 @@ def _twins(columns: Columns, nominal: Array, apart: Array) -> Numbers:
     twin = np.full(contacts + len(apart), -1, dtype=np.intp)
     for start in range(flanks, len(twin), 2):
         k = start - contacts
-        if k >= 0 and nominal[k] @ nominal[k + 1] > -BOUND.opposed * apart[k] * apart[k + 1]:
+        if k >= 0 and not (
+            columns.between_fixed[k // 2]
+            and nominal[k] @ nominal[k + 1] <= -BOUND.opposed * apart[k] * apart[k + 1]
+        ):
             continue
         twin[start], twin[start + 1] = start + 1, start
     return twin

@@ -78,7 +78,7 @@ def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
     """Return ways of acting with nearly touching contacts closed, and which a twin replaces.
 
     Two opposed contacts of a ring, without clearance between them, are one contact that holds both
-    ways.
+    ways; arcs only if none of the neighbours can be displaced.
     """
     columns = claim.columns
     flanks, contacts = columns.flanks.stop, len(columns.contacts)
@@ -95,6 +95,7 @@ def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
             one, other = ways[:, start - contacts], ways[:, start - contacts + 1]
             sizes = np.sqrt((one**2).sum(axis=1) * (other**2).sum(axis=1))
             both &= (one * other).sum(axis=1) < -BOUND.opposed * sizes
+            both &= columns.between_fixed[(start - contacts) // 2]
         for k in (0, 1):
             weaker = force[:, start + k] < force[:, start + 1 - k] + k * np.finfo(float).tiny
             doubled[both & weaker, start + k] = True
