@@ -25,9 +25,9 @@ and [random planetary sets](planetary-sets.md), loops included, and each is solv
 samples in which loads, errors, clearances, gaps and stiffnesses vary by up to {SCATTER:.0%} each.
 These trains are meant to be hard: stiffnesses that differ by up to nine decades, clearances of
 zero, loads from a millionth of the rated one, and often more splines, rings and bearings with
-clearance than any gearbox has. Times are processor time per equilibrium on one core, certificate and bound included,
-of a batch that was solved once before. Of each batch, three samples are compared with single
-solves.
+clearance than any gearbox has. Times are processor time per equilibrium on one core, certificate
+and bound included, of a batch that was solved once before. Of each batch, three samples are
+compared with single solves.
 """
 EDGES = (10.0, 30.0, 100.0, 300.0, 1e3, 1e4, 1e5, np.inf)
 """Classes of times [µs]."""
