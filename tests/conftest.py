@@ -119,6 +119,6 @@ def drawn_anew(drawn_once: Any, monkeypatch: pytest.MonkeyPatch) -> None:
 def numpy_alone() -> Iterator[None]:
     """Use NumPy unless a test asks for a kernel: whether one is loaded depends on earlier tests."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(hot, "engine_at_hand", engine_named)
+        patch.setattr(hot, "available_engine", engine_named)
         patch.setattr(engines, "loaded", lambda: False)
         yield

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare._version import __version__
 from loadshare.errors import CaseError, LoadshareError, Problem, Refused, ResultError
-from loadshare.pictures import drawn_by
+from loadshare.pictures import register_drawing
 
 if TYPE_CHECKING:
     from loadshare.case import Case, load_case
@@ -121,4 +121,4 @@ def __dir__() -> list[str]:
 
 
 # Results and studies offer their pictures without importing the package that draws them.
-drawn_by(lambda: import_module(_LAZY["plot"]).plot)
+register_drawing(lambda: import_module(_LAZY["plot"]).plot)

@@ -199,7 +199,7 @@ class CodeCache(FunctionCache):
             self._not_kept(error)
 
 
-class Lost(NullCache):
+class NoCache(NullCache):
     """A cache that keeps nothing, and reports it when something has been compiled."""
 
     def __init__(self, not_kept: Callable[[], None]) -> None:

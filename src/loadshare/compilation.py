@@ -2,7 +2,7 @@
 
 Compiled code is kept where Numba finds a folder to write in: next to the source, else in the
 user's cache folder (`NUMBA_CACHE_DIR` comes before both). Where there is none, where Numba cannot
-be imported, or where it does not compile, `tell_why_not` says so once in the log, and callers that
+be imported, or where it does not compile, `log_why_not` says so once in the log, and callers that
 have another kernel use that. Code that is damaged or out of date is compiled again (`code_cache`).
 """
 
@@ -48,7 +48,7 @@ def why_not() -> str | None:
     return usable.reason
 
 
-def tell_why_not() -> None:
+def log_why_not() -> None:
     """Say once, in the log, that another kernel takes the place of the compiled one, and why."""
     with _lock:
         if usable.reported or usable.reason is None:
@@ -95,14 +95,14 @@ def jit(**how: Any) -> Callable[[Callable[..., Any]], Any]:
         if made is function:
             return function
         # This imports Numba, which is known to exist by now.
-        from loadshare.code_cache import CodeCache, Lost
+        from loadshare.code_cache import CodeCache, NoCache
 
         try:
             made._cache = cache = CodeCache(function, lambda e: watch.not_kept(words_of(e)))
             made.compile = cache.compiling(made.compile)
         except Exception as error:  # noqa: BLE001 -- whatever it is, another kernel is used
             why = words_of(error)
-            made._cache = Lost(lambda: watch.not_kept(why))
+            made._cache = NoCache(lambda: watch.not_kept(why))
             give_up(
                 f"there is no folder in which compiled code could be kept ({words_of(error)}); set "
                 "NUMBA_CACHE_DIR to one that can be written"
@@ -135,7 +135,7 @@ def _made(function: Callable[..., Any], **how: Any) -> Any:
         return function
 
 
-def at_hand(*functions: Any) -> bool:
+def is_available(*functions: Any) -> bool:
     """Return whether functions can run without compiling; code kept on disk is loaded.
 
     Parameters

@@ -8,22 +8,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-__all__ = ["Figure", "drawn_by", "picture"]
+__all__ = ["Figure", "picture", "register_drawing"]
 
 if TYPE_CHECKING:
     from loadshare.report.figure import Figure
 else:
     Figure = Any
 
-_drawn_by: list[Callable[[], Callable[..., Figure]]] = []
+_drawing: list[Callable[[], Callable[..., Figure]]] = []
 
 
-def drawn_by(who: Callable[[], Callable[..., Figure]]) -> None:
+def register_drawing(who: Callable[[], Callable[..., Figure]]) -> None:
     """Register `who`, which is called when a picture is requested and returns what draws it."""
-    _drawn_by[:] = [who]
+    _drawing[:] = [who]
 
 
 def picture(found: object, *settings: Any, **named: Any) -> Figure:
     """Return the picture, or the choice of pictures, of a result."""
-    (who,) = _drawn_by
+    (who,) = _drawing
     return who()(found, *settings, **named)

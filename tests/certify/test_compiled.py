@@ -187,7 +187,7 @@ def test_what_turns_by_a_thousand_turns_passes_once_more_by_itself(stiffness, mo
     """Round-off of rotations is no misfit of a law: answers that pass in a batch are judged again
     alone.
     """
-    monkeypatch.setattr(hot, "engine_at_hand", lambda name, count: compiled.settle)
+    monkeypatch.setattr(hot, "available_engine", lambda name, count: compiled.settle)
     shafts = {f'shafts."wheel{k}-pinion{k}".stiffness': stiffness for k in (1, 2)}
     case = shipped("two_path/from_teeth").replace(shafts)
     for torque in np.linspace(300.0, 400.0, 8):

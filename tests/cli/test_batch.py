@@ -53,7 +53,7 @@ def test_no_digit_of_a_result_hangs_on_what_its_process_has_solved_before(
     assert command("batch", star, "-o", tmp_path, "-j", "1").exit_code == 0
     assert not used
     # Compiled code is used for a case with enough positions to be worth loading it, then for all.
-    monkeypatch.setattr(engines, "at_hand", lambda: True)
+    monkeypatch.setattr(engines, "is_available", lambda: True)
     case = ls.load_case(star / "floating_sun_3.toml").replace({"operating.positions": 10})
     assert engine_for(case, JOB.few // 10) == "vectorised"
     assert engine_for(case, JOB.few // 10 + 1) == "compiled"

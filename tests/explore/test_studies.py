@@ -26,7 +26,7 @@ from loadshare.explore.inputs import Inputs
 from loadshare.explore.questions import Along
 from loadshare.explore.request import RequestError
 from loadshare.explore.samples import omega_table, scatter
-from loadshare.job.engines import at_hand
+from loadshare.job.engines import is_available
 from loadshare.settings import EXPLORE, JOB
 
 FLOAT = {"name": "rings.*.float", "low": 0.0, "high": 12.0}
@@ -129,7 +129,7 @@ def figures(found, limit):
 def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
     """Samples, and statistics at every stage, are the same to the last printed digit."""
     # The compiled engine solves a block at a time.
-    count = JOB.block + 400 if at_hand() else 512
+    count = JOB.block + 400 if is_available() else 512
     body = {"ranges": RANGES, "samples": count, "seed": 3, "limit": 1.003}
     lines = study(seed, "tolerance", body)
     first, *parts = lines

@@ -23,7 +23,7 @@ from loadshare import compilation, compile_watch
 from loadshare.code_cache import _Files
 from loadshare.compile_watch import Watch, watch
 from loadshare.job import engines
-from loadshare.job.engines import engine_at_hand, engine_named
+from loadshare.job.engines import available_engine, engine_named
 from loadshare.job.machine import Machine
 from loadshare.job.warm import warm
 from loadshare.lock import one_after_another
@@ -239,9 +239,9 @@ def test_code_of_an_older_version_is_not_run_where_the_new_could_not_be_kept(tmp
     with monkeypatch.context() as patch:
         patch.setattr(_Files, "_save_data", full)
         assert loaded(file)(2.0) == 6.0
-    assert not compilation.at_hand(loaded(file))
+    assert not compilation.is_available(loaded(file))
     assert loaded(file)(2.0) == 6.0
-    assert compilation.at_hand(loaded(file))
+    assert compilation.is_available(loaded(file))
 
 
 def test_of_processes_that_miss_the_same_code_one_compiles_it(tmp_path, monkeypatch):
@@ -304,20 +304,20 @@ def test_what_cannot_be_written_any_more_is_reported_once(tmp_path, monkeypatch,
 # --- What is at hand ---
 
 
-def test_at_hand_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
+def test_available_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     file = tmp_path / "kept.py"
     file.write_text(MODULE, encoding="utf-8")
     first = loaded(file)
-    assert not compilation.at_hand(first)
+    assert not compilation.is_available(first)
     assert first(2.0) == 4.0
-    assert compilation.at_hand(first)
+    assert compilation.is_available(first)
     again = loaded(file)
-    assert compilation.at_hand(again)
+    assert compilation.is_available(again)
     assert again(2.0) == 4.0
     assert not again.stats.cache_misses
     compilation.give_up("of a test")
-    assert not compilation.at_hand(again)
+    assert not compilation.is_available(again)
 
 
 KEPT = """
@@ -363,8 +363,8 @@ def test_numbers_of_another_file_that_change_are_compiled_anew(
     script = f"""
 import sys; sys.path.insert(0, {str(tmp_path)!r})
 import called_by
-from loadshare.compilation import at_hand
-print((at_hand(called_by.outer), called_by.outer(2.0)))
+from loadshare.compilation import is_available
+print((is_available(called_by.outer), called_by.outer(2.0)))
 """
     assert run(script)[0] == (False, True)
     assert run(script)[0] == (True, True)
@@ -373,14 +373,14 @@ print((at_hand(called_by.outer), called_by.outer(2.0)))
     assert run(script)[0] == (False, False)
 
 
-def test_what_is_damaged_is_not_at_hand(tmp_path, monkeypatch):
+def test_what_is_damaged_is_not_available(tmp_path, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     file = tmp_path / "kept.py"
     file.write_text(MODULE, encoding="utf-8")
     assert loaded(file)(2.0) == 4.0
     (kept,) = (tmp_path / "__pycache__").glob("*.nbc")
     kept.write_bytes(flipped(kept.read_bytes()))
-    assert not compilation.at_hand(loaded(file))
+    assert not compilation.is_available(loaded(file))
 
 
 def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(monkeypatch):
@@ -388,14 +388,16 @@ def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(mo
 
     needed: list[int] = []
     monkeypatch.setattr(engines, "tally", engines.Tally())
-    monkeypatch.setattr(compilation, "at_hand", lambda *functions: needed.append(len(functions)))
-    assert engine_at_hand("auto", JOB.few) is vectorised.settle
+    monkeypatch.setattr(
+        compilation, "is_available", lambda *functions: needed.append(len(functions))
+    )
+    assert available_engine("auto", JOB.few) is vectorised.settle
     assert not needed
-    assert engine_at_hand("auto", 1) is vectorised.settle
+    assert available_engine("auto", 1) is vectorised.settle
     assert needed == [len(engines.KERNELS)]
-    monkeypatch.setattr(compilation, "at_hand", lambda *_: True)
-    assert engine_at_hand("auto", 1) is compiled.settle
-    assert engine_at_hand("vectorised", 1) is vectorised.settle
+    monkeypatch.setattr(compilation, "is_available", lambda *_: True)
+    assert available_engine("auto", 1) is compiled.settle
+    assert available_engine("vectorised", 1) is vectorised.settle
 
 
 @pytest.mark.parametrize(
@@ -408,7 +410,7 @@ def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(mo
     ],
 )
 def test_a_batch_takes_the_engine_that_is_done_first(monkeypatch, count, kept, engine):
-    monkeypatch.setattr(compilation, "at_hand", lambda *_: kept)
+    monkeypatch.setattr(compilation, "is_available", lambda *_: kept)
     assert engines.chosen(count) == engine
 
 
@@ -419,7 +421,7 @@ from loadshare.job import engines
 from loadshare.solver.hot import compiled, vectorised
 found = [engines.loaded(), engines.engine_named("auto", 1) is vectorised.settle]
 ls.solve({str(CASE)!r}, engine="compiled", positions=[1])
-for engine in (engines.engine_named, engines.engine_at_hand):
+for engine in (engines.engine_named, engines.available_engine):
     found.append(engine("auto", 1) is compiled.settle)
 print([*found, engines.loaded(), engines.chosen(1) == "vectorised"])
 """
@@ -435,7 +437,7 @@ def test_what_another_thread_imports_is_not_loaded_yet(monkeypatch):
 def test_what_is_warm_is_at_hand():
     """The kernels of one case are those of all."""
     assert warm() is None
-    assert engines.at_hand()
+    assert engines.is_available()
 
 
 @pytest.mark.slow
@@ -466,7 +468,7 @@ from loadshare.job import engines
 from loadshare.solver.hot import compiled as engine
 from numba.core import event
 engines.tally.equilibria = {JOB.few}
-assert engines.engine_at_hand("auto", 1) is engine.settle
+assert engines.available_engine("auto", 1) is engine.settle
 with event.install_recorder("numba:compile") as compiled:
     for name in {KINDS!r}:
         ls.solve({str(CASES)!r} + f"/fgfbstts/{{name}}.toml")

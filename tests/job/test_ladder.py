@@ -42,7 +42,7 @@ CASES = {
 @pytest.fixture(autouse=True)
 def by_numpy(monkeypatch):
     """Use the engine that tests replace, whatever was compiled before."""
-    monkeypatch.setattr(hot, "engine_at_hand", lambda _name, _count: vectorised.settle)
+    monkeypatch.setattr(hot, "available_engine", lambda _name, _count: vectorised.settle)
 
 
 def failing(structure, loading, sets, parts, state, one_only):

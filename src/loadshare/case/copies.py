@@ -16,7 +16,7 @@ from functools import partial
 from typing import Any
 
 from loadshare.case.content import ENDS, FLOATS, Sections
-from loadshare.case.element import elements_in, without_other_ways
+from loadshare.case.element import elements_in, without_alternatives
 from loadshare.case.gears import COPIES
 from loadshare.case.keys import Path, dotted, ends_of, merge, parse
 from loadshare.case.origin import Origin
@@ -72,14 +72,14 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
         for name, element in before.items():
             count = pattern.count(*ends(name, element))
             if count is None:
-                _lay(after, section, name, element)
+                _merge_element(after, section, name, element)
                 continue
             became[name] = []
             for k in range(1, count + 1):
                 known = ends(name, element)
                 new = _renamed(name, known, pattern, k)
                 single = _copied(section, element, pattern, known, k)
-                _lay(after, section, new, single, under=True)
+                _merge_element(after, section, new, single, under=True)
                 became[name].append(new)
                 moved.append(((section, name), (section, new)))
         made[section] = after
@@ -178,13 +178,15 @@ def _copied(section: str, element: Any, pattern: _Pattern, ends: tuple[str, ...]
     return made
 
 
-def _lay(table: Data, section: str, name: str, element: Any, *, under: bool = False) -> None:
+def _merge_element(
+    table: Data, section: str, name: str, element: Any, *, under: bool = False
+) -> None:
     """Add an element to a table, merged with one of its name; if `under`, existing keys win."""
     there = table.get(name)
     if isinstance(there, dict) and isinstance(element, Mapping):
         low, high = (element, there) if under else (there, element)
         model = next(elements_in(Sections.model_fields[section].annotation))
-        table[name] = copy.deepcopy(without_other_ways(model, low, high))
+        table[name] = copy.deepcopy(without_alternatives(model, low, high))
         merge(table[name], high)
     elif name not in table or not under:
         table[name] = element

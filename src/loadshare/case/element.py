@@ -155,7 +155,7 @@ def same_but_for_values(one: Any, other: Any) -> bool:
     return isinstance(one, Quantity) or bool(one == other)
 
 
-def without_other_ways(model: type[Element], low: Any, high: Any) -> Any:
+def without_alternatives(model: type[Element], low: Any, high: Any) -> Any:
     """Return `low` without the keys of a property that `high` gives in another way.
 
     Parameters

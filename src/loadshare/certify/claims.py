@@ -19,7 +19,7 @@ from loadshare.case.table import Table
 from loadshare.certify.bound.judge import bounds
 from loadshare.certify.bound.one import Bound
 from loadshare.certify.fault import fault_of
-from loadshare.certify.floats import FloatState, Rests
+from loadshare.certify.floats import FloatPlaces, FloatState
 from loadshare.certify.judge import Judge
 from loadshare.certify.residuals import FIGURES, Residual, scales, worst_of_each
 from loadshare.certify.state import ClaimedState
@@ -123,9 +123,9 @@ class Claims:
         return found
 
     @cached_property
-    def rests(self) -> Rests:
+    def rests(self) -> FloatPlaces:
         """Where floats rest."""
-        return Rests(self.state, self.undetermined, CERTIFY.band)
+        return FloatPlaces(self.state, self.undetermined, CERTIFY.band)
 
     @cached_property
     def floats(self) -> list[Mapping[str, FloatState]]:

@@ -108,7 +108,7 @@ Some = tuple[tuple[str, ...], Array, Array, Array, Array]
 """Of some boundaries: names, margins, forces, outward normals, forces on the gear."""
 
 
-class Rests:
+class FloatPlaces:
     """Where the floats of a train rest in S claims.
 
     Parameters

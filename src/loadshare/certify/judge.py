@@ -91,7 +91,7 @@ class Judge:
         found = judged(self.columns, situations, answers)
         # In very soft springs the energy gap does not follow from forces that are in balance.
         found.worst[_is_soft(situations, found.load, found.deflection, tolerance)] = np.nan
-        if self.measuring.unsure:
+        if self.measuring.uncertain:
             # Compiled code does not measure how far these meshes are open.
             found.displaced[:] = np.nan
         for figure, name in ((found.worst, "worst"), (found.displaced, "displaced")):

@@ -156,9 +156,13 @@ class Measuring:
         self.line, angle, self.height = geometry.T[:, :, None]
         self.vanishing = float(np.tan(0.5 * angle).min(initial=math.inf))
         held = {*train.held, *(g for s in train.shafts.values() for g in (s.first, s.second))}
-        self.unsure = [e for e, (mesh, drive) in enumerate(of.flanks) if drive and mesh.unsure]
+        self.uncertain = [
+            e for e, (mesh, drive) in enumerate(of.flanks) if drive and mesh.flank_uncertain
+        ]
         self.alone = [
-            e for e, (mesh, _) in enumerate(of.flanks) if not (mesh.flanks[1:] or mesh.unsure)
+            e
+            for e, (mesh, _) in enumerate(of.flanks)
+            if not (mesh.flanks[1:] or mesh.flank_uncertain)
         ]
         self.turnable = [k for g, k in order.items() if g not in held]
 
@@ -170,7 +174,7 @@ class Measuring:
             "line_of_action": (min(CERTIFY.turned, self.vanishing), self.vanishing),
             "approach": (CERTIFY.neglected, CERTIFY.meaningless),
         }
-        if self.unsure:
+        if self.uncertain:
             bounds[NEITHER] = (CERTIFY.neglected, math.inf)
         if len(self.of.drum):
             bounds["ring"] = (CERTIFY.turned, self.vanishing)
@@ -219,7 +223,7 @@ class Measuring:
             "approach": np.maximum(-room, 0.0) / deflection,
         }
         # A gap opens the flank that is pressed, and not the other one.
-        openings = {NEITHER: self.unsure, APART: self.alone if apart else []}
+        openings = {NEITHER: self.uncertain, APART: self.alone if apart else []}
         for name, flanks in openings.items():
             if flanks:
                 opening = np.maximum(-(compression + situations.gap.T)[flanks], 0.0)
@@ -293,7 +297,7 @@ class Measuring:
             return f"gear {self.of.gears[element]}"
         if name == "ring":
             return f"ring {self.train.drums[element // 2].gear}"
-        flank = {NEITHER: self.unsure, APART: self.alone}.get(name, range(element + 1))[element]
+        flank = {NEITHER: self.uncertain, APART: self.alone}.get(name, range(element + 1))[element]
         return f"mesh {self.of.flanks[flank][0].name}"
 
     def every(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from loadshare.cli.files import is_stdout_taken
-from loadshare.cli.waiting import echo, is_hushed, speak
+from loadshare.cli.waiting import echo, erase_line, is_hushed
 from loadshare.readable import readable
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def console(*, stderr: bool = False) -> Console:
             os.dup2(nowhere, self.file.fileno())
             os.close(nowhere)
 
-    speak()
+    erase_line()
     return Screen(stderr=stderr or is_stdout_taken(), markup=False, emoji=False, highlight=False)
 
 

@@ -16,7 +16,7 @@ import typer
 from loadshare.cli.exits import UNUSABLE, fail, writing
 from loadshare.cli.files import tell_written
 from loadshare.cli.options import OUTPUT
-from loadshare.cli.waiting import speak
+from loadshare.cli.waiting import erase_line
 from loadshare.errors import LoadshareError
 from loadshare.json_text import json_text
 from loadshare.libraries import pd
@@ -171,7 +171,7 @@ def write_all(wanted: Iterable[Output] | None, makers: Makers, *, err: bool = Tr
         try:
             with writing(output.file):
                 content = makers[output.form]()
-                speak()
+                erase_line()
                 write_whole(output.file, content)
         except LoadshareError as error:
             fail([f"{output.file}: not written: {error}"], UNUSABLE)

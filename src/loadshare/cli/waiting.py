@@ -60,10 +60,10 @@ def waiting() -> Iterator[None]:
     try:
         yield
     finally:
-        speak()
+        erase_line()
 
 
-def speak() -> None:
+def erase_line() -> None:
     """Erase the line, to make room for what is printed now."""
     while _line:
         _line.pop().erase()
@@ -71,7 +71,7 @@ def speak() -> None:
 
 def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
     """Print a line to stdout or stderr, without control characters, as names of files may hold."""
-    speak()
+    erase_line()
     typer.echo(readable(text), err=err, nl=nl)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from loadshare.cli.exits import UNUSABLE, fail
-from loadshare.cli.waiting import echo, speak
+from loadshare.cli.waiting import echo, erase_line
 
 
 def warm() -> None:
@@ -15,7 +15,7 @@ def warm() -> None:
     from loadshare.job.warm import warm as compiled
 
     # The compiler's own messages follow.
-    speak()
+    erase_line()
     why = compiled()
     if why is not None:
         fail([f"Nothing is kept: {why}"], UNUSABLE)

@@ -82,7 +82,7 @@ def rounds_of(problem: ContactProblem) -> Rounds:
     return [(r, law.reach) for r, law in laws.items() if law and math.isfinite(law.reach)]
 
 
-def squeezing(
+def contradicting_limits(
     rows: Sequence[Row], rounds: Rounds, size: int, unit: float, overlap: float
 ) -> tuple[str, ...]:
     r"""Return the limits that contradict one another; empty if all can hold.
@@ -150,4 +150,4 @@ def conflict(problem: ContactProblem) -> tuple[str, ...]:
         norm = float(np.linalg.norm(row.vector))
         rows.append(replace(row, vector=row.vector / norm, gap=row.gap / norm))
     # The programme is solved to some 1e-9 of the unit: a smaller overlap proves nothing.
-    return squeezing(rows, rounds_of(problem), problem.size, 0.0, PLACES.pushed)
+    return contradicting_limits(rows, rounds_of(problem), problem.size, 0.0, PLACES.pushed)

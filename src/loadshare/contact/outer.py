@@ -177,7 +177,7 @@ def _compliances(
     return {n: law.tangent(forces[n]) for n, law in problem.laws.items()}
 
 
-def lines_of_laws(
+def tangent_compliances(
     problem: ContactProblem, forces: Mapping[str, float], least: float
 ) -> dict[str, tuple[float, float]]:
     """Return compliances and offsets of the laws of all rows and arcs at some forces.

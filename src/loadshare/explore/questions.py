@@ -91,7 +91,7 @@ def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
     if not 0.0 < high - low < math.inf:
         raise RequestError(400, f"low {low:g} and high {high:g} are no ends of a stretch")
     return Along(
-        by_parts(inputs, keys, setting(body)),
+        with_keys_written(inputs, keys, setting(body)),
         keys,
         low,
         high,
@@ -108,10 +108,10 @@ def slopes(inputs: Inputs, body: Mapping[str, Any]) -> Slopes:
         raise RequestError(400, f"keys is no list of 1 to {EXPLORE.keys} inputs")
     keys = tuple(dict.fromkeys(key for name in wanted for key in inputs.keys(str(name))))
     reaches = tuple(0.1 * (inputs.every[key].high - inputs.every[key].low) for key in keys)
-    return Slopes(by_parts(inputs, keys, setting(body)), keys, reaches, place(body))
+    return Slopes(with_keys_written(inputs, keys, setting(body)), keys, reaches, place(body))
 
 
-def by_parts(inputs: Inputs, keys: Sequence[str], given: Mapping[str, object]) -> Case:
+def with_keys_written(inputs: Inputs, keys: Sequence[str], given: Mapping[str, object]) -> Case:
     """Return the case of a setting with some keys written out, so that they can be varied.
 
     An error that the case lacks, or gives by components, has no size and direction until then.

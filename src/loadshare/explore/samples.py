@@ -18,10 +18,10 @@ from loadshare.case.keys import dotted
 from loadshare.case.writer import toml_text
 from loadshare.explore.answer import plain
 from loadshare.explore.inputs import Input, Inputs
-from loadshare.explore.questions import by_parts, finite, place
+from loadshare.explore.questions import finite, place, with_keys_written
 from loadshare.explore.request import RequestError, number, setting, text
 from loadshare.explore.studies import Plain, reporting_errors
-from loadshare.job.engines import at_hand
+from loadshare.job.engines import is_available
 from loadshare.job.positions import prepared
 from loadshare.report.numbers import interval
 from loadshare.report.records import Cell, Column, Table
@@ -75,7 +75,7 @@ def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
     if body.get("study") is None:
         name, (case, table, left) = SHOWN, _of_shown(inputs, body, given)
     else:
-        name, case, left = text(body, "study"), by_parts(inputs, (), given), []
+        name, case, left = text(body, "study"), with_keys_written(inputs, (), given), []
         table = case.to_dict().get("study", {}).get(name, {})
         if table.get("kind") != "tolerance":
             raise RequestError(400, "there is no such tolerance study")
@@ -108,7 +108,7 @@ def _of_shown(
         low, high = (finite({name: end}, name) for end in ends)
         spreads["=".join(keys)] = _spread(inputs.every[keys[0]], given, low, high)
         every += keys
-    case = by_parts(inputs, every, given)
+    case = with_keys_written(inputs, every, given)
     table: dict[str, Any] = {"kind": "tolerance", "inputs": spreads}
     if prepared(case)[1].train.count > EXPLORE.together:
         table["positions"] = [place(body)]
@@ -133,7 +133,7 @@ def _spread(one: Input, given: Mapping[str, object], low: float, high: float) ->
 def start_study(question: Scatter) -> Plain:
     """Check a study, and return what each of its parts needs and what the page shows of it."""
     # A page must not wait for a compiler.
-    engine = "compiled" if at_hand() else "vectorised"
+    engine = "compiled" if is_available() else "vectorised"
     case = question.case.replace({dotted(("study", question.name)): question.table})
     job, block = requested_job(case, question.name, {}, engine=engine)
     settings = job.settings

@@ -14,7 +14,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
 from loadshare.job.block import NONE
-from loadshare.job.engines import engine_at_hand
+from loadshare.job.engines import available_engine
 from loadshare.job.hot import Solved
 from loadshare.job.ladder import AUTO, climb
 from loadshare.job.machine import Machine
@@ -202,7 +202,7 @@ def _part(machine: Machine, rows: Numbers, samples: Samples, positions: tuple[in
     """Solve samples at some positions; those that the hot path does not solve climb the ladder."""
     here = machine.at(positions[0])
     situations = samples.abreast(positions)
-    engine = engine_at_hand("auto", situations.count)
+    engine = available_engine("auto", situations.count)
     found = here.answer(situations, CERTIFY.tolerance, engine, starts=positions)
     solved = Solved(here, situations, found, CERTIFY.tolerance)
     part = Part(rows, positions, samples, solved, {}, {})

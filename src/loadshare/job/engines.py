@@ -53,7 +53,7 @@ def chosen(count: int) -> str:
     """
     if count <= JOB.few:
         return "vectorised"
-    return "compiled" if count > JOB.compiling or at_hand() else "vectorised"
+    return "compiled" if count > JOB.compiling or is_available() else "vectorised"
 
 
 def loaded() -> bool:
@@ -63,13 +63,13 @@ def loaded() -> bool:
     return compilation.why_not() is None and all(k is not None and k.overloads for k in kernels)
 
 
-def at_hand() -> bool:
+def is_available() -> bool:
     """Return whether the compiled engine needs no compiling; code on disk is loaded."""
     try:
         needed = [getattr(import_module(module), name) for module, name in KERNELS]
     except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
         return False
-    return compilation.at_hand(*needed)
+    return compilation.is_available(*needed)
 
 
 @dataclass(slots=True)
@@ -87,7 +87,7 @@ class Tally:
 tally = Tally()
 
 
-def engine_at_hand(name: str, count: int) -> Engine:
+def available_engine(name: str, count: int) -> Engine:
     """Return an engine by name, for callers who solve case by case.
 
     Parameters
@@ -101,7 +101,7 @@ def engine_at_hand(name: str, count: int) -> Engine:
     if name != "auto":
         return engine_named(name, count)
     tally.equilibria += count
-    if not loaded() and (tally.equilibria <= JOB.few or not at_hand()):
+    if not loaded() and (tally.equilibria <= JOB.few or not is_available()):
         return vectorised.settle
     from loadshare.solver.hot import compiled
 
@@ -119,5 +119,5 @@ def _compiled() -> Engine | None:
         from loadshare.solver.hot import compiled
 
         return compiled.settle
-    compilation.tell_why_not()
+    compilation.log_why_not()
     return None

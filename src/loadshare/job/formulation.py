@@ -17,7 +17,7 @@ from loadshare.contact.forms import (
     quadratic_form,
 )
 from loadshare.contact.inner import solve_near
-from loadshare.contact.outer import Settled, lines_of_laws
+from loadshare.contact.outer import Settled, tangent_compliances
 from loadshare.contact.plan import Linearisation, Plan, Units, programme
 from loadshare.contact.programme import Point, Programme
 from loadshare.errors import Refused
@@ -178,7 +178,7 @@ def formulate(
     x = coordinates_of(scene, found)
     at = Linearisation(
         x,
-        lines_of_laws(scene, forces, JOB.least * scene.force_unit()),
+        tangent_compliances(scene, forces, JOB.least * scene.force_unit()),
         {r.name: r.law(r.torque(forces), x) for r in scene.radials},
     )
     written, units = programme(scene, record.plan, at, exact_hertz=exact_hertz)

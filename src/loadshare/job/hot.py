@@ -13,7 +13,7 @@ from loadshare.certify import Certificate, Claims, certified
 from loadshare.certify.certificate import in_groups
 from loadshare.contact.plan import Plan, Role
 from loadshare.job.answer import Answer
-from loadshare.job.engines import engine_at_hand
+from loadshare.job.engines import available_engine
 from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine
 from loadshare.settings import JOB
@@ -136,7 +136,7 @@ def hot_answers(
 ) -> dict[int, Answer]:
     """Return the answers that the hot path finds, by position."""
     situations = machine.situations(indices)
-    found = machine.answer(situations, tolerance, engine_at_hand(engine, len(indices)))
+    found = machine.answer(situations, tolerance, available_engine(engine, len(indices)))
     solved = Solved(machine, situations, found, tolerance)
     passed = np.flatnonzero(found.passed).tolist()
     wanted = [indices[r] for r in passed]

@@ -81,7 +81,7 @@ def climb_all(
         Options for positions that the hot path leaves.
     tolerance : float
     engine : str or None
-        Engine of the hot path, by name (`engine_at_hand`); None leaves the hot path out.
+        Engine of the hot path, by name (`available_engine`); None leaves the hot path out.
 
     Yields
     ------

@@ -20,10 +20,10 @@ from loadshare.job.ways import (
     by_any_way,
     by_rule,
     from_near,
+    learned_rule,
     search_all,
     start_of,
     take_over,
-    taught,
     ways_from_rest,
 )
 from loadshare.scene.loading import Loading, loading_of
@@ -51,7 +51,7 @@ def _compiling(engine: Engine, act: Callable[[Engine], Outcome]) -> Outcome:
         if not compilation.is_failure(error):
             raise
         compilation.give_up(f"it does not compile ({compilation.words_of(error)})")
-    compilation.tell_why_not()
+    compilation.log_why_not()
     return act(vectorised.settle)
 
 
@@ -209,7 +209,9 @@ class Machine:
             samples.take(rows[at == k]).situations(positions[k]) for k in np.unique(at).tolist()
         ]
         loading = loading_of(self.structure, stack(situations))
-        self._rule = _compiling(engine, lambda engine: taught(self.structure, loading, engine))
+        self._rule = _compiling(
+            engine, lambda engine: learned_rule(self.structure, loading, engine)
+        )
 
     def _answer(
         self, situations: Situations, tolerance: float, engine: Engine, starts: Sequence[int]
@@ -270,7 +272,7 @@ class Machine:
         rule = self._rule if starts else None
         if starts and rule is None:
             some = samples_to_learn(loading.count)
-            rule = taught(self.structure, loading.take(some), engine) if len(some) else None
+            rule = learned_rule(self.structure, loading.take(some), engine) if len(some) else None
         ways: list[Way] = []
         if rule is not None:
             ways.append(lambda some, _: by_rule(self.structure, some, engine, rule))

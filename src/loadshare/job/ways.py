@@ -92,7 +92,7 @@ def by_rule(
     return iterate, exchange(structure, loading, iterate, engine, states)
 
 
-def taught(structure: Structure, loading: Loading, engine: Engine) -> Rule | None:
+def learned_rule(structure: Structure, loading: Loading, engine: Engine) -> Rule | None:
     """Return the rule that samples teach; None if none of them is solved."""
     iterate, found = from_rest(structure, loading, engine)
     if 2 * np.count_nonzero(found.solved) < loading.count:

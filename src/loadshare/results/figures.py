@@ -12,7 +12,7 @@ from loadshare.array_types import Array, Flags
 from loadshare.certify.bound import Columns, torque_bounds
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.bound.tangent import Tangents, tangents_of
-from loadshare.certify.floats import Rests
+from loadshare.certify.floats import FloatPlaces
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import RESIDUALS, pushed_by_rings, scaled_residuals
 from loadshare.certify.state import ClaimedState
@@ -261,9 +261,9 @@ class Figures:
         return np.stack([self._ranges(axis) for axis in COMPONENTS], axis=2)
 
     @cached_property
-    def _rests(self) -> Rests:
+    def _rests(self) -> FloatPlaces:
         with np.errstate(all="ignore"):
-            return Rests(self.state, self.undetermined, CERTIFY.band)
+            return FloatPlaces(self.state, self.undetermined, CERTIFY.band)
 
     @property
     def margin(self) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.certify import Claims
 from loadshare.certify.bound import Columns
-from loadshare.certify.floats import Rests
+from loadshare.certify.floats import FloatPlaces
 from loadshare.certify.state import ClaimedState
 from loadshare.certify.validity import Measuring
 from loadshare.results.figures import Figures
@@ -45,7 +45,7 @@ class Judged(Figures):
         return self._claims.judge.measuring
 
     @property
-    def _rests(self) -> Rests:
+    def _rests(self) -> FloatPlaces:
         return self._claims.rests
 
     @cached_property

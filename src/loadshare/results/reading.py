@@ -106,8 +106,8 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     tolerance = _tolerance(given, file)
     positions = _positions(train, given.positions, tolerance)
     _raise(_uncertified(positions), file)
-    _raise(_forgotten(train, positions), file)
-    _raise(_loosened(positions, train), file)
+    _raise(_wrong_slips(train, positions), file)
+    _raise(_wrong_ranges(positions, train), file)
     stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
     result = result_from(case, case, train, positions, known(stamp))
     # The digest is that of the digits in the file, whichever processor computed them.
@@ -285,7 +285,7 @@ def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
             yield path, "", f"position {p.position}: {refusal_text(p.validity.refused)}", ""
 
 
-def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
+def _wrong_slips(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
     """Yield positions of a march that do not start from the slip at the end of the previous one."""
     after = {gear: np.zeros(3) for gear in train.splines}
     remembered = False
@@ -311,7 +311,7 @@ def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
         }
 
 
-def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
+def _wrong_ranges(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
     """Yield ranges of undetermined coordinates that do not follow from the claim."""
     for at, p in enumerate(positions):
         scene = assemble(p.claim.train(train), p.position)

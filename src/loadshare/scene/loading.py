@@ -146,9 +146,9 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
     if situations.table.shape[-1]:
         has = situations.table[0, :, 0, 1] > 0.0
         tabulated[columns.flanks] = np.where(has, np.arange(len(has)), -1)
-    load = situations.torque @ structure.twisted
+    load = situations.torque @ structure.load_per_torque
     if situations.push.any():
-        load = load + situations.push.reshape(len(situations.push), -1) @ structure.pushed
+        load = load + situations.push.reshape(len(situations.push), -1) @ structure.load_per_force
     return Loading(
         count=situations.count,
         load=load / force,

@@ -255,7 +255,7 @@ class Structure:
         return found
 
     @cached_property
-    def nearer(self) -> Array:
+    def approach_per_offset(self) -> Array:
         """Approach of every flank per centre offset, shape (flanks, 3 gears)."""
         order = self.train.order
         found = np.zeros((len(self.flanks), len(order), 3))
@@ -265,7 +265,7 @@ class Structure:
         return found.reshape(len(self.flanks), -1)
 
     @cached_property
-    def twisted(self) -> Array:
+    def load_per_torque(self) -> Array:
         """Load on the coordinates per torque on the gears, shape (gears, n)."""
         return np.array([self.coordinates.turned((gear, 1.0)) for gear in self.train.gears])
 
@@ -288,7 +288,7 @@ class Structure:
         return np.array([a.relative for a in self.arcs]).reshape(-1, 3, self.size)
 
     @cached_property
-    def pushed(self) -> Array:
+    def load_per_force(self) -> Array:
         """Load on the coordinates per force on the gears, shape (3 gears, n).
 
         A pin transmits the force on its planet to the carrier.
@@ -306,19 +306,19 @@ class Structure:
     def gaps_of_flanks(self, situations: Situations) -> Array:
         """Return the gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
         flat = situations.offset.reshape(len(situations.offset), -1)
-        is_small = len(flat) < STATICS.samples or self.nearer.size <= STATICS.dense
-        nearer = self.nearer if is_small else self._nearer_sparse
+        is_small = len(flat) < STATICS.samples or self.approach_per_offset.size <= STATICS.dense
+        nearer = self.approach_per_offset if is_small else self._approach_per_offset_sparse
         near = np.asarray(flat @ nearer.T)
         if self._lags:
             near = near + self.turned(situations) @ self.turning.T
         return np.asarray(situations.gap - near)
 
     @cached_property
-    def _nearer_sparse(self) -> Any:
-        """`nearer` as a sparse matrix; `Any`, since SciPy has no types."""
+    def _approach_per_offset_sparse(self) -> Any:
+        """`approach_per_offset` as a sparse matrix; `Any`, since SciPy has no types."""
         from scipy.sparse import csr_array
 
-        return csr_array(self.nearer)
+        return csr_array(self.approach_per_offset)
 
     @property
     def switches(self) -> int:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from loadshare.contact.conflict import Rounds, is_rigid, rounds_of, squeezing
+from loadshare.contact.conflict import Rounds, contradicting_limits, is_rigid, rounds_of
 from loadshare.contact.problem import Row
 from loadshare.scene.scene import Scene
 from loadshare.settings import PLACES
@@ -18,7 +18,7 @@ def contradiction(scene: Scene, overlap: float = PLACES.overlap) -> tuple[str, .
     """Return the rigid limits that contradict one another; empty if all can hold."""
     rounds = rounds_of(scene)
     rows = list(_straight(scene, rounds))
-    return squeezing(rows, rounds, scene.size, scene.length_unit(), overlap)
+    return contradicting_limits(rows, rounds, scene.size, scene.length_unit(), overlap)
 
 
 def _straight(scene: Scene, rounds: Rounds) -> Iterator[Row]:

@@ -199,7 +199,7 @@ def fit(
             progress(number, starts)
     if not reached:
         assert refusal is not None
-        raise problem.of_bounds() or refusal
+        raise problem.bounds_error() or refusal
     _, best = min(reached, key=lambda r: r[0])
     return _fitted(problem, best, tuple(chis))
 

@@ -69,7 +69,7 @@ class LeastSquares:
         self.evaluations = 0
         self._last: tuple[bytes, Case, Result] | None = None
 
-    def of_bounds(self) -> CaseError | None:
+    def bounds_error(self) -> CaseError | None:
         """Return an error that names every bound which on its own gives no valid case, or None."""
         problems: list[Problem] = []
         for parameter, *ends in zip(self.parameters, self.low, self.high, strict=True):

@@ -17,7 +17,7 @@ from loadshare.job.machine import Machine
 from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.study.parameter import split_outside
-from loadshare.tooth import bears_on_laws, resolve, with_own_laws
+from loadshare.tooth import affects_laws, resolve, with_own_laws
 from loadshare.train.situations import VARYING, situation_of
 from loadshare.train.train import Train
 
@@ -36,7 +36,7 @@ def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
     """
     paths = paths_of(varied)
     own = with_own_laws(opened(case), paths)
-    return own if any(map(bears_on_laws, paths)) else resolve(own)
+    return own if any(map(affects_laws, paths)) else resolve(own)
 
 
 def paths_of(varied: Iterable[str]) -> list[Key]:

@@ -54,7 +54,9 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
     if loaded and not _runs_alike(case.operating, base[0].operating, case.gears):
         found = pressed_flanks(case, base[1].gears, base[1].period)
         pairs = base[1].pairs.items()
-        if any([bool(f) for f in found[n]] != [pair.turned, pair.unsure] for n, pair in pairs):
+        if any(
+            [bool(f) for f in found[n]] != [pair.turned, pair.flank_uncertain] for n, pair in pairs
+        ):
             return None
     changed = {path[:2] for path, _, _ in differences}
     return train_of(case, base[1], (base[0], base[2]), changed)

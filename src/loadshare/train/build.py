@@ -218,7 +218,7 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
         gaps=of_teeth if mesh.gap is None else tuple(r * g.si for g in _each(mesh.gap)),
         backlash=backlash,
         turned=pair.turned,
-        unsure=pair.unsure,
+        flank_uncertain=pair.flank_uncertain,
         phase=phase,
         counted=pair.counted,
         coast_phase=coast_phase,

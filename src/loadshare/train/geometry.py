@@ -47,7 +47,7 @@ class Pair:
         Along the line of action, if the case derives it from the teeth [m].
     counted : (int, int)
         See `Mesh`.
-    unsure : bool
+    flank_uncertain : bool
         See `Mesh`.
     """
 
@@ -59,7 +59,7 @@ class Pair:
     phases: tuple[float, float] = (0.0, 0.0)
     backlash: float = math.inf
     counted: tuple[int, int] = (1, 1)
-    unsure: bool = False
+    flank_uncertain: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -196,7 +196,7 @@ def _pairs(case: spec.Case, gears: Mapping[str, Gear], period: Period | None) ->
         if line is None:
             raise ValueError(f"no line of action: {name}")
         driver, driven = gears[mesh.driver], gears[mesh.driven]
-        turned, unsure = (bool(flag) for flag in every[name])
+        turned, flank_uncertain = (bool(flag) for flag in every[name])
         contact, counted = running_contact(gears, mesh.driver, mesh.driven)
         if turned:
             # The other flank of the same two gears, whichever senses they are counted in.
@@ -204,7 +204,13 @@ def _pairs(case: spec.Case, gears: Mapping[str, Gear], period: Period | None) ->
             contact, counted = running_contact(gears, mesh.driven, mesh.driver, counted[1])
         normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
         pair = Pair(
-            driver, driven, (normals[0], normals[1]), turned, line, counted=counted, unsure=unsure
+            driver,
+            driven,
+            (normals[0], normals[1]),
+            turned,
+            line,
+            counted=counted,
+            flank_uncertain=flank_uncertain,
         )
         if mesh.backlash == "teeth":
             left = backlash_of_teeth(mesh, case.gears, centres)

@@ -68,7 +68,7 @@ class Mesh:
     turned : bool
         Whether the case names the driven gear first. Only in a mesh with a single flank: the torque
         runs against the order of its name and presses that flank.
-    unsure : bool
+    flank_uncertain : bool
         Whether that one flank may be the wrong one: see `train.pressed`.
     phase : float
         Fraction of its cycle that has passed at the first position [-].
@@ -96,7 +96,7 @@ class Mesh:
     gaps: tuple[float, ...]
     backlash: float
     turned: bool = False
-    unsure: bool = False
+    flank_uncertain: bool = False
     phase: float = 0.0
     counted: tuple[int, int] = (1, 1)
     coast_phase: float = 0.0

@@ -40,12 +40,12 @@ class Pressed(NamedTuple):
     ----------
     turned : ndarray of bool
         Whether the one flank of the mesh is the opposite of the one that its name implies.
-    unsure : ndarray of bool
+    flank_uncertain : ndarray of bool
         Whether it may be the other flank, depending on how stiffness shares the loads.
     """
 
     turned: Flags
-    unsure: Flags
+    flank_uncertain: Flags
 
 
 def pressed_flanks(
@@ -96,8 +96,8 @@ def pressed_flanks(
             problems.append(case.problem(("meshes", name, "backlash"), message, "a length", hint))
         # If the load presses neither flank, the name decides here too.
         turned = np.where(coast | drive, coast, against) & (name in names)
-        unsure = either.any(axis=0) | (name in pushed)
-        found[name] = Pressed(turned, np.asarray(unsure & (name in names)))
+        flank_uncertain = either.any(axis=0) | (name in pushed)
+        found[name] = Pressed(turned, np.asarray(flank_uncertain & (name in names)))
     if problems:
         raise CaseError(problems)
     return found

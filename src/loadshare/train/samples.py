@@ -179,7 +179,7 @@ def _pressed_alike(
         found = pressed_flanks(_with(case, loads), geometry.gears, geometry.period)
         for name, pair in geometry.pairs.items():
             alike &= found[name].turned == pair.turned
-            alike &= found[name].unsure == pair.unsure
+            alike &= found[name].flank_uncertain == pair.flank_uncertain
     return alike
 
 

@@ -60,7 +60,15 @@ def _gear(gear: Gear) -> tuple[Any, ...]:
 
 @lru_cache(maxsize=1024)
 def _mesh(mesh: Mesh) -> tuple[Any, ...]:
-    kept = (mesh.name, mesh.driver, mesh.driven, mesh.radii, mesh.turned, mesh.unsure, mesh.counted)
+    kept = (
+        mesh.name,
+        mesh.driver,
+        mesh.driven,
+        mesh.radii,
+        mesh.turned,
+        mesh.flank_uncertain,
+        mesh.counted,
+    )
     places = (mesh.phase, mesh.coast_phase, mesh.means, len(mesh.gaps), len(mesh.coast_gaps))
     flanks = (_bytes(mesh.drive_normal), _bytes(mesh.coast_normal), math.isinf(mesh.backlash))
     laws = tuple(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from loadshare.case.checks.fit import SQUARE, parallel
+from loadshare.case.checks.fit import ANGLE_TOLERANCE, parallel
 from loadshare.case.checks.names import allowed_carriers, carriers_in
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Gear
@@ -36,7 +36,7 @@ def check_carriers(draft: Draft) -> Iterator[Problem]:
             yield draft.problem(path, "its axis is not parallel to that of the planet")
         elif name in centres and gear.carrier in centres:
             apart = minus(centres[name], centres[gear.carrier])
-            if centre_distance(carrier, apart) <= SQUARE * gear.acting_radius:
+            if centre_distance(carrier, apart) <= ANGLE_TOLERANCE * gear.acting_radius:
                 yield draft.problem(path, "the planet is on the carrier's axis")
 
 
@@ -194,5 +194,5 @@ def _on_rigid_shafts(draft: Draft, start: str) -> set[str]:
 
 
 def _coaxial(carrier: Gear, gear: Gear, offset: Vector) -> bool:
-    near = centre_distance(carrier, offset) <= SQUARE * gear.acting_radius
+    near = centre_distance(carrier, offset) <= ANGLE_TOLERANCE * gear.acting_radius
     return near and parallel(carrier, gear)

@@ -25,7 +25,7 @@ TOLERANCE = 1e-3
 """Largest mismatch between base radii and centre distance, relative to the latter [-]."""
 
 # Directions are parallel or square to within what three decimals in the file can express [-].
-SQUARE = 1e-6
+ANGLE_TOLERANCE = 1e-6
 TEETH_ALIKE = 1e-6
 """Largest difference between teeth that mesh: relative in module and pressure angle [-], absolute
 in the helix angle [rad]."""
@@ -67,9 +67,9 @@ def _parallel_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterat
     if not parallel(driver, driven):
         yield draft.problem(("meshes", name), "the two axes are not parallel")
         return
-    yield from _faces_meet(draft, name, driver, driven, abs(dot(offset, axis_of(driver))))
+    yield from _check_face_overlap(draft, name, driver, driven, abs(dot(offset, axis_of(driver))))
     distance = centre_distance(driver, offset)
-    if distance <= SQUARE * max(driver.acting_radius, driven.acting_radius):
+    if distance <= ANGLE_TOLERANCE * max(driver.acting_radius, driven.acting_radius):
         yield draft.problem(("meshes", name), "the two gears are on the same axis")
         return
     radius = tangent_distance(driver, driven)
@@ -132,7 +132,7 @@ def _without_backlash(one: Tooth, two: Tooth) -> str:
     return ""
 
 
-def _faces_meet(
+def _check_face_overlap(
     draft: Draft, name: str, driver: Gear, driven: Gear, along: float
 ) -> Iterator[Problem]:
     """Yield gears that are too far apart along their axes [m] for their teeth to touch."""
@@ -195,7 +195,7 @@ def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[P
         (draft.gears[mesh.driver], draft.gears[mesh.driven]), key=lambda gear: gear.type == "face"
     )
     axis, along = axis_of(face), axis_of(pinion)
-    if abs(dot(axis, along)) > SQUARE:
+    if abs(dot(axis, along)) > ANGLE_TOLERANCE:
         yield draft.problem(
             ("meshes", name), "the axes of a face gear and its pinion are not square"
         )
@@ -281,7 +281,7 @@ def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
 
 def parallel(one: Gear, other: Gear) -> bool:
     """Tell whether the axes of two gears are parallel."""
-    return 1 - abs(dot(axis_of(one), axis_of(other))) <= SQUARE
+    return 1 - abs(dot(axis_of(one), axis_of(other))) <= ANGLE_TOLERANCE
 
 
 def mm(length: float) -> str:

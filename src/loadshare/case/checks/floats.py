@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-from loadshare.case.checks.fit import SQUARE, parallel
+from loadshare.case.checks.fit import ANGLE_TOLERANCE, parallel
 from loadshare.case.content import FLOATS
 from loadshare.case.draft import Draft
 from loadshare.case.line_of_action import centre_distance
@@ -80,7 +80,7 @@ def _on_one_axis(draft: Draft, names: tuple[str, ...]) -> Iterator[tuple[str, st
         for one, two in combinations(names, 2)
     }
     size = max(*apart.values(), *(gear.acting_radius for gear in gears if not gear.is_carrier))
-    yield from (pair for pair, distance in apart.items() if distance <= SQUARE * size)
+    yield from (pair for pair, distance in apart.items() if distance <= ANGLE_TOLERANCE * size)
 
 
 def check_float_backlashes(draft: Draft) -> Iterator[Problem]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 
-from loadshare.case.checks.fit import OVERLAP, SQUARE, mm, parallel, toothed_pairs
+from loadshare.case.checks.fit import ANGLE_TOLERANCE, OVERLAP, mm, parallel, toothed_pairs
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar, Tooth, shortened
 from loadshare.case.line_of_action import centre_distance
@@ -189,18 +189,18 @@ def _clash(draft: Draft, one: str, two: str, centres: Mapping[str, Vector]) -> _
     if here.tooth is None or there.tooth is None or "internal" in (here.type, there.type):
         return None
     axis = axis_of(here)
-    if abs(dot(axis, axis_of(there))) < 1.0 - SQUARE:
+    if abs(dot(axis, axis_of(there))) < 1.0 - ANGLE_TOLERANCE:
         return None
     offset = minus(centres[two], centres[one])
     along = abs(dot(offset, axis))
     widths = here.face_width.si + there.face_width.si if here.face_width and there.face_width else 0
-    if along > SQUARE * here.tooth.radius and along >= 0.5 * widths:
+    if along > ANGLE_TOLERANCE * here.tooth.radius and along >= 0.5 * widths:
         return None
     apart = centre_distance(here, offset)
     over = here.tooth.tip + there.tooth.tip - apart
     if over <= WRITTEN * here.tooth.module:
         return None
-    return _Clash(one, two, over, apart if apart > SQUARE * here.tooth.radius else 0.0)
+    return _Clash(one, two, over, apart if apart > ANGLE_TOLERANCE * here.tooth.radius else 0.0)
 
 
 def _in_the_way(draft: Draft, middle: str, clash: _Clash, centres: Mapping[str, Vector]) -> Problem:
@@ -211,7 +211,7 @@ def _in_the_way(draft: Draft, middle: str, clash: _Clash, centres: Mapping[str, 
     if not clash.apart:
         what = f"is where gear {clash.one} is, and both mesh with {middle}"
         hint = f"Join them by a shaft if they are one body, or {aside}."
-        if not math.isclose(*tips, rel_tol=SQUARE):
+        if not math.isclose(*tips, rel_tol=ANGLE_TOLERANCE):
             outer = clash.one if tips[0] > tips[1] else clash.two
             hint += f' If gear {outer} is a ring about the other, it is of type = "internal".'
         return draft.problem(path, what, hint=hint)
@@ -221,7 +221,9 @@ def _in_the_way(draft: Draft, middle: str, clash: _Clash, centres: Mapping[str, 
         for n in (clash.one, clash.two)
     ]
     hint = f"Or {aside}."
-    if math.isclose(*radii, rel_tol=SQUARE) and math.isclose(*tips, rel_tol=SQUARE):
+    if math.isclose(*radii, rel_tol=ANGLE_TOLERANCE) and math.isclose(
+        *tips, rel_tol=ANGLE_TOLERANCE
+    ):
         room = int(math.pi / math.asin(min(tips[0] / radii[0], 1.0)))
         hint = f"At most {room} such gears fit evenly spaced about {middle}. {hint}"
     return draft.problem(path, what, f"centres more than {mm(sum(tips))} apart", hint)

@@ -97,7 +97,7 @@ def contradictions(path: Path, of: Gearing) -> list[Problem]:
     return problems
 
 
-def unknown_gears(path: Path, of: Gearing) -> list[Problem]:
+def unclear_couplings(path: Path, of: Gearing) -> list[Problem]:
     """Return a problem for every coupling that does not say if the unit's gear engages it."""
     problems = []
     for coupling in of.model.of_type(*COUPLINGS):

@@ -16,7 +16,7 @@ from loadshare.errors import CaseError, Problem
 from loadshare.exchange.imported import reading, refuse
 from loadshare.exchange.rexs.archive import repacked, unpacked
 from loadshare.exchange.rexs.gearing import Gearing
-from loadshare.exchange.rexs.holding import borne_by
+from loadshare.exchange.rexs.holding import force_parts
 from loadshare.exchange.rexs.model import Component
 from loadshare.exchange.rexs.reading import is_json, parsed, read_model, tables
 from loadshare.input import read_file
@@ -187,7 +187,7 @@ def _of_bearings(result: Result, gearing: Gearing) -> Values:
     pushed: dict[str, Array] = {}
     across: dict[str, Array] = {}
     for body, name in _bodies(gearing):
-        for link, part in borne_by(gearing, body):
+        for link, part in force_parts(gearing, body):
             along = part if link.side == "inner" else -part
             known = pushed.get(link.part.id, np.zeros(3))
             pushed[link.part.id] = known + along * _pushed(result, name)

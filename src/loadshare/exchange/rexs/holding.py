@@ -169,7 +169,7 @@ def _clearance(links: list[Link], assumed: list[str]) -> float:
     return sum(gaps) / len(gaps) if gaps else 0.0
 
 
-def borne_by(of: Gearing, body: Component) -> list[tuple[Link, float]]:
+def force_parts(of: Gearing, body: Component) -> list[tuple[Link, float]]:
     """Return the bearings that hold a body, as in `holding_of`, and their parts of its force.
 
     Returns

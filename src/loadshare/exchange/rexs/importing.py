@@ -17,7 +17,7 @@ from loadshare.exchange.rexs.checking import (
     ON_AXIS,
     beside_axes,
     contradictions,
-    unknown_gears,
+    unclear_couplings,
     unplaced,
     unread_values,
     unused,
@@ -70,7 +70,7 @@ class _Importer:
     def imported(self) -> Imported:
         """Return the case."""
         self.assumed += self.of.model.notes
-        checks = (unread_values, unknown_gears, contradictions)
+        checks = (unread_values, unclear_couplings, contradictions)
         if problems := [each for check in checks for each in check(self.path, self.of)]:
             raise CaseError(problems)
         self.assumed += [*unplaced(self.of), *beside_axes(self.of)]
@@ -87,7 +87,9 @@ class _Importer:
         flow = flow_of(self.of, self.assumed, self._lacks)
         if self.problems:
             # These relations, which name unknown components, may be why data are missing.
-            also = [Problem(str(self.path), "", "", note) for note in self.of.model.pointless]
+            also = [
+                Problem(str(self.path), "", "", note) for note in self.of.model.dangling_relations
+            ]
             raise CaseError([*self.problems, *also])
         assert flow is not None
         self.left_out += flow.left_out
@@ -246,7 +248,7 @@ class _Importer:
     def _count_left_out(self) -> None:
         kinds = Counter(c.type for c in self.of.model.components.values() if c.type not in READ)
         self.left_out += [f"{count} {kind}" for kind, count in sorted(kinds.items())]
-        self.left_out += self.of.model.pointless
+        self.left_out += self.of.model.dangling_relations
         idle = [g for g in self.of.model.of_type(*GEARS) if g.id not in self.of.names]
         self.left_out += [f"gear {g.name or g.id}: no mesh of it carries load" for g in idle]
         holding = [id_ for held in self.holding.values() for id_ in held.parts]

@@ -91,7 +91,7 @@ class Model:
     relations : tuple of Relation
     notes : tuple of str
         What was assumed in reading it.
-    pointless : tuple of str
+    dangling_relations : tuple of str
         Remarks on relations that are left out because they name components that are not there.
     """
 
@@ -99,7 +99,7 @@ class Model:
     components: Mapping[str, Component]
     relations: tuple[Relation, ...]
     notes: tuple[str, ...] = field(default=())
-    pointless: tuple[str, ...] = field(default=())
+    dangling_relations: tuple[str, ...] = field(default=())
 
     def of_type(self, *types: str) -> list[Component]:
         """Return the components of some types."""

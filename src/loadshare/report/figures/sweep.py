@@ -153,7 +153,7 @@ def _shown(
         known = [show]
     else:
         known = [str(n) for n in variable[by].values]
-    wanted = _telling(data, show, variable, by, known) if names is None else list(names)
+    wanted = _default_names(data, show, variable, by, known) if names is None else list(names)
     wrong = [name for name in wanted if name not in known]
     if wrong:
         raise LoadshareError(f"no {by} {', '.join(wrong)}. Allowed: {', '.join(known)}")
@@ -167,7 +167,7 @@ def _shown(
     return _Shown(wanted, by, values[keep] * unit.factor, unit, title, looks, least)
 
 
-def _telling(
+def _default_names(
     data: xr.Dataset, show: str, variable: xr.DataArray, by: str, names: list[str]
 ) -> list[str]:
     """Return the names shown by default: none that repeats another, or has nothing to show."""

@@ -30,13 +30,11 @@ def centred(equations: Equations, z: Array, numbers: Numbers) -> Array:
         return z
     moves = [(right[k][null[k]] * factor[k])[:, : equations.n] for k in rows.tolist()]
     z = z.copy()
-    z[rows] = _into_the_middle(equations, z[rows], numbers.take(rows), moves)
+    z[rows] = _to_centre(equations, z[rows], numbers.take(rows), moves)
     return z
 
 
-def _into_the_middle(
-    equations: Equations, z: Array, numbers: Numbers, moves: Sequence[Array]
-) -> Array:
+def _to_centre(equations: Equations, z: Array, numbers: Numbers, moves: Sequence[Array]) -> Array:
     """Move points (S, size) along moves (k, n) that nothing resists, to where room is largest.
 
     A round limit is replaced by a polygon of tangents, at first at equal angles, then refined

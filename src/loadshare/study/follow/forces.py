@@ -12,7 +12,7 @@ from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import pressed
 from loadshare.study.follow.ranges import Range, sampled
-from loadshare.study.follow.stretches import Around, Stretches
+from loadshare.study.follow.stretches import OffsetBounds, Stretches
 
 
 class Force(NamedTuple):
@@ -233,7 +233,9 @@ def _turning_force(
         yield Force(row, _slack(s, here, turn), straight - limit.rate, turned + limit.spread)
 
 
-def _turned(s: Stretches, k: int, around: Around, push: Push, width: int) -> tuple[Array, Array]:
+def _turned(
+    s: Stretches, k: int, around: OffsetBounds, push: Push, width: int
+) -> tuple[Array, Array]:
     """Return by how much a turning force's stiffness varies, (B, width, width), and its diagonal.
 
     Along the force's direction the stiffness is that of the push, across it force over radius.

@@ -14,7 +14,7 @@ from loadshare.study.follow.numbers import Numbers
 from loadshare.study.follow.ranges import Enclosure, Range, sampled
 
 
-class Around(NamedTuple):
+class OffsetBounds(NamedTuple):
     """Bounds on an offset along stretches; every entry of shape (B,).
 
     Attributes
@@ -122,14 +122,14 @@ class Stretches:
         acting = e.polar_at.items()
         return [(k, w) for k, w in acting if k in e.arcs or int(e.states[k]) in turning]
 
-    def around(self, k: int, dev: Array) -> Around:
+    def around(self, k: int, dev: Array) -> OffsetBounds:
         """Bound an offset, and how far its direction may turn from that in the middle."""
         off = self.offsets[k].off + dev[:, self.columns[k]]
         least = self.radii[k] - off[:, 0]
         across = np.sqrt((off[:, 1:] ** 2).sum(axis=1))
         turn = np.where(least > 0.0, across / least, np.inf)
         sagitta = across * turn
-        return Around(np.where(least > 0.0, least, 0.0), off[:, 0] + sagitta, sagitta, turn)
+        return OffsetBounds(np.where(least > 0.0, least, 0.0), off[:, 0] + sagitta, sagitta, turn)
 
     def felt(self, k: int, dev: Array, turn: Array) -> Array:
         """Bound by how much the deviation of an offset may change its radius."""

@@ -24,7 +24,7 @@ from loadshare.solver.hot.proximal import search
 from loadshare.solver.position import equilibrium_of
 from loadshare.study.memory.held import (
     if_certified,
-    least_push,
+    least_stop_force,
     slips_before,
     split_force,
     without_slips,
@@ -72,7 +72,7 @@ def searched(train: Train, index: int) -> Answer | None:
     return if_certified(train, equilibrium_of(scene, settled), record, SEARCHED)
 
 
-def almost_frictionless(train: Train, index: int) -> Answer | None:
+def negligible_friction(train: Train, index: int) -> Answer | None:
     """Return a certified answer for negligible friction, if there is one.
 
     The step is solved without friction, which is then added against the change of each slip.
@@ -102,7 +102,7 @@ def almost_frictionless(train: Train, index: int) -> Answer | None:
     return if_certified(train, equilibrium, answer.record, f"{answer.rung}, friction added")
 
 
-def in_turn(train: Train, index: int) -> Answer | None:
+def alternating(train: Train, index: int) -> Answer | None:
     """Return a certified answer by solving for displacements and slips in turn, if that converges.
 
     Each turn lowers a convex energy. Convergence is fast where the slips have little room, which is
@@ -140,7 +140,7 @@ def _slip_at(spline: Spline, place: Vector, before: Vector) -> Vector:
         return free if room > 0.0 else np.zeros(3)
     start = np.asarray(before)
     if float(np.linalg.norm(start)) >= room * (1.0 - MARCH.at_end):
-        left = force - least_push(force, start, bound)
+        left = force - least_stop_force(force, start, bound)
         if float(np.linalg.norm(left)) <= bound * (1.0 + MARCH.round_off):
             return start
     # The slip is on the edge of its room, at an angle between those of s₀ and of p.

@@ -68,7 +68,7 @@ def if_certified(train: Train, found: Equilibrium, record: Record, rung: str) ->
     return Answer.of(train, found, certificate, record, rung) if certificate.passed else None
 
 
-def stands_at_end(spline: Spline, slip: Vector) -> bool:
+def slip_at_end(spline: Spline, slip: Vector) -> bool:
     """Return whether a slip is at the end of its clearance."""
     if spline.friction_force is None:
         # Its room changes with the torque, so friction and stop hardly ever hold it together.
@@ -127,12 +127,12 @@ def split_force(
         if way > 0.0:
             stop = force - bound / way * (slip - before)
         elif float(np.linalg.norm(slip)) >= reach * (1.0 - MARCH.at_end):
-            stop = least_push(force, slip, bound)
+            stop = least_stop_force(force, slip, bound)
         reactions[spline.name], reactions[spline.stop_name] = stop - force, -stop
     return replace(found, radial_reaction=reactions)
 
 
-def least_push(force: Vector, outward: Vector, bound: float) -> Vector:
+def least_stop_force(force: Vector, outward: Vector, bound: float) -> Vector:
     """Return the least force of the stop that leaves friction no more than its bound."""
     size = float(np.linalg.norm(outward))
     along = outward / size if size > 0.0 else force / (float(np.linalg.norm(force)) or 1.0)

@@ -15,8 +15,8 @@ from loadshare.errors import Refused
 from loadshare.job.answer import Answer
 from loadshare.job.ladder import rungs
 from loadshare.settings import MARCH
-from loadshare.study.memory.fallbacks import almost_frictionless, in_turn, searched
-from loadshare.study.memory.held import if_certified, stands_at_end, with_slips_held
+from loadshare.study.memory.fallbacks import alternating, negligible_friction, searched
+from loadshare.study.memory.held import if_certified, slip_at_end, with_slips_held
 from loadshare.study.positions import BACKEND, certified
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
@@ -63,7 +63,7 @@ def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
         return certified(replace(train, slip=None), index)
     assert train.slip is not None
     # A slip at the end of its clearance mostly stays there.
-    ends = tuple(g for g, s in train.splines.items() if stands_at_end(s, train.slip[g]))
+    ends = tuple(g for g, s in train.splines.items() if slip_at_end(s, train.slip[g]))
     follows, ways = any(s.friction_force is None for s in train.splines.values()), ways or Ways()
     # Where friction follows the torque, iteration on fixed bounds finds those of the torques.
     if ways.bounds and (answer := _followed(train, index, ways)) is not None:
@@ -77,7 +77,7 @@ def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
             ways.held[ends] = gears
             return answer
     followed = partial(_followed, ways=ways)
-    for other in (followed,) if follows else (almost_frictionless, searched, in_turn):
+    for other in (followed,) if follows else (negligible_friction, searched, alternating):
         answer = other(train, index)
         if answer is not None:
             return answer

@@ -22,7 +22,7 @@ from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
 from loadshare.study.sensitivity.result import SIDES, Kink, Rates, Sensitivity
 from loadshare.study.sensitivity.variation import Trains
-from loadshare.tooth import bears_on_laws, resolve
+from loadshare.tooth import affects_laws, resolve
 from loadshare.train import Train
 from loadshare.train.build import train_of
 from loadshare.train.geometry import geometry_of
@@ -92,7 +92,7 @@ def sensitivity(
         if progress is not None:
             progress(done, len(wanted))
         try:
-            own = following if bears_on_laws(parse(item.key)) else case
+            own = following if affects_laws(parse(item.key)) else case
             trains = Trains((case, geometry, train), own, item, chosen)
             rates |= {at: of for c in corners for at, of in c.rates(trains, item).items()}
         except CaseError as refusal:

@@ -25,7 +25,7 @@ from loadshare.tooth.geometry.body import Array
 
 FINEST = 12.0
 """Last harmonic, in radians over half a root; higher ones count by their mean over a wave."""
-FELT = 1e-8
+REFLECTED_SHARE = 1e-8
 """Share of a harmonic returned by the held circle, below which the ring counts as solid."""
 
 
@@ -66,8 +66,8 @@ class Ring:
         """
         here, beside = self._sums(abs(k))
         found = (here - beside if k < 0 else here + beside).reshape(3, 3)
-        twisted, swollen = self._mean
-        found[0, 0] += 0.5 * twisted
+        load_per_torque, swollen = self._mean
+        found[0, 0] += 0.5 * load_per_torque
         found[2, 2] += 0.5 * swollen
         if k == 0:
             # Higher harmonics: 2/n of a half-plane times the means 1/2x² (uniform), 18/x² (linear).
@@ -117,7 +117,7 @@ class Ring:
         """
         n, ratio = self._orders, self.held / self.loaded
         deep = self.loaded / n > 0.5 * self.width
-        thick = deep | (n * abs(np.log(ratio)) < -0.5 * np.log(FELT))
+        thick = deep | (n * abs(np.log(ratio)) < -0.5 * np.log(REFLECTED_SHARE))
         nu = np.where(deep, self._in_plane_stress, self.poisson)
         found = np.empty((2, 2, len(n)))
         found[..., thick] = _displacements(n[thick], ratio, nu[thick])
@@ -135,10 +135,10 @@ class Ring:
         ratio, nu = self.held / self.loaded, self._in_plane_stress
         outwards = 1.0 if ratio < 1.0 else -1.0
         scale = outwards / ((1.0 - nu) * (1.0 - self.poisson**2))
-        twisted = (1.0 - ratio**2) / ratio**2
+        load_per_torque = (1.0 - ratio**2) / ratio**2
         rise, pull = 1.0 - ratio**2, 1.0 + ratio**2
         swollen = rise / (nu / (1.0 - 2.0 * nu) * 2.0 + pull)
-        return scale * twisted, scale * swollen
+        return scale * load_per_torque, scale * swollen
 
 
 def _displacements(n: Array, ratio: float, poisson: Array, count: int = 4) -> Array:

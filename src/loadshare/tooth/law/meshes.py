@@ -34,7 +34,7 @@ OF_A_MESH = ("rated_torque", "pressure_angle", "helix_angle")
 """Keys of a mesh that affect its law."""
 
 
-def bears_on_laws(path: KeyPath) -> bool:
+def affects_laws(path: KeyPath) -> bool:
     """Return whether computed laws may depend on what is at a key path, or a pattern.
 
     It is true as well if a file that a law comes from must agree with that.

@@ -85,7 +85,7 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
     if inner.any():
         part = pairs[inner], unknowns[inner]
         refined, met = _newton(pair, *part, driver[inner], driven[inner])
-        unknowns[inner] = np.where(_sooner(pair, met, part[1], refined), refined, part[1])
+        unknowns[inner] = np.where(_valid_refinement(pair, met, part[1], refined), refined, part[1])
     a, b, c, d, lead = np.moveaxis(unknowns, -1, 0)
     own = pair.driver_patch(pairs, (a, b), driver + lead)
     other = pair.driven_patch(pairs, (c, d), driven)
@@ -138,7 +138,7 @@ def _alone(pair: GearPair, found: Extents) -> tuple[Extents, Array, Array]:
     return lines, station, turned
 
 
-def _sooner(pair: GearPair, met: Array, line: Array, refined: Array) -> Array:
+def _valid_refinement(pair: GearPair, met: Array, line: Array, refined: Array) -> Array:
     """Return which results (m, 1, 1) of Newton's method count: on both flanks, not after the line.
 
     Next to a line contact the equations are nearly singular and can lead off the flanks; then the

@@ -21,7 +21,7 @@ def look_at_rows(s, work, width):  # type: ignore[no-untyped-def]
     violations of signs are compared.
     """
     samples, x, force, wrong, count = work.samples, work.x, work.force, work.wrong, work.mistakes
-    strongest, longest, nearer = work.strongest, work.weakest, work.waits
+    strongest, longest, approach_per_offset = work.strongest, work.weakest, work.waits
     force_band, length_band = work.two, work.three
     for m in range(width):
         strongest[m] = work.push[m]
@@ -48,17 +48,17 @@ def look_at_rows(s, work, width):  # type: ignore[no-untyped-def]
             count[m] += off
     for o in range(s.open_rows.shape[0]):
         row = s.open_rows[o]
-        approach(s, samples, s.first_column + row, x, width, nearer)
+        approach(s, samples, s.first_column + row, x, width, approach_per_offset)
         for m in range(width):
-            off = nearer[m] > length_band[m]
+            off = approach_per_offset[m] > length_band[m]
             wrong[row, m] = off
             count[m] += off
     for o in range(s.open_arcs.shape[0]):
         a = s.open_arcs[o]
         row = s.flanks + a
-        arc(s, samples, a, x, width, work.normal, nearer, work.one)
+        arc(s, samples, a, x, width, work.normal, approach_per_offset, work.one)
         for m in range(width):
-            off = -nearer[m] > length_band[m]
+            off = -approach_per_offset[m] > length_band[m]
             wrong[row, m] = off
             count[m] += off
 
