@@ -161,8 +161,7 @@ def solve_many(
         Values by dotted key, all of one length. The unit is in brackets after the key, as in
         ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units are allowed as well.
     positions : iterable of int, optional
-        1-based positions to solve; all by default. A position that only some samples have is NaN
-        for the others.
+        1-based positions to solve; all by default. Those that a sample does not have are NaN.
     keep : iterable of str
         Variables to keep, of "torque", "share", "pair_share" (computed when they are first read),
         "displacement" and "contact_force".
@@ -175,8 +174,7 @@ def solve_many(
     workers : int
         Threads, at least one.
     least_norm : bool
-        Whether undetermined displacements are the least-norm ones, as in `solve`; takes some ms
-        each.
+        Whether undetermined displacements are the least-norm ones, as in `solve` (some ms each).
     progress : Progress, optional
         Called after every block with samples done and in all.
 

@@ -96,8 +96,7 @@ def tolerance(
     engine : {"auto", "compiled", "vectorised"}
         As for `solve_many`.
     progress : Progress, optional
-        Called after every part with the number of samples done and the number of all, those for
-        the shares of variance included.
+        Called after every part with the numbers of samples done and of all, variances' included.
 
     Raises
     ------
