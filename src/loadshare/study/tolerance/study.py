@@ -96,7 +96,7 @@ def tolerance(
     engine : {"auto", "compiled", "vectorised"}
         As for `solve_many`.
     progress : Progress, optional
-        Called after every part with the numbers of samples done and of all, variances' included.
+        Called after every part with samples done and in all (with those for variance shares).
 
     Raises
     ------
