@@ -67,7 +67,7 @@ ALLOWED = (
     ("entries of a table, and of a list of keys", "{entries}"),
     ("cells of a sheet of a workbook", "{cells}"),
     ("problems that are reported", "{problems}"),
-    ("a name", "1 to {name} printable characters, no blank at either end"),
+    ("a name", "1 to {name} printable characters, no space at either end"),
     ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),
     ("a coefficient of friction", "0 to {friction:g}"),
     ("a unit", "{unit} characters, exponents of up to {power:g}"),

@@ -66,7 +66,7 @@ def test_a_bad_case_built_in_python_is_reported_in_the_same_words():
     with pytest.raises(CaseError) as caught:
         Case(operating={"input": "1"}, gears={}, meshes={})
     lines = str(caught.value).splitlines()
-    assert lines[0] == "case: operating.output: is missing. Gear at which it leaves."
+    assert lines[0] == "case: operating.output: is missing. Gear at which the torque leaves."
     assert [line[: line.index(".")] for line in lines[1:]] == [
         "case: gears: is empty",
         "case: meshes: is empty",

@@ -87,7 +87,7 @@ def test_the_name_of_all_copies_is_none_of_them() -> None:
 def test_a_change_of_all_copies_is_told_their_names() -> None:
     case = Case(changed())
     for key, name in (("gears.planet.teeth", "gears.planet1"), ("gears.planet.copies", "planet2")):
-        with pytest.raises(CaseError, match=rf"names of their own: .*{name}.*\."):
+        with pytest.raises(CaseError, match=rf"has its own name: .*{name}.*\."):
             case.replace({key: 4})
 
 
@@ -120,7 +120,7 @@ def test_pairs_of_unequal_numbers_are_told_so() -> None:
     data["meshes"]["planet-outer"] = {"stiffness": "2e7 N*m/rad"}
     with pytest.raises(CaseError) as caught:
         Case(data)
-    unequal = "planet has 3 copies, outer 4: they are copied in pairs."
+    unequal = "planet has 3 copies, outer has 4, but copies are joined in pairs."
     assert unequal in str(caught.value)
     assert "Give one: planet1" not in str(caught.value)
 
@@ -136,7 +136,7 @@ def test_a_gear_with_the_name_of_a_copy_is_told_apart_from_what_is_said_of_the_c
         data["gears"]["planet2"] = own
         with pytest.raises(CaseError) as caught:
             Case(data)
-        message = "is a gear of its own with the name of copy 2 of planet"
+        message = "is a separate gear with the name of copy 2 of planet"
         assert [(p.key, p.message) for p in caught.value.problems] == [("gears.planet2", message)]
     data["gears"]["planet2"] = {"teeth": 36, "centre": {"angle": "131 deg", "height": "1 mm"}}
     gears = Case(data).gears
@@ -152,7 +152,7 @@ def test_what_is_wrong_with_copies_is_reported_once() -> None:
         assert f"gears.planet.{key}" in str(caught.value)
     data = changed()
     data["gears"]["sun"]["copies"] = 3
-    with pytest.raises(CaseError, match="goes with a centre by distance and angle"):
+    with pytest.raises(CaseError, match="needs a centre given by distance and angle"):
         Case(data)
 
 

@@ -53,7 +53,7 @@ def test_a_branch_that_is_named_from_the_output_on_is_refused():
     assert len(lines) == 2
     for name, line in zip(("b-1", "2-b"), lines, strict=True):
         assert f'meshes."{name}": carries no torque' in line
-        assert "Is it named driver-driven?" in line
+        assert "Is the mesh named driver-driven?" in line
 
 
 def test_with_both_flanks_a_branch_carries_under_either_name():
@@ -100,7 +100,7 @@ def test_planets_of_a_gear_are_named_alike_where_there_is_backlash(backlash):
         **dict.fromkeys(("stages", "assumed", "errors")),
     }
     if backlash == "100 um":
-        with pytest.raises(CaseError, match='"planet2-sun": names its planet first, sun-planet1'):
+        with pytest.raises(CaseError, match='"planet2-sun": names its planet first, but sun-planet1'):
             case.replace(changes)
         return
     torque = ls.solve(case.replace(changes)).positions[0].torque

@@ -138,7 +138,7 @@ ALONG_Y = {"axis": "y"}
         ({}, {"centre": about("c", 0.0)}, "the gear meshes with c or with a gear on the axis"),
         ({}, {"centre": about(None, 90.0), "module": "3 mm"}, "different modules"),
         ({"centre": ["1 mm", "0 mm"]}, {"centre": about(None, 0.0)}, "meshes with a gear on the"),
-        (ALONG_Y, {"centre": about("a", 0.0), **ALONG_Y}, "where axes are along z"),
+        (ALONG_Y, {"centre": about("a", 0.0), **ALONG_Y}, "only if the axes are along z"),
         (LOW, {"centre": about("a", 0.0), **LOW}, "at any distance"),
         (gear(50), {"centre": about("a", 0.0), **gear(45, type="internal")}, "at any distance"),
     ],
@@ -176,14 +176,14 @@ def test_a_tip_must_not_reach_below_the_pinions_base_circle():
     most = 1e3 * math.hypot(0.12 * math.cos(angle), 0.144 * math.sin(angle))
     pinion = gear(12, dedendum=2.0)  # a root that leaves enough room
     message = refusal(pair, pinion, gear(60), "144 mm")
-    assert "the tip of gear b, at a radius of 124 mm, finds no room in gear a" in message
+    assert "the tip of gear b, at a radius of 124 mm, has no room in gear a" in message
     assert f"at most {most:.6g} mm" in message
     for height, fits in ((most + 0.05, False), (most - 0.001, True)):
         wheel = gear(60, tip_alteration=f"{height - 124.0} mm")
         if fits:
             pair(pinion, wheel, "144 mm")
         else:
-            assert "finds no room" in refusal(pair, pinion, wheel, "144 mm")
+            assert "has no room" in refusal(pair, pinion, wheel, "144 mm")
     # The value proposed in the message is sufficient.
     proposed = message.partition('tip_alteration = "')[2].partition('"')[0]
     pair(pinion, gear(60, tip_alteration=proposed), "144 mm")
@@ -196,7 +196,7 @@ def test_a_tip_must_not_reach_the_root(internal: bool):
     one, two = gear(40, addendum=1.2), gear(100, dedendum=1.15, **kind)
     distance = "120 mm" if internal else "280 mm"
     message = refusal(pair, one, two, distance)
-    assert "the tip of gear a, at a radius of 84.8 mm, finds no room in gear b" in message
+    assert "the tip of gear a, at a radius of 84.8 mm, has no room in gear b" in message
     assert "at most 84.6 mm" in message
     pair(one | {"tip_alteration": "-0.2 mm"}, two, distance)
 
@@ -231,7 +231,7 @@ def test_tips_in_an_internal_gear_pass_as_their_paths_show(more: int):
     arguments = gear(30, dedendum=1.6), gear(30 + more, **ring), f"{2 * more} mm"
     if meets(one, two, 2e-3 * more) > 1e-6:
         assert more < 9
-        assert "meet beside the line of action" in refusal(pair, *arguments)
+        assert "interfere beside the line of action" in refusal(pair, *arguments)
     else:
         assert more > 6
         pair(*arguments)
@@ -243,7 +243,7 @@ def test_tips_pass_with_the_alteration_that_is_told(shift: float):
     ring = {"type": "internal", "addendum": 0.8, "dedendum": 1.6, "profile_shift": shift}
     one, two = gear(30, dedendum=1.6, profile_shift=-shift), gear(37, **ring)
     message = refusal(pair, one, two, "14 mm")
-    assert "meet beside the line of action" in message
+    assert "interfere beside the line of action" in message
     (told,) = re.findall(r'gears\.b\.tip_alteration = "(.+?)" would do', message)
     pair(one, two | {"tip_alteration": told}, "14 mm")
 
@@ -267,13 +267,13 @@ def test_as_many_planets_as_find_room():
     star(4)
     message = refusal(star, 5)
     assert "At most 4 such gears fit evenly spaced" in message
-    assert message.count("is in the way of") == 1
+    assert message.count("is too close to") == 1
     apart = 2.0 * 108.0 * math.sin(math.pi / 5)
     assert f"overlap by {152.0 - apart:.6g} mm" in message
 
 
 def test_planets_at_one_place():
-    assert "is where gear p1 is" in refusal(star, ["0 deg", "0 deg"])
+    assert "is the same as that of gear p1" in refusal(star, ["0 deg", "0 deg"])
 
 
 def test_a_ring_that_is_not_called_internal():
@@ -282,8 +282,8 @@ def test_a_ring_that_is_not_called_internal():
     with pytest.raises(CaseError) as found:
         set_.replace({"gears.r.type": "external"})
     message = str(found.value)
-    assert "is where gear r is, and both mesh with p1" in message
-    assert 'If gear r is a ring about the other, it is of type = "internal".' in message
+    assert "is the same as that of gear r, and both mesh with p1" in message
+    assert 'If gear r is a ring around the other, it needs type = "internal".' in message
     assert "is a ring" not in refusal(star, ["0 deg", "0 deg"])
 
 
@@ -306,5 +306,5 @@ def test_gears_that_stand_side_by_side_along_the_axis():
         )
 
     wheels("40 mm")  # the face widths of both wheels are 40 mm
-    assert "gears.c.centre: is in the way of gear b" in refusal(wheels, "39 mm")
+    assert "gears.c.centre: is too close to gear b" in refusal(wheels, "39 mm")
     assert "At most 3 such gears fit" in refusal(wheels, "0 mm")

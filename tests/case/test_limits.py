@@ -224,8 +224,8 @@ GEAR = "[gears.g{0}]\ncentre = ['0 mm', '0 mm']\nbase_radius = '1 mm'\n"
         (many(ALLOWED.elements, GEAR), "gears: has 1002 entries. Allowed: at most 1000."),
         (many(20_000, "[x{}.a.a.a.a]\n"), "has 20003 entries. Allowed: at most 10000."),
         ("[gears.c]\n" + many(30_000, "k{} = 1\n"), "gears.c: has 30000 entries."),
-        (many(9000, "[x{}]\n"), "has more problems than these 1,000."),
-        ("[gears.c]\n" + many(9000, "k{} = 1\n"), "has more problems than these 1,000."),
+        (many(9000, "[x{}]\n"), "has more problems than the 1,000 shown."),
+        ("[gears.c]\n" + many(9000, "k{} = 1\n"), "has more problems than the 1,000 shown."),
         (
             many(990, GEAR)
             + many(

@@ -73,13 +73,13 @@ def test_units_that_engineers_write(kind, text, si):
         (
             Annotated[q.Quantity, q.TORSIONAL_STIFFNESS],
             "5 N*m",
-            "is a torque, a torsional stiffness is needed. "
+            "is a torque, but a torsional stiffness is needed. "
             'Allowed: a torsional stiffness such as "5e5 N*m/rad". ',
         ),
         (
             Annotated[q.Quantity, q.HERTZ_COMPLIANCE],
             "1 rad/(N*m)",
-            "is in rad/(N*m), a Hertz compliance is needed. "
+            "is in rad/(N*m), but a Hertz compliance is needed. "
             'Allowed: a Hertz compliance such as "1e-6 rad/(N*m)^(2/3)". ',
         ),
         (
@@ -102,7 +102,7 @@ def test_units_that_engineers_write(kind, text, si):
         (
             q.Length,
             "5 kNm",
-            "kNm would be kN*m, a torque; a length is needed. "
+            "kNm would be kN*m, a torque, but a length is needed. "
             'Allowed: a length such as "45.9 mm". ',
         ),
         (
@@ -117,7 +117,7 @@ def test_units_that_engineers_write(kind, text, si):
                 q.Length,
                 text,
                 'is not a number followed by a unit. Allowed: a length such as "45.9 mm". '
-                "Decimals have a point, and thousands no sign between them.",
+                "Use a decimal point, and no separators between thousands.",
             )
             for text in (
                 "1,5 mm",
@@ -164,7 +164,7 @@ def test_nothing_follows_a_unit(more):
     """Not even characters that the unit parser ignores."""
     with pytest.raises(ValidationError) as caught:
         read(q.Torque, f"5 N*m{more}")
-    message = f"{more.strip()} is no part of a unit, and nothing else follows a number"
+    message = f"{more.strip()} is not part of a unit; only a unit may follow a number"
     allowed = 'Allowed: a torque such as "2175 N*m". '
     assert caught.value.errors()[0]["msg"] == f"{message}. {allowed}"
 

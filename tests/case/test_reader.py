@@ -80,9 +80,9 @@ def test_inheritance_chains_and_problems_name_the_file_of_the_key(tmp_path, driv
     path = write(tmp_path, base=bad, middle=middle, top=top)
     assert message_of(path, tmp_path).splitlines() == [
         "top.toml: gears.a.teeth = 2: is not valid here. Allowed: a number of at least 5.",
-        'middle.toml: gears.a.support = "3 kg": is a mass, a stiffness is needed. '
+        'middle.toml: gears.a.support = "3 kg": is a mass, but a stiffness is needed. '
         'Allowed: "rigid", "free", or a stiffness such as "1.78e7 N/m".',
-        'base.toml: gears.d.centre[1] = "15 mm/s": is a speed, a length is needed. '
+        'base.toml: gears.d.centre[1] = "15 mm/s": is a speed, but a length is needed. '
         'Allowed: a length such as "45.9 mm".',
         'top.toml: assumed[1] = "x": matches no key of the case.',
     ]
@@ -111,7 +111,7 @@ def test_later_rooms_can_name_a_key_with_its_file(tmp_path, drive_text):
         ),
         (
             'extends = "bad.toml"\n',
-            'bad.toml: extends = "bad.toml": closes a circle: bad.toml → bad.toml.',
+            'bad.toml: extends = "bad.toml": is circular: bad.toml → bad.toml.',
         ),
         (
             "extends = 3\n",
@@ -148,9 +148,9 @@ def test_a_file_that_cannot_be_read_is_reported(tmp_path, drive_text, text, mess
     [
         ("p12.toml", "is a pair with a face gear; `loadshare ltca` analyses it"),
         ("p46.toml", "is a pair of gears; `loadshare ltca` analyses it"),
-        ("law.toml", "is the law of a mesh, which names it by law_file"),
-        ("result.json", "is a result and no case; `loadshare check` certifies it again"),
-        ("result.nc", "is netCDF and no case; if it is a result, `loadshare check` certifies"),
+        ("law.toml", "is the law of a mesh, which names it under its key law_file"),
+        ("result.json", "is a result, not a case; `loadshare check` certifies it again"),
+        ("result.nc", "is netCDF, not a case; if it is a result, `loadshare check` certifies"),
     ],
 )
 def test_another_file_says_what_it_is(tmp_path, cases, name, message):
@@ -176,7 +176,7 @@ def test_a_file_that_is_not_there_is_reported(tmp_path):
 def test_what_is_no_path_is_reported_with_what_is_wanted():
     for value in ({"gears": {}}, b"case.toml", None, 3):
         kind = type(value).__name__
-        with pytest.raises(TypeError, match=f"path of a case file is wanted.* not {kind}"):
+        with pytest.raises(TypeError, match=f"path of a case file is needed, not {kind}; Case"):
             ls.solve(value)
 
 

@@ -101,7 +101,7 @@ def test_many_positions_are_solved_one_by_one(served):
         ({FLOAT: 3}, "has no unit"),
         ({FLOAT: "nan um"}, "is not finite"),
         ({FLOAT: "inf um"}, "is not finite"),
-        ({FLOAT: "1e308 um"}, "of a size that no machine has"),
+        ({FLOAT: "1e308 um"}, "outside the range of any machine"),
         ({FLOAT: "1e999 um"}, "is not finite|of a size"),
         ({FLOAT: "-1 um"}, "is negative"),
         ({FLOAT: "3 N"}, "a length is needed"),

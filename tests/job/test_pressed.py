@@ -105,7 +105,7 @@ def test_torques_from_outside_press_other_flanks_of_sets():
 
 def test_positions_that_press_both_flanks_need_a_backlash():
     case = two_sets(["100 N*m", "5 N*m"])
-    with pytest.raises(ls.CaseError, match=r"s2-p21.*backlash: is missing: .* now the other"):
+    with pytest.raises(ls.CaseError, match=r"s2-p21.*backlash: is missing: .* both flanks in turn"):
         ls.solve(case)
 
 
@@ -224,7 +224,7 @@ def test_a_force_on_a_planet_turns_its_carrier(force):
 
 def test_a_force_that_turns_a_carrier_both_ways_needs_a_backlash():
     case = one_set("-10 kN").replace({"march": {"gear": "c1", "revolutions": 1.0, "steps": 4}})
-    with pytest.raises(ls.CaseError, match=r"s1-p11.*backlash: is missing: .* now the other"):
+    with pytest.raises(ls.CaseError, match=r"s1-p11.*backlash: is missing: .* both flanks in turn"):
         ls.solve(case)
     (still,) = ls.solve(case.replace({"operating.forces.p11[1]": "-1 kN", "march": None})).positions
     turned = ls.solve(case.replace({"operating.forces.p11[1]": "-1 kN"})).positions

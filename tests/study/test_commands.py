@@ -235,7 +235,7 @@ def test_studies_are_listed(command, measured):
         (("critical", RING, "--over", "rings.4.float=0:1 um"), "0 has no unit"),
         (
             ("critical", RING, "--over", "rings.4.float=0 kg:1 kg"),
-            "is a mass, a length is needed",
+            "is a mass, but a length is needed",
         ),
         (("critical", RING, "--over", "a=0:1", "--position", 9), "unknown key"),
         (

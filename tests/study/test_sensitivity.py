@@ -322,7 +322,7 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
 @pytest.mark.parametrize(
     ("key", "message"),
     [
-        ("gears.planet.support", "is not in the case.*Copies have names of their own: .*planet1"),
+        ("gears.planet.support", "is not in the case.*Each copy has its own name: .*planet1"),
         ("errors.planet1.pin.radial", "There is no errors.planet1"),
         ("gears.*.teeth", "is a count: it has no derivatives"),
         ("gears.sun.teeth", "= 18: is a count: it has no derivatives"),

@@ -327,7 +327,7 @@ def test_a_value_that_cannot_be_read_is_named():
     key = "rings.5.float"
     for value, told in {
         "3 foo": f'{key} = "3 foo": the unit foo is not known. Allowed: a value in m such as',
-        "3 kg": f'{key} = "3 kg": is a mass, a value in m is needed.',
+        "3 kg": f'{key} = "3 kg": is a mass, but a value in m is needed.',
         "3": f'{key} = "3": 3 has no unit.',
     }.items():
         with pytest.raises(ls.CaseError, match=re.escape(told)):

@@ -40,7 +40,7 @@ class Sections(Element):
     """One line that says what the case is."""
 
     source: Text = ""
-    """Where its numbers come from."""
+    """Where the numbers come from."""
 
     notes: Text = ""
     """Anything else a reader should know."""

@@ -127,8 +127,8 @@ def _taken(data: Data, origin: Origin, turns: Mapping[str, Sized]) -> Iterator[P
                 isinstance(centre, Mapping) and {"angle"} < centre.keys() - {"height"}
             )
             if "copies" in own or (placed and {"teeth", "base_radius"} & own.keys()):
-                message = f"is a gear of its own with the name of copy {k} of {dotted((name,))}"
-                hint = "Give one of them another name; for a copy, write only how it differs."
+                message = f"is a separate gear with the name of copy {k} of {dotted((name,))}"
+                hint = "Rename one of them; to change a copy, give only the keys that differ."
                 yield origin.problem(data, ("gears", f"{name}{k}"), message, "", hint)
 
 

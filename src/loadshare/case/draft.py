@@ -22,7 +22,7 @@ from loadshare.errors import CaseError, Problem
 from loadshare.settings import ALLOWED
 
 Found = TypeVar("Found")
-MORE = f"has more problems than these {ALLOWED.problems:,}"
+MORE = f"has more problems than the {ALLOWED.problems:,} shown"
 
 
 class Draft(Sections):
@@ -105,7 +105,7 @@ def read_draft(
         # With other gears, a name a-b may stand for another pair.
         before = None
     if data and not any(key in fields for key in data):
-        draft.tell((), "holds nothing that a case says", choices(fields))
+        draft.tell((), "contains none of the sections of a case", choices(fields))
         return draft
     for key in data:
         if key not in fields:
@@ -142,7 +142,7 @@ def as_data(given: Any, file: str = "case", path: Path = ()) -> Any:
         If it is nested too deeply, or holds too many entries or something that no file can hold.
     """
     if len(path) > ALLOWED.depth:
-        allowed = f"at most {ALLOWED.depth} tables and lists within one another"
+        allowed = f"at most {ALLOWED.depth} levels of tables and lists"
         raise CaseError([Problem(file, "", "", "is nested too deeply", allowed)])
     if isinstance(given, Element):
         return written(given)
@@ -203,7 +203,7 @@ def _read_section(
                 getattr(draft, name)[key] = read[key]
                 continue
             if not 0 < len(key) <= ALLOWED.name or not key.isprintable() or key != key.strip():
-                allowed = f"1 to {ALLOWED.name} printable characters, no blank at either end"
+                allowed = f"1 to {ALLOWED.name} printable characters, no space at either end"
                 draft.tell(path, "cannot be a name", allowed)
             element = _read(draft, path, _with_ends(draft, path, item), model)
             if element is not None:
@@ -228,7 +228,7 @@ def _with_ends(draft: Draft, path: Path, item: Any) -> Any:
     ends = ends_of(str(path[1]), draft.names("gears"))
     if ends is None:
         own = " and ".join(keys)
-        draft.tell(path, "the name does not tell two gears", f"a name a-b, or {own} within")
+        draft.tell(path, "the name does not give two gears", f"a name a-b, or {own} in the table")
         # The rest of the element is still worth reading.
         ends = ("", "")
     named = dict(zip(keys, ends if len(keys) == 2 else (ends,), strict=True))

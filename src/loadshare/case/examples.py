@@ -69,8 +69,8 @@ def example_file(name: str) -> Path:
         near = get_close_matches(wanted, known, n=3) or [
             other for other in known if wanted.rpartition("/")[2] == other.rpartition("/")[2]
         ]
-        hint = f"Near it: {', '.join(near)}." if near else f"There are {', '.join(known)}."
-        message = "is no case of the package"
+        hint = f"Similar names: {', '.join(near)}." if near else f"There are {', '.join(known)}."
+        message = "is not a case of the package"
         raise CaseError([Problem("examples", "", name, message, hint=hint)])
     return _folder() / f"{wanted}.toml"
 

@@ -18,7 +18,10 @@ class Offset(Element):
     """Size of the offset [length]."""
 
     direction: Angle
-    """Direction of the offset, counter-clockwise from the x axis against the axis [angle]."""
+    """Direction of the offset, counter-clockwise from the x axis [angle].
+
+    Seen with the gear's axis pointing at the viewer.
+    """
 
 
 class Eccentricity(Element):
@@ -31,24 +34,24 @@ class Eccentricity(Element):
     """Direction of the offset on the gear [angle]."""
 
     phase: Angle = Quantity("0 deg", 0.0)
-    """Further angle of the eccentricity at the first position, beside its direction [angle]."""
+    """Angle added to the direction at the first position [angle]."""
 
 
 class Pin(Element):
-    """The position error of a planet's pin, seen from the carrier's axis."""
+    """The position error of a planet's pin, relative to the carrier's axis."""
 
     radial: Length = Quantity("0 um", 0.0)
-    """Outwards [length]."""
+    """Radial error, positive outwards [length]."""
 
     tangential: Length = Quantity("0 um", 0.0)
-    """Counter-clockwise about the carrier's axis [length]."""
+    """Tangential error, positive counter-clockwise about the carrier's axis [length]."""
 
     angular: Angle = Quantity("0 rad", 0.0)
-    """Further angle about the carrier's axis, counter-clockwise [angle]."""
+    """Angular error about the carrier's axis, positive counter-clockwise [angle]."""
 
 
 class Errors(Element):
-    """The errors of one gear; each moves its centre without costing energy."""
+    """The errors of one gear; each displaces its centre without elastic energy."""
 
     installation: (
         Annotated[
@@ -60,7 +63,7 @@ class Errors(Element):
     """Fixed offset of the centre [length]: components along x, y and z, or size and direction in
     the gear's plane.
 
-    Fixed in the housing; that of a planet is fixed on its carrier.
+    It is fixed in the housing, or for a planet on its carrier.
     """
 
     pin: Pin | None = None

@@ -118,7 +118,7 @@ def _along(axis: Any) -> Any:
         context = {
             "message": "is not one of the allowed words",
             "allowed": AXES,
-            "hint": f"Against {axis[1]} is {AGAINST[axis]}.",
+            "hint": f"The opposite of {axis[1]} is {AGAINST[axis]}.",
         }
         raise PydanticCustomError("message", "{message}. Allowed: {allowed}. {hint}", context)
     return axis
@@ -138,8 +138,8 @@ class Polar(Element):
     distance: Distance | None = None
     """Distance from the pole in the x-y plane [length].
 
-    Left out, it is that at which the teeth mesh without backlash: with the pole, or with a gear on
-    its axis.
+    When left out, it is that at which the teeth mesh without backlash, with the pole or with a gear
+    on its axis.
     """
 
     angle: Angle
@@ -150,13 +150,13 @@ class Polar(Element):
 
 
 class PinSupport(Element):
-    """How a planet's pin yields, seen from the carrier's axis."""
+    """Stiffness of a planet's pin, relative to the carrier's axis."""
 
     radial: PositiveStiffness
-    """Outwards and inwards [force/length]."""
+    """Radial stiffness, outwards and inwards [force/length]."""
 
     tangential: PositiveStiffness
-    """About the carrier's axis [force/length]."""
+    """Tangential stiffness, about the carrier's axis [force/length]."""
 
 
 class Gear(Element):
@@ -190,25 +190,25 @@ class Gear(Element):
         ]
         | None
     ) = None
-    """Gears that this one is short for: their number, or the angles of their rotation [angle].
+    """Gears that this entry stands for: their number, or the angles of their rotation [angle].
 
-    The gear p is short for p1, p2 and so on, at places rotated about its pole; directions, as of an
-    axis, an offset or a support along x and y, are the same for all. A mesh s-p is short for
-    s-p1, s-p2, and likewise shafts, splines, rings, bearings, errors and what stages name. What is
-    written of single copies counts first.
+    The gear p stands for p1, p2 and so on, at places rotated about its pole; directions, such as
+    those of an axis, an offset or a support along x and y, are the same for all. A mesh s-p stands
+    for s-p1, s-p2, and likewise shafts, splines, rings, bearings, errors and the meshes of stages.
+    Keys given for single copies take precedence.
     """
 
     carrier: str | None = None
-    """Carrier on whose pin a planet sits; the centre of other gears is held by the housing.
+    """Carrier on whose pin a planet sits; the centre of any other gear is held by the housing.
 
-    The planet's support, float and displacement are then counted from its pin.
+    The planet's support, float and displacement are then relative to its pin.
     """
 
     held: Annotated[bool, Strict()] = False
-    """Whether the housing keeps it from turning, as the ring of most planetary sets."""
+    """Whether the housing keeps it from turning, like the ring gear of most planetary sets."""
 
     base_radius: Radius | None = None
-    """Base radius; of a face gear the acting radius [length]."""
+    """Base radius; for a face gear, the acting radius [length]."""
 
     inner_radius: Radius | None = None
     """Inner radius of a face gear's teeth [length]."""
@@ -217,10 +217,11 @@ class Gear(Element):
     """Outer radius of a face gear's teeth [length]."""
 
     teeth: Annotated[int, Strict(), Field(ge=5, le=ALLOWED.teeth)] | None = None
-    """Number of teeth [-]; sets how far gears turn in a cycle and what position they reach."""
+    """Number of teeth [-]; determines how far gears turn in a cycle and at which position they are.
+    """
 
     module: Radius | None = None
-    """Normal module, from which with `teeth` the base radius follows [length]."""
+    """Normal module, which with `teeth` determines the base radius [length]."""
 
     pressure_angle: Annotated[Quantity, ANGLE.bounded(above=0, at_most=STEEPEST)] | None = None
     """Normal pressure angle of the rack; 20 deg when left out [angle]."""
@@ -229,7 +230,7 @@ class Gear(Element):
     """Helix angle at the reference circle, positive for a right-hand helix [angle]."""
 
     profile_shift: Number | None = None
-    """Profile shift coefficient; positive for a thicker tooth, of an internal gear too [-]."""
+    """Profile shift coefficient; positive for a thicker tooth, also for an internal gear [-]."""
 
     face_width: Radius | None = None
     """Face width of the teeth [length]."""
@@ -244,7 +245,7 @@ class Gear(Element):
     """Tip radius of the rack in modules, for `law = "ltca"`; 0.38 when left out [-]."""
 
     tip_alteration: Length | None = None
-    """Alteration of the tooth's height at its tip, negative where it is shortened [length]."""
+    """Change of the tooth height at the tip, negative if the tooth is shortened [length]."""
 
     thickness_allowance: (
         Annotated[Quantity, LENGTH.bounded(at_most=Quantity("0 um", 0.0))] | None
@@ -253,15 +254,16 @@ class Gear(Element):
     or 0, for `backlash = "teeth"` [length]."""
 
     tolerance_class: Annotated[int, Strict(), Field(ge=1, le=11)] | None = None
-    """Flank tolerance class of ISO 1328-1:2013, 1 to 11, from which tolerances of pitch, profile,
-    helix and runout follow [-]."""
+    """Flank tolerance class of ISO 1328-1:2013, 1 to 11, which determines the tolerances of pitch,
+    profile, helix and runout [-]."""
 
     web: Radius | None = None
-    """Thickness of the web of a gear with a thin one, for `law = "iso"` [length]."""
+    """Web thickness of a gear with a thin web, for `law = "iso"` [length]."""
 
     rim: Radius | None = None
-    """Thickness of the rim below the teeth [length]: on a thin web for `law = "iso"`; for
-    `law = "ltca"` of the body that yields, by default 1.5 tooth heights or half the root radius."""
+    """Thickness of the rim below the teeth [length]: for `law = "iso"`, that on a thin web; for
+    `law = "ltca"`, that of the elastic body, by default 1.5 tooth heights or half the root radius.
+    """
 
     ovalisation: (
         Annotated[
@@ -276,21 +278,21 @@ class Gear(Element):
     """Stiffness of an internal gear's rim against bending in the harmonics 2, 3, … [force/length];
     goes with `teeth` and `module`.
 
-    rim: that of a thin ring of steel of the `rim` and `face_width`, up to the eighth.
+    rim: that of a thin steel ring with the `rim` and `face_width`, up to the eighth harmonic.
     """
 
     outside_diameter: Radius | None = None
-    """Diameter at which the body of an internal gear ends, from which its rim follows [length]."""
+    """Outside diameter of the body of an internal gear, which determines its rim [length]."""
 
     bore: Radius | None = None
-    """Diameter of the bore of an external gear, from which its rim follows [length]."""
+    """Diameter of the bore of an external gear, which determines its rim [length]."""
 
     density: Density | None = None
-    """Density of the body, from which with the teeth its mass follows; 7850 kg/m^3 when left out
+    """Density of the body, which with the teeth determines its mass; 7850 kg/m^3 when left out
     [mass/length^3]."""
 
     mass: Mass | None = None
-    """Mass of the body, in place of what follows from teeth, face width and bore [mass]."""
+    """Mass of the body, in place of that which follows from teeth, face width and bore [mass]."""
 
     temperature: Temperature | None = None
     """Rise of the body's temperature above that at which it was made [temperature]."""
@@ -319,17 +321,18 @@ class Gear(Element):
     ) = None
     """Bearing: rigid, free, or a stiffness for both or each of two directions [force/length].
 
-    Two lists of 2 are a full matrix, of a bearing whose stiffest direction is neither x nor y. A
-    planet's may be given as radial and tangential, seen from the carrier's axis.
+    Two lists of 2 are a full matrix, for a bearing whose stiffest direction is neither x nor y. For
+    a planet, radial and tangential stiffness relative to the carrier's axis may be given.
 
-    Left out: free for a gear with a spline or a ring, rigid for any other.
+    When left out: free for a gear with a spline, a ring or a bearing with radial clearance, rigid
+    for any other.
     """
 
     def rules(self) -> Iterator[Rule]:
         """Yield the broken rules on copies, support, rim, teeth, radii and axis."""
         if self.copies is not None:
-            hint = "Their angles count from that of the centre, about its pole."
-            yield Rule("goes with a centre by distance and angle", ("copies",), hint=hint)
+            hint = "The copies are rotated about its pole, from its angle."
+            yield Rule("needs a centre given by distance and angle", ("copies",), hint=hint)
         yield from self._support_rules()
         if self.type == "carrier":
             yield from self._carrier_rules()
@@ -346,7 +349,7 @@ class Gear(Element):
             yield Rule("cannot be combined with base_radius: give one or the other", (radii[0],))
         elif len(radii) == 1:
             missing = "outer_radius" if radii == ["inner_radius"] else "inner_radius"
-            yield Rule("is missing", (missing,), hint=f"It goes with {radii[0]}.")
+            yield Rule("is missing", (missing,), hint=f"It is required with {radii[0]}.")
         elif not radii and self.base_radius is None and self.module is None:
             other = "inner_radius and outer_radius" if self.type == "face" else "module and teeth"
             hint = f"Or give {other}."
@@ -378,7 +381,7 @@ class Gear(Element):
         elif isinstance(self.ovalisation, str):
             needed = {"rim": self.rim or self.outside_diameter, "face_width": self.face_width}
             for key in (key for key, value in needed.items() if value is None):
-                yield Rule("is missing", (key,), LENGTH.allowed, "It goes with ovalisation.")
+                yield Rule("is missing", (key,), LENGTH.allowed, "It is required with ovalisation.")
 
     def _axis_rules(self) -> Iterator[Rule]:
         if not isinstance(self.axis, str) and not any(self.axis):
@@ -399,7 +402,7 @@ class Gear(Element):
         for missing in ("module", "teeth"):
             if getattr(self, missing) is None:
                 with_it = self.given("module", *OF_TEETH)[0]
-                yield Rule("is missing", (missing,), hint=f"It goes with {with_it}.")
+                yield Rule("is missing", (missing,), hint=f"It is required with {with_it}.")
         if self.helix_angle is not None and abs(self.helix_angle.si) > STEEPEST_HELIX:
             yield Rule("is steeper than 60 deg", ("helix_angle",), ANGLE.allowed)
             return
@@ -407,7 +410,7 @@ class Gear(Element):
             if getattr(self, key) is not None and self.type != kind:
                 yield Rule(f"is for {kind} gears only", (key,))
         if self.web is not None and self.rim is None:
-            yield Rule("is missing", ("rim",), LENGTH.allowed, "It goes with web.")
+            yield Rule("is missing", ("rim",), LENGTH.allowed, "It is required with web.")
         tooth = self.tooth
         if tooth is None:
             return
@@ -436,8 +439,8 @@ class Gear(Element):
         keys = ("tip_alteration", "addendum", "profile_shift", "thickness_allowance")
         key = next(iter(self.given(*keys)), "module")
         if tooth.tip <= tooth.base_radius:
-            inside = f"with a tip radius of {tip:.6g} mm inside the base circle of {base:.6g} mm"
-            yield Rule(f"leaves teeth {inside}", (key,))
+            inside = f"a tip radius of {tip:.6g} mm, inside the base circle of {base:.6g} mm"
+            yield Rule(f"gives the teeth {inside}", (key,))
         elif there and tooth.half_angle_at(math.atan(tooth.tip_roll)) <= 0.0:
             meet = f"the flanks meet at a radius of {1e3 * tooth.pointed:.6g} mm"
             lower = tooth.addendum_to(tooth.pointed) - (self.addendum or 1.0)

@@ -97,4 +97,4 @@ def outside(gear: Gear) -> Iterator[str]:
     for name, value in found.items():
         low, high, unit = RANGES[name]
         if not low <= value <= high:
-            yield f"a {name} of {value:.6g}{unit}, ISO 1328-1 holds for {low:g} to {high:g}{unit}"
+            yield f"a {name} of {value:.6g}{unit}: ISO 1328-1 holds for {low:g} to {high:g}{unit}"

@@ -91,13 +91,13 @@ class Shaft(Element):
             yield Rule("is missing", ("stiffness",), TORSION.allowed, hint)
             return
         for key in {"diameter", "length"} - set(sizes):
-            yield Rule("is missing", (key,), LENGTH.allowed, f"It goes with {sizes[0]}.")
+            yield Rule("is missing", (key,), LENGTH.allowed, f"It is required with {sizes[0]}.")
         if self.diameter is None or self.length is None:
             return
         outer, inner = values(self.diameter), values(self.bore)
         for key, given in (("length", values(self.length)), ("bore", inner)):
             if len(given) != len(outer) and not (key == "bore" and len(given) == 1):
-                yield Rule(f"has {count(len(given))}, diameter has {len(outer)}", (key,))
+                yield Rule(f"has {count(len(given))}, but diameter has {len(outer)}", (key,))
                 return
         if any(inner[k % len(inner)] >= d for k, d in enumerate(outer)):
             yield Rule("leaves no shaft: it is not below the diameter", ("bore",))
@@ -132,8 +132,8 @@ class Spline(Element):
     stick_limit: Distance | None = None
     """Displacement up to which the spline sticks, S1 [length]; F_m / K_w when left out.
 
-    It is not above the clearance. Left out, a clearance below F_m / K_w closes before friction is
-    overcome: the spline then acts as a spring K_w throughout, and results call it stick.
+    It must not exceed the clearance. If it is left out, a clearance below F_m / K_w closes before
+    friction is overcome: the spline then acts as a spring K_w throughout, which results call stick.
     """
 
     friction_force: Load | None = None
@@ -143,10 +143,11 @@ class Spline(Element):
     """Coefficient of friction [-]; goes with `normal_force` or `radius`."""
 
     normal_force: Load | None = None
-    """Normal force of the spline, F_N [force]; the friction bound is friction times it."""
+    """Normal force of the spline, F_N [force]; the friction bound is `friction` times this force.
+    """
 
     radius: Radius | None = None
-    """Radius at which the torque presses on the spline [length]: F_N = torque / radius."""
+    """Radius at which the torque acts on the spline [length]: F_N = torque / radius."""
 
     WAYS = ((("friction_force",), ("friction", "normal_force", "radius")),)
 
@@ -158,7 +159,10 @@ class Spline(Element):
         if not given:
             yield Rule("has no friction bound", allowed=allowed)
         elif set(given) not in ways:
-            yield Rule(f"has no clear friction bound: {', '.join(given)}", allowed=allowed)
+            yield Rule(
+                f"has an incomplete or ambiguous friction bound: {', '.join(given)}",
+                allowed=allowed,
+            )
 
     @property
     def fixed_bound(self) -> float | None:
@@ -174,14 +178,14 @@ class Range(Element):
     """A float range to either side."""
 
     up: Distance
-    """Float up, to the left of the way from the first neighbour to the second [length]."""
+    """Float up, to the left of the line from the first neighbour to the second [length]."""
 
     down: Distance
-    """Float down, to the right of the way from the first neighbour to the second [length]."""
+    """Float down, to the right of the line from the first neighbour to the second [length]."""
 
 
 class Backlashes(Element):
-    """A float range as the backlashes that the float has to take up."""
+    """A float range given by the backlashes that the float has to take up."""
 
     upward: Annotated[tuple[str, ...], Field(min_length=1)]
     """Meshes whose backlashes the float takes up on its way up."""
@@ -196,7 +200,7 @@ class Ring(Element):
     model_config = ConfigDict(validate_by_name=False, validate_by_alias=True)
 
     neighbours: tuple[str, str] | None = None
-    """Drum: the two gears whose rings it rolls on; up is left of the way from first to second."""
+    """Drum: the two gears whose rings it rolls on; up is left of the line from first to second."""
 
     clearance: Annotated[
         Annotated[Distance, Tag(VALUE)] | Annotated[tuple[Distance, Distance], Tag(LIST)],
@@ -216,20 +220,20 @@ class Ring(Element):
         ]
         | None
     ) = Field(default=None, alias="float")
-    """Drum: float across the line of the neighbours, as much up as down [length]; or each of them,
-    or the meshes that set them."""
+    """Drum: float across the line of the neighbours, the same up and down [length]; or each of the
+    two, or the meshes whose backlashes set them."""
 
     radius: Distance | None = None
     """Circle: radius of the disc in which the centre may move [length]."""
 
     offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))
-    """Circle: middle of the disc, from the gear's centre [length]."""
+    """Circle: centre of the disc, relative to the gear's centre [length]."""
 
     stiffness: Annotated[RigidOr, WALL] = "rigid"
     """Stiffness of the ring [force/length], or rigid."""
 
     measured: Literal["assembled", "nominal"] = "assembled"
-    """What the clearance is measured on: the gears with their installation errors, or without."""
+    """Whether the clearance is that of the gears with their installation errors, or without."""
 
     WAYS = ((("neighbours", "float", "clearance"), ("radius", "offset")),)
 
@@ -242,7 +246,7 @@ class Ring(Element):
         if drum and circle:
             yield Rule(f"mixes two forms: {', '.join(drum)}; {', '.join(circle)}", allowed=forms)
         elif not drum and not circle:
-            yield Rule("has no form", allowed=forms)
+            yield Rule("is neither a drum nor a circle", allowed=forms)
         elif drum and self.neighbours is None:
             yield Rule("is missing", ("neighbours",), "a list of 2 gears")
         elif drum and self.float_ is None:
@@ -252,13 +256,13 @@ class Ring(Element):
 
 
 class RollingElements(Element):
-    """The balls or rollers of a bearing, from which its law follows after Palmgren."""
+    """The balls or rollers of a bearing, which determine its law after Palmgren."""
 
     balls: Annotated[int, Strict(), Field(ge=3)] | None = None
     """Number of balls [-]."""
 
     rollers: Annotated[int, Strict(), Field(ge=3)] | None = None
-    """Number of rollers, of all rows [-]."""
+    """Number of rollers in all rows [-]."""
 
     diameter: Radius | None = None
     """Diameter of a ball [length]."""
@@ -269,20 +273,20 @@ class RollingElements(Element):
     contact_angle: Annotated[Quantity, ANGLE.bounded(at_least=0, at_most=STEEPEST_CONTACT)] = (
         Quantity("0 deg", 0.0)
     )
-    """Angle of the line of contact to the radial plane [angle]."""
+    """Angle between the line of contact and the radial plane [angle]."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield the broken rules on the elements."""
         kinds = self.given("balls", "rollers")
         if len(kinds) != 1:
             allowed = "balls and diameter, or rollers and length"
-            yield Rule("has either balls or rollers", allowed=allowed)
+            yield Rule("needs either balls or rollers", allowed=allowed)
             return
         needed, idle = ("diameter", "length") if kinds == ["balls"] else ("length", "diameter")
         if getattr(self, needed) is None:
-            yield Rule("is missing", (needed,), LENGTH.allowed, f"It goes with {kinds[0]}.")
+            yield Rule("is missing", (needed,), LENGTH.allowed, f"It is required with {kinds[0]}.")
         if getattr(self, idle) is not None:
-            yield Rule(f"does not count for {kinds[0]}", (idle,))
+            yield Rule(f"does not apply to {kinds[0]}", (idle,))
 
     @property
     def law(self) -> tuple[float, float]:
@@ -303,22 +307,22 @@ class Bearing(Element):
     """Radial clearance [length]: how far the centre moves before the bearing holds it."""
 
     stiffness: Annotated[RigidOr, WALL] | None = None
-    """Stiffness from there on [force/length], or rigid."""
+    """Stiffness beyond the clearance [force/length], or rigid."""
 
     ball_stiffness: Annotated[Quantity, BALL_STIFFNESS.bounded(above=0)] | None = None
-    """K of a ball bearing, F = K δ^(3/2) from there on [force/length^(3/2)]."""
+    """K of a ball bearing, F = K δ^(3/2) beyond the clearance [force/length^(3/2)]."""
 
     roller_stiffness: Annotated[Quantity, ROLLER_STIFFNESS.bounded(above=0)] | None = None
-    """K of a roller bearing, F = K δ^(10/9) from there on [force/length^(10/9)]."""
+    """K of a roller bearing, F = K δ^(10/9) beyond the clearance [force/length^(10/9)]."""
 
     rolling: RollingElements | None = None
-    """Balls or rollers from whose number and size the law follows."""
+    """Balls or rollers whose number and size determine the law."""
 
     offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))
-    """Middle of the bearing, from the gear's centre [length]."""
+    """Centre of the bearing, relative to the gear's centre [length]."""
 
     diameter: Radius | None = None
-    """Mean diameter, by which its clearance changes as shaft and housing grow [length]."""
+    """Mean diameter, with which its clearance changes as shaft and housing expand [length]."""
 
     WAYS = (tuple((law,) for law in BEARING_LAWS),)
 

@@ -15,7 +15,7 @@ class Measurement(Element):
     """Measured figures, to be compared with computed ones."""
 
     position: Count | None = None
-    """Position that they belong to [-]; left out: the mean of all, for omega the largest."""
+    """Position of the figures [-]; when left out: the mean of all, for omega the largest."""
 
     torque: dict[str, Torque] | None = None
     """Torques on the drivers, by mesh [torque]."""
@@ -45,11 +45,11 @@ class Measurement(Element):
         """Yield missing figures and uncertainties."""
         given = [key for key in COEFFICIENTS if getattr(self, key)]
         if not given and not self.torque:
-            yield Rule("holds no figure", allowed=", ".join(("torque", *COEFFICIENTS)))
+            yield Rule("contains no measured value", allowed=", ".join(("torque", *COEFFICIENTS)))
         if self.torque and self.torque_uncertainty is None:
             yield Rule(
-                "is missing", ("torque_uncertainty",), TORQUE.allowed, "It goes with torque."
+                "is missing", ("torque_uncertainty",), TORQUE.allowed, "It is required with torque."
             )
         if given and self.uncertainty is None:
-            hint = f"It goes with {given[0]}."
+            hint = f"It is required with {given[0]}."
             yield Rule("is missing", ("uncertainty",), "a number above 0", hint)

@@ -63,7 +63,7 @@ class Law(Element):
     """Hertz contact [angle/torque^(2/3)], one value or one per position."""
 
     sampling: Literal["points", "means"] = "points"
-    """What a list holds: values at the positions, or means over the parts of the cycle about them.
+    """What a list gives: values at the positions, or means over the parts of the cycle around them.
     """
 
     basis: Text = Field(default="", exclude=True)
@@ -80,12 +80,12 @@ class Law(Element):
     """Torque at the driver above which its basis does not hold; results then warn [torque]."""
 
     misfit: NotNegative | None = Field(default=None, exclude=True)
-    """By how much the law is off at loads other than those it was fitted to, at most, as a part of
-    the elastic angle; results warn from 0.03 on [-]."""
+    """Largest error of the law at loads other than those it was fitted to, relative to the elastic
+    angle; results warn from 0.03 on [-]."""
 
     teeth: Text = Field(default="", exclude=True)
-    """Digest of the teeth that the numbers were computed from: while it is there, they are refused
-    for gears with other teeth."""
+    """Digest of the teeth that the numbers were computed from: with it, they are refused for gears
+    with other teeth."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield a broken rule if the mesh would be rigid at a position."""
@@ -95,7 +95,7 @@ class Law(Element):
             yield Rule("b and c are both 0: the mesh would be rigid", hint="Give b, c or both.")
 
 
-IMPLIED = "Leave the point (0, 0) out; a gap of the unloaded flanks is the key gap of the mesh."
+IMPLIED = "Leave out the point (0, 0); a gap of the unloaded flanks is the key gap of the mesh."
 
 
 class Table(Element):
@@ -120,7 +120,7 @@ class Table(Element):
             yield Rule("does not increase", ("torque",))
         for path, points in self._curves():
             if len(points) != len(self.torque):
-                number = f"has {count(len(points))}, torque has {len(self.torque)}"
+                number = f"has {count(len(points))}, but torque has {len(self.torque)}"
                 yield Rule(number, path)
             elif not _increases(points):
                 yield Rule("does not increase", path)
@@ -151,11 +151,11 @@ class Mesh(Element):
     pressure_angle: Annotated[Quantity, ANGLE.bounded(above=0, at_most=STEEPEST)] | None = None
     """Transverse working pressure angle, at most 45 deg [angle].
 
-    Left out, it is the one at which the base circles have a common tangent; a face gear needs it.
+    When left out, it is that of the common tangent of the base circles; a face gear needs it.
     """
 
     helix_angle: Annotated[Quantity, ANGLE] | None = None
-    """Base helix angle, for `normal_backlash` [angle]; that of the teeth, or 0 deg, by default."""
+    """Base helix angle, for `normal_backlash` [angle]; by default that of the teeth, or 0 deg."""
 
     stiffness: PerPosition[MeshStiffness] | None = None
     """Constant stiffness at the driver [torque/angle], one value or one per position."""
@@ -171,16 +171,16 @@ class Mesh(Element):
     """Deformation law a + b T + c T^(2/3) at the driver [angle], or a word for its source.
 
     iso: mean stiffness by ISO 6336-1, method B, from the teeth of both gears; iso solid: without
-    C_M = 0.8, by which measured teeth are softer than calculated ones. ltca: loaded tooth contact
-    analysis of the teeth of both gears by slices; ltca elements: by finite elements.
+    the factor C_M = 0.8, by which measured teeth are softer than calculated ones. ltca: loaded
+    tooth contact analysis of both gears with slices; ltca elements: with finite elements.
     """
 
     rated_torque: Annotated[Quantity, TORQUE.bounded(above=0)] | None = None
-    """Torque at the driver up to which `law = "ltca"` is analysed [torque]; that of 50 N per mm of
-    face width and of module when left out."""
+    """Torque at the driver up to which `law = "ltca"` is analysed [torque]; when left out, that of
+    50 N per mm of face width and mm of module."""
 
     table: Table | None = None
-    """Deformation at the driver [angle] as a table over the torque [torque]."""
+    """Deformation at the driver [angle] as a table against torque [torque]."""
 
     law_file: FileName | None = None
     """Law file, as `loadshare ltca` writes it, relative to this file."""
@@ -190,18 +190,18 @@ class Mesh(Element):
 
     gap: PerPosition[Angle] | None = None
     """Unloaded gap at the driver that opens the drive flank [angle], one value or one per position;
-    the flank that carries in a mesh without a backlash."""
+    in a mesh without a backlash, the flank that carries."""
 
     phase: Annotated[float, Strict(), Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
-    """Part of its cycle that has passed at the first position [-]; by `operating.phases` when
-    left out."""
+    """Fraction of its cycle that has passed at the first position [-]; set by `operating.phases`
+    when left out."""
 
     backlash: (
         Annotated[Quantity | Literal["teeth"], LENGTH.bounded(at_least=0).or_words("teeth")] | None
     ) = None
-    """Circumferential working backlash [length]; without any backlash the coast flank is free.
+    """Circumferential working backlash [length]; if no backlash is given, the coast flank is free.
 
-    teeth: what the teeth of both gears leave at their centres, with their `thickness_allowance`.
+    teeth: that of the teeth of both gears at their centres, with their `thickness_allowance`.
     """
 
     normal_backlash: Distance | None = None
@@ -229,7 +229,7 @@ class Mesh(Element):
                 f"cannot be combined with {source}, which gives the gap", ("gap",), hint=hint
             )
         if self.rated_torque is not None and not self.law_is_of_contact:
-            yield Rule('goes with law = "ltca"', ("rated_torque",))
+            yield Rule('applies only to law = "ltca"', ("rated_torque",))
         if self.backlash is not None and self.normal_backlash is not None:
             yield Rule(
                 "cannot be combined with backlash: give one or the other", ("normal_backlash",)

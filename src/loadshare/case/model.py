@@ -178,7 +178,9 @@ class Case(Content):
             If there are updates, which would be neither checked nor written to a file.
         """
         if update:
-            raise TypeError("cases do not change: Case.replace makes one of other values")
+            raise TypeError(
+                "cases cannot be changed; Case.replace makes a new one with other values"
+            )
         return super().model_copy(deep=deep)
 
     def differences(self, before: Case) -> Iterator[tuple[Path, Any, Any]]:

@@ -35,10 +35,10 @@ class Operating(Element):
     """Gear at which the torque enters."""
 
     output: str
-    """Gear at which it leaves."""
+    """Gear at which the torque leaves."""
 
     running: Literal["counter-clockwise", "clockwise"] = "counter-clockwise"
-    """Sense of rotation of the input gear, seen against its axis."""
+    """Sense of rotation of the input gear, seen with its axis pointing at the viewer."""
 
     torque: PerPosition[Torque] | None = None
     """Input torque [torque], one value or one per position; negative where the input brakes."""
@@ -53,37 +53,38 @@ class Operating(Element):
     """Number of meshing positions in a mesh cycle [-]."""
 
     cycle: Literal["pitch", "common"] = "pitch"
-    """What the positions go through: one pitch, all meshes together, or their common period.
+    """Range of the positions: one pitch, with all meshes in step, or their common period.
 
     Over the common period each mesh is at its own point of its cycle, by tooth numbers and speeds;
-    the fastest has `positions` positions in each of its cycles. A march has positions of its own.
+    the fastest has `positions` positions in each of its cycles. A march has its own positions.
     """
 
     phases: Literal["together", "layout"] = "together"
     """Point of its cycle at which each mesh is at the first position.
 
-    All at their first one; or each where its teeth are, by tooth numbers and centres: the first
-    position of a law is then that of contact at the pitch point.
+    together: all at the first position of their laws. layout: each where its teeth are, by tooth
+    numbers and centres; the first position of a law is then that of contact at the pitch point.
     """
 
     rotation: Literal["teeth", "neglected"] = "teeth"
     """How far gears turn over a mesh cycle: by their `teeth`, or not at all.
 
     One cycle is one tooth of the input gear or, if its tooth number is unknown, of the gear nearest
-    to it whose number is known (of several, that whose name comes first). If neglected,
-    eccentricities keep their direction of the first position. A march turns the gears in any case.
+    to it whose number is known (of several, the one whose name comes first). If neglected,
+    eccentricities keep their direction at the first position. A march always turns the gears.
     """
 
     external: dict[str, Torque] = Field(default_factory=dict)
-    """Further torques on gears [torque], positive in the gear's sense of rotation."""
+    """Additional torques on gears [torque], positive in the gear's sense of rotation."""
 
     forces: dict[str, Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]] = Field(
         default_factory=dict
     )
-    """Further forces on the centres of gears, fixed in the housing: x, y and z [force]."""
+    """Additional forces on the centres of gears, fixed in the housing: x, y and z [force]."""
 
     gravity: Annotated[tuple[Acceleration, ...], Field(min_length=2, max_length=3)] | None = None
-    """Gravity as it pulls: x, y and z [acceleration]; every gear then needs a mass."""
+    """Gravity, in the direction of its pull: x, y and z [acceleration]; every gear then needs a
+    mass."""
 
     temperature: Temperature | None = None
     """Rise of the housing's temperature above that at which it was made [temperature]."""
@@ -97,7 +98,9 @@ class Operating(Element):
         if self.torque is not None and self.power is not None:
             yield Rule("cannot be combined with torque: give one or the other", ("power",), allowed)
         elif self.power is not None and self.speed is None:
-            yield Rule("is missing", ("speed",), ANGULAR_SPEED.allowed, "It goes with power.")
+            yield Rule(
+                "is missing", ("speed",), ANGULAR_SPEED.allowed, "It is required with power."
+            )
         elif self.torque is None and self.power is None:
             yield Rule("has no load", allowed=allowed)
         for key in ("torque", "power") if self.cycle == "common" else ():

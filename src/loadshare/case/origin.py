@@ -50,15 +50,13 @@ class Origin:
             The key that names it, and the text given there.
         """
         if "\0" in str(named) or any(len(part) > ALLOWED.file_name for part in named.parts):
-            return Problem(file, key, given, "is no name of a file", "the name of a file")
+            return Problem(file, key, given, "is not a valid file name", "the name of a file")
         folder = FilePath(self.file).parent
         if self.outside or file == CHANGES or real(named).is_relative_to(real(folder)):
             return None
         message = "is outside the folder of the case"
         allowed = f"a file beside {self.file}, or in a folder below"
-        hint = (
-            "To read it all the same: --allow-outside; in Python, load_case(…, allow_outside=True)."
-        )
+        hint = "To read it anyway: --allow-outside; in Python, load_case(…, allow_outside=True)."
         return Problem(file, key, given, message, allowed, hint)
 
     def of(self, path: Path) -> str:

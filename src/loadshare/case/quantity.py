@@ -136,7 +136,7 @@ class Dimension:
         if factor is None:
             kind = kind_of(unit) or f"in {unit}"
             hint = _rewritten(number, unit) if unit in OTHERS else ""
-            raise self._problem(f"is {kind}, {self.kind} is needed", hint=hint)
+            raise self._problem(f"is {kind}, but {self.kind} is needed", hint=hint)
         # Decimal keeps "45.9 mm" and "0.0459 m" the same number.
         exact = Decimal(number) * Decimal(repr(factor))
         value = Quantity(str(text), float(exact))
@@ -144,7 +144,7 @@ class Dimension:
         largest = ALLOWED.length if self.unit == "m" else ALLOWED.largest
         if not (exact.is_zero() or ALLOWED.smallest <= abs(value.si) <= largest):
             limits = f"{ALLOWED.smallest:g} to {largest:g} {self.unit}"
-            raise self._problem(f"is of a size that no machine has (outside of {limits})")
+            raise self._problem(f"is outside the range of any machine ({limits})")
         return value
 
     @property
@@ -184,13 +184,13 @@ class Dimension:
             hint = _rewritten(number, unit)
             return self._problem(f"the unit {unit} is not known", hint=hint)
         if rest := beyond_unit(unit):
-            return self._problem(f"{rest} is no part of a unit, and nothing else follows a number")
+            return self._problem(f"{rest} is not part of a unit; only a unit may follow a number")
         apart = written_apart(unit, self.unit)
         if apart is None:
             others = ((written_apart(unit, si), kind) for kind, si in KINDS.items())
             other, kind = next(((text, kind) for text, kind in others if text), (None, ""))
             if other is not None:
-                return self._problem(f"{unit} would be {other}, {kind}; {self.kind} is needed")
+                return self._problem(f"{unit} would be {other}, {kind}, but {self.kind} is needed")
         fitting = [known for known in COMMON if si_factor(known, self.unit) is not None]
         hint = f"Did you mean {apart}?" if apart else did_you_mean(part, fitting)
         return self._problem(f"the unit {part} is not known", hint=hint)
@@ -235,7 +235,7 @@ def _slip_in(text: object) -> str:
     if unit.strip() in OTHERS:
         return _rewritten(number, unit.strip())
     if _GROUPED.match(text):
-        return "Decimals have a point, and thousands no sign between them."
+        return "Use a decimal point, and no separators between thousands."
     return ""
 
 
@@ -298,7 +298,7 @@ TORSIONAL_STIFFNESS = Dimension("N*m/rad", "a torsional stiffness", "5e5 N*m/rad
 TORSIONAL_COMPLIANCE = Dimension("rad/(N*m)", "a torsional compliance", "2e-7 rad/(N*m)")
 HERTZ_COMPLIANCE = Dimension("rad/(N*m)^(2/3)", "a Hertz compliance", "1e-6 rad/(N*m)^(2/3)")
 ACCELERATION = Dimension("m/s^2", "an acceleration", "9.81 m/s^2")
-TEMPERATURE = Dimension("K", "a rise of temperature", "40 K")
+TEMPERATURE = Dimension("K", "a temperature rise", "40 K")
 EXPANSION = Dimension("1/K", "a thermal expansion", "11.5e-6 /K")
 MASS = Dimension("kg", "a mass", "12.5 kg")
 MODULUS = Dimension("Pa", "a modulus", "79.3 GPa")

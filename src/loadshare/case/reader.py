@@ -79,8 +79,8 @@ def load_case(
     """
     if not isinstance(path, str | PathLike):
         kind = type(path).__name__
-        wanted = "a Case or the path of a case file is wanted; Case(data) makes one of a dictionary"
-        raise TypeError(f"{wanted}, not {kind}")
+        wanted = "a Case or the path of a case file is needed"
+        raise TypeError(f"{wanted}, not {kind}; Case(data) makes a case from a dictionary")
     if path == "":
         # As a path it would be the folder in which the process is.
         raise CaseError([Problem('""', "", "", NO_FILE)])
@@ -201,7 +201,7 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: 
         allowed = 'a file such as "base.toml"'
         raise CaseError([Problem(str(path), "extends", given, "is not a file", allowed)])
     if len(chain) >= ALLOWED.files:
-        why = f"is the last of a chain of {len(chain)} files: more are not read"
+        why = f"is in the last of a chain of {len(chain)} files; no further ones are read"
         raise CaseError([Problem(str(path), "extends", given, why)])
     target = path.parent / base
     outside = origin.outside_problem(target, str(path), "extends", given)
@@ -209,7 +209,7 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: 
         raise CaseError([outside])
     if real(target) in map(real, chain):
         circle = " → ".join(str(file) for file in (*chain, target))
-        raise CaseError([Problem(str(path), "extends", given, f"closes a circle: {circle}")])
+        raise CaseError([Problem(str(path), "extends", given, f"is circular: {circle}")])
     try:
         there = target.is_file()
     except OSError:
@@ -259,7 +259,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         why = _DEEP
     except ValueError:
         # Python refuses whole numbers with thousands of digits.
-        why = "holds a number that cannot be read"
+        why = "contains a number that cannot be read"
     else:
         if _depth(parsed) <= ALLOWED.depth:
             data: dict[str, Any] = _copied(parsed)

@@ -10,28 +10,29 @@ from typing import Any
 from loadshare.case.words import did_you_mean
 
 TAKEN_BY = {
-    "result": "is a result and no case; `loadshare check` certifies it again",
-    "netCDF": "is netCDF and no case; if it is a result, `loadshare check` certifies it again",
-    "study": "is the answer of a study and no case; pandas reads its rows",
+    "result": "is a result, not a case; `loadshare check` certifies it again",
+    "netCDF": "is netCDF, not a case; if it is a result, `loadshare check` certifies it again",
+    "study": "is the answer of a study, not a case; pandas reads its rows",
     "REXS": "is a gear unit in REXS; `loadshare import` makes a case of it",
     "REXS archive or workbook": "is a workbook or an archive; `loadshare import` makes a case of "
     "the tables or the gear unit in it",
     "tables": "is a folder of tables; `loadshare import` makes a case of them",
-    "table": "is a table and no case; `loadshare import` takes the folder of all tables of a case",
+    "table": "is a table, not a case; `loadshare import` takes the folder of all tables of a case",
     "cases": "is a folder; name a case in it, or give it to `loadshare batch`, `check` or `report`",
-    "picture": "is a picture and no case",
-    "page": "is a page and no case",
-    "JSON": "is JSON and no case, which is TOML",
+    "picture": "is a picture, not a case",
+    "page": "is a page, not a case",
+    "JSON": "is JSON, but a case is TOML",
     "nothing": "is empty; `loadshare new NAME` writes a case to start from",
     "UTF-16": "is UTF-16 text; save it as UTF-8",
     "case": "is a case; `loadshare run` solves it",
 }
 """What a file is, and which command takes it."""
 KINDS = {
-    "helicoid": "is a pair of gears; `loadshare ltca` analyses it, and a mesh names it by geometry",
-    "face-gear": "is a pair with a face gear; `loadshare ltca` analyses it, and a mesh names it by "
-    "geometry",
-    "law": "is the law of a mesh, which names it by law_file",
+    "helicoid": "is a pair of gears; `loadshare ltca` analyses it, and a mesh names it under its "
+    "key geometry",
+    "face-gear": "is a pair with a face gear; `loadshare ltca` analyses it, and a mesh names it "
+    "under its key geometry",
+    "law": "is the law of a mesh, which names it under its key law_file",
 }
 """TOML files that are not cases, by their key `kind`."""
 _STARTS = (

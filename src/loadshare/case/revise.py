@@ -199,11 +199,11 @@ def nearest(data: Mapping[str, Any], path: Path) -> str:
         above = look_up(data, path[:length])
         if isinstance(above, Mapping) and path[length] not in above:
             if "*" in str(path[length]):
-                return "A star is no name here: give one key for each."
+                return "A star is not allowed here: give one key for each."
             copies = [key for key in above if DIGITS.sub("", str(key)) == path[length]]
             if copies:
                 names = choices(dotted((*path[:length], key)) for key in copies)
-                return f"Copies have names of their own: {names}."
+                return f"Each copy has its own name: {names}."
             options = {dotted((*path[:length], key)): key for key in above}
             wrong = dotted(path[: length + 1])
             near = did_you_mean(wrong, options)

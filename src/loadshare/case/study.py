@@ -40,7 +40,7 @@ class Spread(Element):
     """How an input varies; a star in its key gives each key its own random value."""
 
     distribution: Literal["normal", "truncated normal", "uniform", "rayleigh", "uniform phase"]
-    """Kind: a Rayleigh amount goes with a uniform phase, which is an angle over a whole turn."""
+    """Kind: a Rayleigh amount goes with a uniform phase, an angle spread over a whole turn."""
 
     mean: Given | None = None
     """Normal: mean; truncated normal: mean before it is cut off [unit of the input]."""
@@ -53,7 +53,7 @@ class Spread(Element):
 
     high: Given | None = None
     """Uniform, truncated normal: highest value [unit of the input]; "class" for the eccentricity
-    that the gear's `tolerance_class` allows, half of the runout."""
+    that the gear's `tolerance_class` allows, half the runout."""
 
     scale: Given | None = None
     """Rayleigh: scale σ, the most frequent value [unit of the input]; the mean is 1.2533 σ."""

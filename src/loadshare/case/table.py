@@ -11,7 +11,7 @@ class Table(dict[str, Item]):
     """A table that cannot be changed, so that what is known of its case stays true."""
 
     def _refuse(self, *_: object, **__: object) -> NoReturn:
-        raise TypeError("cases and results do not change: Case.replace makes one of other values")
+        raise TypeError("cases and results cannot be changed; Case.replace makes a new case")
 
     __setitem__ = __delitem__ = __ior__ = _refuse
     clear = pop = popitem = setdefault = update = _refuse

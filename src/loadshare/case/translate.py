@@ -180,7 +180,7 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
         hint = hint_at(path[-1], own, keys) if own else did_you_mean(path[-1], keys)
         return Rule("unknown key", path, choices(sorted(keys)), hint)
     if kind == "missing" and isinstance(path[-1], int):
-        return Rule(f"has {count(path[-1])}, more are needed", path[:-1])
+        return Rule(f"has {count(path[-1])}, but more are needed", path[:-1])
     if kind == "missing":
         holder = _table(model, path[:-1])
         names = {about.alias or n: n for n, about in holder.model_fields.items()} if holder else {}
@@ -194,8 +194,8 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
         return Rule("does not have an allowed form", path, error["msg"])
     given = error["input"]
     if kind == "string_type" and isinstance(given, int | float) and not isinstance(given, bool):
-        hint = f"""Write it in quotes; in a shell in both kinds, as '"{given}"'."""
-        return Rule("is a number, a text is needed", path, f'a text such as "{given}"', hint)
+        hint = f"""Write it in quotes; in a shell, in single and double ones, as '"{given}"'."""
+        return Rule("is a number, but a text is needed", path, f'a text such as "{given}"', hint)
     wanted = WANTED.get(kind, "another value").format_map(context)
     inner = _fields(model, path) if wanted == "a table" else {}
     if inner:

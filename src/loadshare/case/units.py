@@ -80,7 +80,7 @@ KINDS = {
     "a mass": "kg",
     "a density": "kg/m^3",
     "a time": "s",
-    "a rise of temperature": "K",
+    "a temperature rise": "K",
     "an acceleration": "m/s^2",
     "a speed": "m/s",
     "an angular speed": "rad/s",

@@ -91,8 +91,8 @@ def pressed_flanks(
     for name, (signs, either) in pressed.items():
         coast, drive = (signs < 0).any(axis=0), (signs > 0).any(axis=0)
         if name in names and (coast & drive).any():
-            message = "is missing: the load presses now one flank, now the other"
-            hint = "How much play the mesh has decides when its other flank carries."
+            message = "is missing: the load presses both flanks in turn"
+            hint = "The backlash determines when the other flank of the mesh carries load."
             problems.append(case.problem(("meshes", name, "backlash"), message, "a length", hint))
         # If the load presses neither flank, the name decides here too.
         turned = np.where(coast | drive, coast, against) & (name in names)

@@ -48,8 +48,8 @@ def check_planet_shafts(draft: Draft) -> Iterator[Problem]:
         known = all(carrier is not None and carrier.is_carrier for carrier in carriers)
         if known and len(set(riding.values())) > 1:
             planet = next(end for end, carrier in riding.items() if carrier)
-            what = f"planet {planet} goes round with {riding[planet]}, the other end does not"
-            hint = "What shares a planet's shaft rides on the same carrier."
+            what = f"planet {planet} rides on {riding[planet]}, the other end does not"
+            hint = "Both ends of a planet's shaft must ride on the same carrier."
             yield draft.problem(("shafts", name), what, hint=hint)
 
 
@@ -76,7 +76,7 @@ def check_planet_meshes(draft: Draft) -> Iterator[Problem]:
                 continue
             elif not _coaxial(holder, gear, minus(centres[end], centres[carrier])):
                 what = f"gear {end} is not on the axis of carrier {carrier}"
-                hint = "A planet meshes with what rides on its carrier or turns about its axis."
+                hint = "A planet meshes with gears that ride on its carrier or turn about its axis."
                 yield draft.problem(path, what, hint=hint)
 
 
@@ -99,10 +99,10 @@ def check_names_of_planet_meshes(draft: Draft) -> Iterator[Problem]:
         known.setdefault(planet_first, name)
         if len(known) == 2 and known[planet_first] == name:
             other = known[not planet_first]
-            what = f"names its planet {'first' if planet_first else 'last'}, {other} does not"
+            what = f"names its planet {'first' if planet_first else 'last'}, but {other} does not"
             hint = (
                 "Backlash is behind the flank with which the gear named first drives: name all "
-                f"meshes of {central} with planets of {carrier} in one order."
+                f"meshes of {central} with planets of {carrier} in the same order."
             )
             yield draft.problem(("meshes", name), what, hint=hint)
 
@@ -116,7 +116,7 @@ def check_held(draft: Draft) -> Iterator[Problem]:
         turning.setdefault(march.gear, "the gear whose revolutions are counted")
     for name in sorted(held & turning.keys()):
         at_output = operating is not None and name == operating.output
-        hint = "What it drives takes its torque." if at_output else ""
+        hint = "The driven machine takes its torque." if at_output else ""
         what = f"is {turning[name]}, which turns"
         yield draft.problem(("gears", name, "held"), what, "false, or left out", hint)
     if operating is None:
@@ -125,8 +125,8 @@ def check_held(draft: Draft) -> Iterator[Problem]:
     for name in sorted(held):
         others = _on_rigid_shafts(draft, name) & fixed - {name}
         if others:
-            what = f"rigid shafts join it to {choices(sorted(others))}, held as well"
-            yield draft.problem(("gears", name, "held"), what, hint="One of them is enough.")
+            what = f"rigid shafts join it to {choices(sorted(others))}, which is held as well"
+            yield draft.problem(("gears", name, "held"), what, hint="Hold only one of them.")
 
 
 def check_twisted_shafts(draft: Draft) -> Iterator[Problem]:
@@ -145,7 +145,7 @@ def check_twisted_shafts(draft: Draft) -> Iterator[Problem]:
                 if joined
                 else f"neither {still[0][0]} nor {still[1][0]} turns"
             )
-            hint = "Leave it out, or let one end turn without the other."
+            hint = "Leave the shaft out, or let one end turn without the other."
             yield draft.problem(("shafts", name), what, hint=hint)
 
 
@@ -165,7 +165,7 @@ def check_clockings(draft: Draft) -> Iterator[Problem]:
         if first in lags and second in lags:
             other = lags[second] - lags[first]
             if abs(other - lag) > size:
-                what = f"is not {other:.6g} rad, as other rigid shafts between its ends have it"
+                what = f"is not {other:.6g} rad, which other rigid shafts between its ends give"
                 hint = "Make the clockings agree, or give one of these shafts a stiffness."
                 yield draft.problem(("shafts", ahead, "clocking"), what, hint=hint)
         elif first in lags:
@@ -179,12 +179,12 @@ def check_planet_errors(draft: Draft) -> Iterator[Problem]:
     for name, errors in draft.errors.items():
         gear = draft.gears.get(name)
         if errors.pin is not None and gear is not None and gear.carrier is None:
-            hint = f"Give gears.{name}.carrier, or the error as installation."
+            hint = f"Give gears.{name}.carrier, or give the error as installation."
             yield draft.problem(("errors", name, "pin"), "is for planets only", hint=hint)
     for name, ring in draft.rings.items():
         for other in (name, *(ring.neighbours or ())):
             if ring.neighbours and rides_on(draft.gears, other):
-                what = f"gear {other} rides on a carrier: rings about planets are round"
+                what = f"gear {other} rides on a carrier, but only circles can limit planets"
                 yield draft.problem(("rings", name), what, hint="Give a radius.")
 
 

@@ -128,7 +128,7 @@ def _too_far(draft: Draft, name: str, one: Tooth, two: Tooth, distance: float) -
 def _without_backlash(one: Tooth, two: Tooth) -> str:
     """Say which centre distance two gears have without backlash, if there is one."""
     with suppress(ValueError):
-        return f"Without backlash it would be {mm(distance_without_backlash(one, two))}."
+        return f"Without backlash, it would be {mm(distance_without_backlash(one, two))}."
     return ""
 
 
@@ -166,8 +166,8 @@ def _unlike(driver: Gear, driven: Gear) -> tuple[str, str] | None:
     helix = -one.kind * two.kind * one.helix_angle
     if abs(two.helix_angle - helix) > TEETH_ALIKE:
         angles = f"{_deg(one.helix_angle)} and {_deg(two.helix_angle)}"
-        hands = "the same" if one.kind * two.kind < 0 else "opposite"
-        hint = f"These gears need helices of one size and of {hands} hands."
+        hands = "the same hand" if one.kind * two.kind < 0 else "opposite hands"
+        hint = f"These gears need helix angles of the same size and of {hands}."
         return f"the helix angles {angles} do not mesh", hint
     return None
 
@@ -197,17 +197,18 @@ def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[P
     axis, along = axis_of(face), axis_of(pinion)
     if abs(dot(axis, along)) > ANGLE_TOLERANCE:
         yield draft.problem(
-            ("meshes", name), "the axes of a face gear and its pinion are not square"
+            ("meshes", name), "the axes of a face gear and its pinion are not at right angles"
         )
         return
     if mesh.pressure_angle is None:
-        hint = "Only that of two cylindrical gears follows from their base radii."
+        hint = "It follows from the base radii only if both gears are cylindrical."
         yield draft.problem(("meshes", name, "pressure_angle"), "is missing", ANGLE.allowed, hint)
         return
     past = math.sqrt(max(dot(offset, offset) - dot(offset, axis) ** 2 - dot(offset, along) ** 2, 0))
     if past > TOLERANCE * face.acting_radius:
-        what = f"the pinion's axis passes the face gear's axis at {mm(past)}: they do not meet"
-        yield draft.problem(("meshes", name), what, hint="Correct the centres or the axes.")
+        what = f"the pinion's axis misses the face gear's axis by {mm(past)}"
+        hint = "The axes must intersect: correct the centres or the axes."
+        yield draft.problem(("meshes", name), what, hint=hint)
         return
     radius = pinion.acting_radius
     where = f"the pinion's base radius {mm(radius)} does"
@@ -224,12 +225,15 @@ def _compare(
     reach = distance * math.cos(mesh.pressure_angle.si)
     if abs(reach - radius) <= TOLERANCE * distance:
         return
-    message = f"{where} not fit the {what} {mm(distance)}, which times the cosine is {mm(reach)}"
+    message = (
+        f"{where} not fit the {what} {mm(distance)}, whose product with the cosine of the angle "
+        f"is {mm(reach)}"
+    )
     hint = ""
     if math.cos(STEEPEST.si) * distance <= radius < distance:
         hint = f"A pressure angle of {_deg(math.acos(radius / distance))} would fit."
         if what == "centre distance":
-            hint += " Left out, it follows."
+            hint += " When left out, it follows from the radii."
     yield draft.problem(("meshes", name, "pressure_angle"), message, hint=hint)
 
 
@@ -242,7 +246,7 @@ def check_formula_laws(draft: Draft) -> Iterator[Problem]:
             hint = 'Give the law in numbers, or geometry = "pair.toml".'
             yield draft.problem(("meshes", name, "law"), "is for cylindrical gears only", "", hint)
             continue
-        hint = f'It goes with meshes."{name}".law = "{mesh.law}".'
+        hint = f'It is required with meshes."{name}".law = "{mesh.law}".'
         for key, gear in ((mesh.driver, driver), (mesh.driven, driven)):
             for missing in ("module", "teeth", "face_width"):
                 if getattr(gear, missing) is None:
@@ -257,7 +261,7 @@ def check_backlash_of_teeth(draft: Draft) -> Iterator[Problem]:
         bare = [end for end, g in zip(mesh.ends, (driver, driven), strict=True) if g.tooth is None]
         if bare:
             what = f"the teeth of {' and '.join(bare)} are not given"
-            hint = "It goes with teeth and module of both gears, which are cylindrical."
+            hint = "It needs teeth and module of both gears, which must be cylindrical."
             yield draft.problem(("meshes", name, "backlash"), what, LENGTH.allowed, hint)
 
 

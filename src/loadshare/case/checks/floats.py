@@ -51,7 +51,7 @@ def check_ring_neighbours(draft: Draft) -> Iterator[Problem]:
             continue
         path = ("rings", name, "neighbours")
         if name in ring.neighbours or ring.neighbours[0] == ring.neighbours[1]:
-            yield draft.problem(path, "are not two other gears")
+            yield draft.problem(path, f"are not two different gears other than {name}")
             continue
         for number, neighbour in enumerate(ring.neighbours):
             own, other = draft.gears.get(name), draft.gears.get(neighbour)
@@ -63,7 +63,7 @@ def check_ring_neighbours(draft: Draft) -> Iterator[Problem]:
         together = next(_on_one_axis(draft, (name, *ring.neighbours)), None)
         if together is not None:
             message = f"{' and '.join(together)} are on one axis"
-            hint = "A drum rolls on two others, and each of the three has an axis of its own."
+            hint = "A drum rolls on two other gears; each of the three needs its own axis."
             yield draft.problem(path, message, hint=hint)
 
 
@@ -101,7 +101,7 @@ def check_idle_inputs(draft: Draft) -> Iterator[Problem]:
     for name, mesh in draft.meshes.items():
         helical = mesh.helix_angle is not None and mesh.helix_angle.si
         if helical and not mesh.given("backlash", "normal_backlash"):
-            message = "turns a normal backlash into the transverse plane, but"
+            message = "only converts a normal backlash into a transverse one, but"
             path = ("meshes", name, "helix_angle")
             cause = f'meshes."{name}".normal_backlash is missing'
             hint = "Give it, or drop the angle."

@@ -49,10 +49,8 @@ def check_output_reached(draft: Draft) -> Iterator[Problem]:
     reached = reach([draft.operating.input], _steps(draft))
     if draft.operating.output not in reached:
         source = draft.operating.input
-        message = (
-            f'no path leads here from gear "{source}" over meshes, driver to driven, and shafts'
-        )
-        hint = f"The torque gets to {choices(name for name in draft.gears if name in reached)}."
+        message = f'no path of meshes (driver to driven) and shafts leads here from gear "{source}"'
+        hint = f"The torque reaches {choices(name for name in draft.gears if name in reached)}."
         yield draft.problem(("operating", "output"), message, hint=hint)
 
 
@@ -72,8 +70,8 @@ def check_loaded_meshes(draft: Draft) -> Iterator[Problem]:
         if first not in ahead or last not in behind or name in back:
             message = "carries no torque: it is on no path from the input to the output"
             hint = (
-                "Is it named driver-driven? If it only idles, give the gear at its end a torque of "
-                '"0 N*m" in operating.external.'
+                "Is the mesh named driver-driven? If it only idles, give the gear at its end a "
+                'torque of "0 N*m" in operating.external.'
             )
             yield draft.problem(("meshes", name), message, hint=hint)
 
@@ -130,9 +128,9 @@ def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:
         return
     for name in draft.meshes:
         if name not in given:
-            why = "other meshes have one" if given else "it presses the usual flanks elsewhere"
+            why = "other meshes have one" if given else "presses the usual flanks elsewhere"
             message = f"is missing: the torque runs against the meshes' names, and {why}"
-            hint = "How much play the mesh has decides when its other flank carries."
+            hint = "The backlash determines when the other flank of the mesh carries load."
             yield draft.problem(("meshes", name, "backlash"), message, LENGTH.allowed, hint)
 
 

@@ -56,8 +56,11 @@ def check_law_origins(draft: Draft) -> Iterator[Problem]:
             teeth_digest(mesh, draft.gears, centres),
             teeth_digest(mesh, draft.gears, centres, written=True),
         ):
-            message = "its numbers were computed from other teeth than those of its gears"
-            hint = 'law = "iso" or "ltca" computes them from these; without law.teeth they stay.'
+            message = "its numbers were computed from teeth other than those of its gears"
+            hint = (
+                'law = "iso" or "ltca" computes them from the gears\' teeth; '
+                "remove law.teeth to keep the numbers as they are."
+            )
             yield draft.problem(("meshes", name, "law"), message, hint=hint)
 
 

@@ -55,16 +55,16 @@ def _what_is_missing(
     )
     if not there:
         with_whom = f"with {about} or " if about is not None else ""
-        origin = "" if about is not None else ": the origin, unless about names a gear"
+        origin = "" if about is not None else " (the origin, unless about names a gear)"
         return (
-            f"It follows where the gear meshes {with_whom}with a gear on the axis of its pole"
+            f"It follows only if the gear meshes {with_whom}with a gear on the axis of its pole"
             f"{origin}."
         )
     bare = [n for n in (name, *there) if draft.gears[n].tooth is None]
     if bare:
         return f"It follows from the teeth: give teeth and module of {' and '.join(bare)}."
     if not all(along_z(draft.gears[n]) for n in (name, *there)):
-        return "It follows from the teeth where axes are along z."
+        return "It follows from the teeth only if the axes are along z."
     return f"The teeth of {name} and {there[0]} cannot mesh without backlash at any distance."
 
 
@@ -87,8 +87,8 @@ def check_tips(draft: Draft) -> Iterator[Problem]:
                 fits = _passing(pinion, ring, distance)
                 outer = ends[teeth.index(ring)]
                 what = (
-                    f"the tips of {' and '.join(ends)} meet beside the line of action, with "
-                    f"{ring.teeth - pinion.teeth} teeth difference"
+                    f"the tips of {' and '.join(ends)} interfere beside the line of action, with "
+                    f"a tooth difference of {ring.teeth - pinion.teeth}"
                 )
                 allowed = f"a tip radius of gear {outer} of at least {mm(fits)}"
                 hint = f"It is {mm(ring.tip)}; {_lowered(draft, outer, ring, fits)}"
@@ -107,7 +107,7 @@ def _room(gear: Tooth, other: Tooth, distance: float) -> float:
 def _too_high(draft: Draft, mesh: str, one: str, two: str, other: Tooth, room: float) -> Problem:
     """Say how far the tip of a gear is too high for another, and what would fit."""
     side = "at least" if other.internal else "at most"
-    what = f"the tip of gear {two}, at a radius of {mm(other.tip)}, finds no room in gear {one}"
+    what = f"the tip of gear {two}, at a radius of {mm(other.tip)}, has no room in gear {one}"
     hint = _lowered(draft, two, other, room)
     return draft.problem(("meshes", mesh), what, f"a tip radius of {side} {mm(room)}", hint)
 
@@ -145,7 +145,7 @@ def check_shafts(draft: Draft) -> Iterator[Problem]:
             continue
         apart = centre_distance(one, minus(*(centres[end] for end in reversed(shaft.ends))))
         if radii and apart > APART * min(radii):
-            hint = "A shaft joins gears on one axis."
+            hint = "A shaft joins gears on the same axis."
             yield draft.problem(("shafts", name), f"is between axes {mm(apart)} apart", hint=hint)
 
 
@@ -206,16 +206,16 @@ def _clash(draft: Draft, one: str, two: str, centres: Mapping[str, Vector]) -> _
 def _in_the_way(draft: Draft, middle: str, clash: _Clash, centres: Mapping[str, Vector]) -> Problem:
     """Say how two gears overlap, and how many would fit."""
     path = ("gears", clash.two, "centre")
-    aside = "give them places along the axis if they are side by side there"
+    aside = "give them different places along the axis if they are side by side"
     tips = [t.tip for n in (clash.one, clash.two) if (t := draft.gears[n].tooth) is not None]
     if not clash.apart:
-        what = f"is where gear {clash.one} is, and both mesh with {middle}"
+        what = f"is the same as that of gear {clash.one}, and both mesh with {middle}"
         hint = f"Join them by a shaft if they are one body, or {aside}."
         if not math.isclose(*tips, rel_tol=ANGLE_TOLERANCE):
             outer = clash.one if tips[0] > tips[1] else clash.two
-            hint += f' If gear {outer} is a ring about the other, it is of type = "internal".'
+            hint += f' If gear {outer} is a ring around the other, it needs type = "internal".'
         return draft.problem(path, what, hint=hint)
-    what = f"is in the way of gear {clash.one}: their tip circles overlap by {mm(clash.over)}"
+    what = f"is too close to gear {clash.one}: their tip circles overlap by {mm(clash.over)}"
     radii = [
         centre_distance(draft.gears[n], minus(centres[middle], centres[n]))
         for n in (clash.one, clash.two)

@@ -19,7 +19,7 @@ def check_masses(draft: Draft) -> Iterator[Problem]:
         if mass_of(gear) is None:
             hint = "Gravity needs it."
             if not gear.is_carrier:
-                hint += " It also follows from module, teeth and face_width, of a ring and its rim."
+                hint += " It also follows from module, teeth, face_width and, if internal, rim."
             yield draft.problem(("gears", name, "mass"), "is missing", MASS.allowed, hint)
 
 

@@ -28,7 +28,7 @@ def check_list_lengths(draft: Draft) -> Iterator[Problem]:
         fields += [(("meshes", name, *key), value, *cycle) for key, value in mesh.per_position()]
     for path, value, key, needed in fields:
         if isinstance(value, tuple) and len(value) not in (1, needed):
-            message = f"has {count(len(value))}, {key} is {needed}"
+            message = f"has {count(len(value))}, but {key} is {needed}"
             allowed = "1 value" if needed == 1 else f"1 value or {needed}"
             yield draft.problem(path, message, allowed)
 
@@ -42,9 +42,9 @@ def check_teeth_fit(draft: Draft) -> Iterator[Problem]:
         number = draft.gears[found.gear].teeth
         message = (
             f"{number} teeth do not fit the {draft.gears[found.other].teeth} of gear "
-            f"{found.other}: by the base radii there would be {found.expected:.5g}"
+            f"{found.other}: the base radii would give {found.expected:.5g}"
         )
-        hint = "The speed ratio of a mesh is that of its base radii, and of its teeth."
+        hint = "Base radii and tooth numbers must give the same speed ratio."
         hint += _acting_radius(draft, found)
         yield draft.problem(("gears", found.gear, "teeth"), message, hint=hint)
 
@@ -59,7 +59,7 @@ def _acting_radius(draft: Draft, found: Misfit) -> str:
             if gear.base_radius is not None:
                 return f" {would_do} would do."
             middle = "(inner_radius + outer_radius)/2"
-            return f" The force on gear {name} acts at {middle}; {would_do} in its place would do."
+            return f" The force on gear {name} acts at {middle}; {would_do} instead would do."
     return ""
 
 
@@ -102,7 +102,9 @@ def check_march_teeth(draft: Draft) -> Iterator[Problem]:
                 "its law changes from position to position, but nothing determines which position "
                 f"the march has reached: gears.{mesh.driver}.teeth is missing"
             )
-            hint = f"The teeth of {mesh.driven} or of another gear that they mesh with would do."
+            hint = (
+                f"The teeth of {mesh.driven}, or of another gear in mesh with them, would also do."
+            )
             yield draft.problem(("meshes", name), message, hint=hint)
 
 

@@ -43,7 +43,7 @@ def _unequal(draft: Draft, path: Path, gears: list[str]) -> str:
     if len(set(counts.values()) - {0}) < 2:
         return ""
     (one, first), (other, second) = counts.items()
-    return f"{one} has {first} copies, {other} {second}: they are copied in pairs."
+    return f"{one} has {first} copies, {other} has {second}, but copies are joined in pairs."
 
 
 def carriers_in(draft: Draft) -> list[str]:
@@ -84,7 +84,7 @@ def check_about_circles(draft: Draft) -> Iterator[Problem]:
         if pole == name and name not in reported:
             reported.update(chain)
             circle = " → ".join((*chain, name))
-            yield draft.problem(("gears", name, "centre", "about"), f"closes a circle: {circle}")
+            yield draft.problem(("gears", name, "centre", "about"), f"is circular: {circle}")
 
 
 def check_pairs(draft: Draft) -> Iterator[Problem]:
@@ -191,7 +191,7 @@ def _in_series(draft: Draft, path: Path, meshes: Iterable[str]) -> Iterator[Prob
     second = {pair[1]: name for name, pair in ends.items()}
     for gear in sorted(g for g in first.keys() & second.keys() if first[g] != second[g]):
         message = f"has gear {gear} first in {first[gear]} and second in {second[gear]}"
-        hint = "A stage has one mesh of every branch, each with the gear first that is alike."
+        hint = "A stage has one mesh of every branch, each named with the corresponding gear first."
         yield draft.problem((*path, "meshes"), message, hint=hint)
         return
 
@@ -224,7 +224,9 @@ def check_measured_positions(draft: Draft) -> Iterator[Problem]:
     for name, measurement in draft.measured.items():
         if measurement.position is not None and measurement.position > count:
             path = ("measured", name, "position")
-            yield draft.problem(path, f"the case has {count}", f"1 to {count}, or left out")
+            yield draft.problem(
+                path, f"the case has positions 1 to {count}", f"1 to {count}, or left out"
+            )
 
 
 def check_assumed_patterns(draft: Draft) -> Iterator[Problem]:
