@@ -100,7 +100,9 @@ def test_planets_of_a_gear_are_named_alike_where_there_is_backlash(backlash):
         **dict.fromkeys(("stages", "assumed", "errors")),
     }
     if backlash == "100 um":
-        with pytest.raises(CaseError, match='"planet2-sun": names its planet first, but sun-planet1'):
+        with pytest.raises(
+            CaseError, match='"planet2-sun": names its planet first, but sun-planet1'
+        ):
             case.replace(changes)
         return
     torque = ls.solve(case.replace(changes)).positions[0].torque

@@ -14,7 +14,8 @@ GEAR = "[gears.4]\n"
 IN_A_CASE = {
     # Units as they are written elsewhere.
     MESH + 'stiffness = "8e4 Nm/rad"': "Did you mean N*m/rad?",
-    MESH + 'stiffness = "8e4 Nm"': "Nm would be N*m, a torque, but a torsional stiffness is needed.",
+    MESH
+    + 'stiffness = "8e4 Nm"': "Nm would be N*m, a torque, but a torsional stiffness is needed.",
     MESH + 'stiffness = "8e4 N/mm"': "is a stiffness, but a torsional stiffness is needed.",
     MESH + "pressure_angle = 20": '20 has no unit. Allowed: an angle such as "20 deg".',
     '[operating]\ntorque = "3 kNm"': "Did you mean kN*m?",

@@ -128,7 +128,8 @@ def test_cells_are_what_their_keys_take(box) -> None:
     [
         (
             {"gears": GEARS.replace("40,2", "40,2 kg")},
-            'gears.csv: row 3, column C: gears.b.module = "2 kg": is a mass, but a length is needed',
+            'gears.csv: row 3, column C: gears.b.module = "2 kg": is a mass, but a length is '
+            "needed",
         ),
         ({"gears": GEARS.replace("20,2", "two,2")}, "gears.csv: row 2, column B: gears.a.teeth"),
         (

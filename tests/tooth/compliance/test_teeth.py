@@ -241,7 +241,7 @@ def test_slices_follow_the_load_of_a_wide_helical_face():
 
 
 def test_faces_that_slices_cannot_follow_are_refused():
-    with pytest.raises(Refused, match=r"21.8 axial pitches .*; allowed: up to 21; take a part"):
+    with pytest.raises(Refused, match=r"21.8 axial pitches .*; allowed: up to 21; analyse part of"):
         Slices(wide(0.6).driver, 1)
     # Straight teeth of any width are allowed, because their load is even.
     Slices(replace(BODY, face_width=5.0), 1)

@@ -60,7 +60,7 @@ def test_tips_that_find_no_room_for_want_of_distance(distance, told):
     with pytest.raises(CaseError) as caught:
         helicoid_pair(gear(addendum=1.3), gear(53), distance)
     hints = {problem.hint for problem in caught.value.problems}
-    assert hints == {"Without backlash the centre distance would be 77 mm." if told else ""}
+    assert hints == {"Without backlash, the centre distance would be 77 mm." if told else ""}
 
 
 @pytest.mark.parametrize(
@@ -138,7 +138,7 @@ def test_tips_of_internal_pairs_meet_when_the_tooth_counts_are_close():
             mesh = helicoid_pair(pinion, ring)
         except CaseError as error:
             message = str(error)
-            if "meet beside the line of action" not in message:
+            if "interfere beside the line of action" not in message:
                 continue
             base = ring.base_radius - pinion.base_radius
             mesh = HelicoidPair(pinion, ring, base / math.cos(pinion.transverse_angle))

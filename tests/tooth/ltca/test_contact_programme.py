@@ -145,7 +145,7 @@ def test_a_refused_contact_of_several_is_named(monkeypatch):
     with pytest.raises(ValueError, match="load = 0"):
         solve_contacts(ContactBatch(problems), np.array([900.0, 0.0]))
     monkeypatch.setattr(contact_programme, "TEETH", TEETH._replace(passes=1))
-    with pytest.raises(Refused, match=r"^phase 1: the contact under 900 N did not settle"):
+    with pytest.raises(Refused, match=r"^phase 1: the contact under 900 N did not converge"):
         solve_contacts(ContactBatch(problems), np.array([900.0, 800.0]))
 
 

@@ -136,7 +136,7 @@ def test_a_secant_is_that_of_the_fitted_loads_only():
     """Below them Δφ − a is meaningless: for pair p12 it gave −6.8 to 2.9 K at 0.01 T."""
     found = ltca(CROWNED, TORQUE, 2, (0.01, 0.1, 1.0), "slices", points=20)
     assert np.all(found.secant(0.1) < found.secant(1.0))
-    with pytest.raises(ValueError, match=r"0\.01 of the rated torque lies below the loads"):
+    with pytest.raises(ValueError, match=r"0\.01 of the rated torque is below the loads"):
         found.secant(0.01)
     assert np.all(found.tangent(0.01) > 0.0)
     assert np.all(found.increment(0.01, 0.1) > 0.0)

@@ -128,7 +128,7 @@ def test_a_pair_file_takes_them(tmp_path):
     for k, own in enumerate(zip(*law.carried.values(), strict=True)):
         assert sum(own) == pytest.approx(1.0, abs=1e-3), k
     assert load_law(written(tmp_path, law_text(law), "law.toml")) == law
-    assert "In contact under T are the teeth" in law.findings[-1]
+    assert "The teeth in contact under T are" in law.findings[-1]
     plain = load_pair(written(tmp_path, SPUR.replace("positions = 2", "positions = 4")))
     assert given.hash != plain.hash
     # The tooth behind its place softens the mesh where two pairs would carry.
@@ -160,7 +160,7 @@ def test_a_face_gear_takes_them(tmp_path):
     ("entry", "message"),
     [
         ('single = ["1 um"]', "driver.pitch.single = .*has 1 value. Allowed: 25, one per tooth"),
-        ("first_tooth = 2", "takes one list. Allowed: single or cumulative"),
+        ("first_tooth = 2", "needs exactly one list. Allowed: single or cumulative"),
         (f"cumulative = {['0 um'] * 26}", "has 26 values. Allowed: 25 at most, one per tooth"),
         (f"single = {['1 um'] * 25}", "adds up to 25 µm around the gear. Allowed: 0"),
         ('cumulative = ["1 um"]\nfirst_tooth = 26', "is no tooth. Allowed: 1 to 25"),

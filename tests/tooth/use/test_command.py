@@ -74,7 +74,7 @@ def test_options_change_the_pair(command, spur, tmp_path):
 def test_wrong_use_is_reported(command, spur, tmp_path):
     wrong = command("ltca", spur, "--torque", "5 kg")
     assert wrong.exit_code == 2
-    assert "is a mass, a torque is needed" in wrong.stderr
+    assert "is a mass, but a torque is needed" in wrong.stderr
     file = written(tmp_path, SPUR.replace("teeth = 25", "teth = 25"))
     bad = command("ltca", file)
     assert bad.exit_code == 2

@@ -40,7 +40,7 @@ def test_a_law_file_holds_the_law_bit_for_bit(spur, tmp_path):
     [
         (('kind = "law"', 'kind = "laws"'), "kind", "is no law file"),
         (("rad/(N*m)^(2/3)", "rad/(N*m)"), "c[0]", "is "),
-        (("positions = 2", "positions = 3"), "a", "has 2 values, computed.positions is 3"),
+        (("positions = 2", "positions = 3"), "a", "has 2 values, but computed.positions is 3"),
         (("misfit", "missfit"), "missfit", "unknown key"),
         (('type = "external"', 'type = "round"'), "computed.gears.driver.type", "is "),
     ],

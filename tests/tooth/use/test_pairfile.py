@@ -91,7 +91,7 @@ def test_all_problems_are_reported_at_once(tmp_path):
         "analysis.compliance",
         "torque",
     }
-    assert problems["driver.module"].message == "is a mass, a length is needed"
+    assert problems["driver.module"].message == "is a mass, but a length is needed"
     assert problems["driven.teth"].hint == "Did you mean teeth?"
     assert problems["analysis.compliance"].hint == "Did you mean slices?"
 
@@ -102,13 +102,17 @@ def test_all_problems_are_reported_at_once(tmp_path):
         (('kind = "helicoid"', ""), "kind", "is missing"),
         (('"helicoid"', '"helicoids"'), "kind", "is not a kind of pair"),
         (('module = "3 mm"', ""), "driver.module", "is missing"),
-        (('"slices"', '"slices"\nteeth = 3'), "analysis.teeth", "is of finite elements"),
+        (('"slices"', '"slices"\nteeth = 3'), "analysis.teeth", "applies to finite elements"),
         (
             ('compliance = "slices"', 'compliance = "finite elements"\nteeth = 4'),
             "analysis.teeth",
             "is even",
         ),
-        (('title = "', 'helix_gap = "6 mm"\ntitle = "'), "helix_gap", "is between the halves"),
+        (
+            ('title = "', 'helix_gap = "6 mm"\ntitle = "'),
+            "helix_gap",
+            "applies only to herringbone pairs",
+        ),
         (('title = "', 'assumed = ["driver.modul"]\ntitle = "'), "assumed[0]", "matches no key"),
     ],
 )
@@ -193,9 +197,9 @@ tip_radius = 0.2"""
 @pytest.mark.parametrize(
     ("addendum", "torque", "model", "positions", "what"),
     [
-        (1.20984, "100 N*m", "slices", 3, "did not settle"),
+        (1.20984, "100 N*m", "slices", 3, "did not converge"),
         (1.20484, "10 kN*m", "slices", 5, "yield less under more load"),
-        (1.214839, "100 N*m", "finite elements", 3, "did not settle"),
+        (1.214839, "100 N*m", "finite elements", 3, "did not converge"),
     ],
 )
 def test_thin_tips_are_named_where_contact_is_refused(

@@ -249,7 +249,7 @@ def test_a_law_file_that_lacks_its_gears_is_read_and_says_so(case, spur, tmp_pat
     assert (found.a, found.b, found.c) == tuple(
         getattr(by_pair.meshes["a-b"].law, key) for key in "abc"
     )
-    assert found.basis.startswith("LTCA, slices; its law file does not say of which gears")
+    assert found.basis.startswith("LTCA, slices; its law file does not name its gears")
 
 
 def test_a_law_that_fits_badly_is_reported_with_the_result(case, spur, tmp_path):
@@ -302,7 +302,7 @@ def test_a_law_of_other_positions_is_reported(case, spur, tmp_path):
     key = 'meshes."a-b".law_file'
     other = case.replace({'meshes."a-b".geometry': None, key: str(file), "operating.positions": 4})
     problem = problems_of(other)[key]
-    assert problem.message == "holds 2 positions, operating.positions is 4"
+    assert problem.message == "has 2 positions, but operating.positions is 4"
     assert "--positions 4" in problem.hint
 
 

@@ -145,7 +145,7 @@ def ltca(
     parts = sorted({float(p) for p in (*loads, *FIT_LOADS)})
     if not (torque > 0.0 and parts[0] > 0.0):
         raise ValueError(
-            f"torque {torque} N·m, parts {parts}: allowed: both above 0; turn the driver round to "
+            f"torque {torque} N·m, parts {parts}: allowed: both above 0; reverse the driver to "
             "load the other flanks"
         )
     if points is not None and points < 3:
@@ -279,8 +279,8 @@ def _refuse_falling(
         steps = np.diff([contact.approach for contact in row])
         if steps.min() <= 0.0 or min(contact.tangent for contact in row) <= 0.0:
             raise Refused(
-                f"{problem.name}: the teeth would yield less under more load, as the contact is "
-                "wider than a tooth is thick there; a thicker tip or less torque helps"
+                f"{problem.name}: the teeth would yield less under more load, because the contact "
+                "is wider than the tooth is thick there; use a thicker tip or less torque"
             )
 
 

@@ -195,8 +195,8 @@ class Ltca:
         k = self._load(part)
         if self.torque[k] < min(FIT_LOADS) * self.rated * (1.0 - LEAST_LOAD):
             raise ValueError(
-                f"{part} of the rated torque lies below the loads of the fit, from "
-                f"{min(FIT_LOADS)} on, and a holds for these only; allowed: {min(FIT_LOADS)} or "
+                f"{part} of the rated torque is below the loads of the fit, which begin at "
+                f"{min(FIT_LOADS)}, and a holds only for these; allowed: {min(FIT_LOADS)} or "
                 "more; tangent and increment hold for any load"
             )
         return np.asarray(self.torque[k] / (self.law_angle[:, k] - self.law.a))

@@ -217,9 +217,9 @@ def _width_degree(slenderness: float, axial_pitches: float) -> int:
     degree = int(np.clip(ceil(3.0 + 2.0 * slenderness), FEWEST, follows))
     if degree > MOST:
         raise Refused(
-            f"a face of {axial_pitches:.3g} axial pitches is wider than slices can follow; "
-            f"allowed: up to {MOST // PER_PITCH}; take a part of the face, with as much load per "
-            "width"
+            f"a face of {axial_pitches:.3g} axial pitches is wider than slices can model; "
+            f"allowed: up to {MOST // PER_PITCH}; analyse part of the face, with the same load "
+            "per width"
         )
     return degree
 

@@ -103,7 +103,9 @@ def solve_contacts(
     load = np.array(load, float)
     wrong = load[~((load > 0.0) & np.isfinite(load))]
     if len(wrong):
-        raise ValueError(f"load = {wrong[0]}: the flanks are pressed together; allowed: above 0 N")
+        raise ValueError(
+            f"load = {wrong[0]}: a load must press the flanks together; allowed: above 0 N"
+        )
     if warm is None:
         real = np.arange(batch.gap.shape[1]) < batch.count[:, None]
         force = np.where(real, (load / batch.count)[:, None], 0.0)
@@ -121,8 +123,8 @@ def solve_contacts(
             raise Refused(message, refusal.figures) from refusal
     for k in np.flatnonzero(~found.settled)[:1]:
         raise Refused(
-            f"{_called(batch.names[k])}the contact under {load[k]:.6g} N did not settle in "
-            f"{TEETH.passes} passes; more points a line, or a smoother gap, may help",
+            f"{_called(batch.names[k])}the contact under {load[k]:.6g} N did not converge in "
+            f"{TEETH.passes} passes; more points per line, or a smoother gap, may help",
         )
     return _certified(batch, load, found)
 

@@ -200,7 +200,7 @@ class StripLine:
     def __post_init__(self) -> None:
         if np.any(self.curvature <= 0.0):
             raise Refused(
-                "the flanks do not part on both sides of a contact line (relative curvature "
+                "the flanks do not separate on both sides of a contact line (relative curvature "
                 f"{float(np.min(self.curvature)):.4g} 1/m); make the modifications "
                 "(driver.modification, driven.modification) smaller, or longer"
             )

@@ -99,7 +99,7 @@ def overlap_problems(pair: HelicoidPair) -> Iterator[Problem]:
         yield _no_working_angle(*gears)
         return
     least, to = ("at least", up) if pair.kind > 0 else ("at most", down)
-    hint = "If the teeth are thinner, take off profile_shift and add as much to addendum."
+    hint = "If the teeth are thinner, reduce profile_shift and raise addendum by as much."
     yield problem("centre_distance", distance, overlap, f"{least} {millimetres(fits, to)}", hint)
 
 
@@ -209,7 +209,7 @@ def _too_near(pair: HelicoidPair) -> str:
     with suppress(ValueError):  # there may be no distance without backlash
         fits = distance_without_backlash(*gears)
         if pair.kind * (fits - pair.actual_distance) > TEETH.fits * fits:
-            return f"Without backlash the centre distance would be {millimetres(fits)}."
+            return f"Without backlash, the centre distance would be {millimetres(fits)}."
     return ""
 
 
@@ -220,7 +220,7 @@ def _fouling(pair: HelicoidPair) -> Iterator[Problem]:
         yield problem(
             f"{key}.addendum",
             ring.addendum,
-            "the tips of the internal gear and of its pinion meet beside the line of action, "
-            f"with {ring.teeth - pinion.teeth} teeth difference",
-            "a smaller addendum of either gear, or more teeth difference",
+            "the tips of the internal gear and its pinion interfere beside the line of action, "
+            f"with a tooth difference of {ring.teeth - pinion.teeth}",
+            "a smaller addendum of either gear, or a larger tooth difference",
         )

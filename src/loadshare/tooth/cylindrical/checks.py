@@ -19,8 +19,8 @@ def gear_problems(gear: HelicoidGear, key: str) -> list[Problem]:
 
 def value_problems(gear: HelicoidGear, key: str) -> list[Problem]:
     """Return the values that no gear can have, each checked alone."""
-    found = failed(key, "this value makes no gear", _values(gear))
-    return found + failed(key, "not an amount of material taken off", _amounts(gear))
+    found = failed(key, "no gear can have this value", _values(gear))
+    return found + failed(key, "is not a possible amount of material to take off", _amounts(gear))
 
 
 def _values(gear: HelicoidGear) -> Iterator[Check]:
@@ -42,7 +42,7 @@ def _values(gear: HelicoidGear) -> Iterator[Check]:
     exponents = "1 (linear) or 2 (parabolic)"
     yield "modification.tip_relief_exponent", m.tip_relief_exponent, known, exponents
     fits = not m.tip_relief or m.tip_relief_length > 0.0
-    relieved = "more than 0 where there is tip relief"
+    relieved = "more than 0 if there is tip relief"
     yield "modification.tip_relief_length", m.tip_relief_length, fits, relieved
     fits = not m.end_relief or 0.0 < m.end_relief_length <= half_width
     short = f"more than 0 and at most half the face width, {millimetres(half_width)}"
@@ -79,7 +79,7 @@ def _tooth_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
 
 def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     slope, addendum = math.tan(gear.pressure_angle), f"{key}.addendum"
-    pointed = "the teeth are pointed below this tip"
+    pointed = "the teeth become pointed below this tip"
     if rack_tip_half_width(gear) < 0.0:
         room = math.pi / 4 - gear.dedendum * slope
         largest = room / (1.0 / math.cos(gear.pressure_angle) - slope)
@@ -98,7 +98,7 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
         inside = "the tip lies inside the base circle"
         yield problem(addendum, gear.addendum, inside, allowed)
     elif gear.base_half_angle <= 0.0:
-        yield problem(addendum, gear.addendum, pointed, "none with so small a profile shift")
+        yield problem(addendum, gear.addendum, pointed, "none with such a small profile shift")
     elif gear.half_angle(gear.tip) <= 0.0:
         allowed = (
             f"less than {digits(down(gear.addendum_to(gear.pointed)))} with this profile shift"
@@ -114,7 +114,7 @@ def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
         inside = "the tips reach inside the base circle, where there is no involute"
         yield problem(addendum, gear.addendum, inside, f"at most {largest}")
     elif gear.half_angle(gear.tip) <= 0.0:
-        pointed = "the teeth are pointed below this tip"
+        pointed = "the teeth become pointed below this tip"
         allowed = "a smaller addendum or a larger profile shift"
         yield problem(addendum, gear.addendum, pointed, allowed)
     deep = (
@@ -124,6 +124,6 @@ def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     # The space narrows with depth.
     wide = deep and fillet_angle(gear) <= math.pi / gear.teeth
     if not (deep and wide):
-        what = "the tooth space has no room for this root radius"
+        what = "the tooth space has no room for a root radius of this size"
         allowed = f"a smaller tip radius, or a {'smaller' if deep else 'larger'} dedendum"
         yield problem(f"{key}.tip_radius", gear.tip_radius, what, allowed)

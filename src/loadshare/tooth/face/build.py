@@ -58,7 +58,7 @@ def face_gear_pair(
     CaseError
         If the gears or their mesh have problems; it lists all of them.
     """
-    none = "this value makes no face gear"
+    none = "no face gear can have this value"
     refuse(value_problems(pinion, "driver") + failed("driven", none, _values(gear)))
     found = gear_problems(pinion, "driver") + _partner_problems(pinion, gear.shaper)
     refuse([*found, *_shaper_problems(gear)])
@@ -66,7 +66,7 @@ def face_gear_pair(
     try:
         refuse((*_limit_problems(gear), *_mesh_problems(pair)))
     except NoLimitError:
-        what = "is none with which the shaper cuts teeth"
+        what = "the shaper cuts no teeth with this addendum"
         refuse([problem("driven.addendum", gear.addendum, what, "a smaller one")])
     refuse(meeting_problems(pair))
     return pair
@@ -91,7 +91,7 @@ def _values(gear: FaceGear) -> Iterator[Check]:
 def _shaper_problems(gear: FaceGear) -> Iterator[Problem]:
     shaper = gear.shaper
     if shaper.tip <= shaper.base_radius or shaper.tip_half_angle < 0.0:
-        what = "the shaper's teeth are pointed below this tip, or lie inside its base circle"
+        what = "the shaper's teeth become pointed below this tip, or lie inside its base circle"
         allowed = "a smaller addendum or profile shift of the shaper"
         yield problem("driven.shaper.addendum", shaper.addendum, what, allowed)
     if gear.axial_scale <= 0.0:
@@ -166,7 +166,7 @@ def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:
     elif beside >= 0.5 * pinion.face_width:
         what = "the ideal pair's point of contact lies beyond the end of the pinion"
         allowed = f"more than {millimetres(2.0 * beside, up)}"
-        hint = "Or choose inner and outer end so that their middle is nearer the contact."
+        hint = "Or choose inner and outer so that their middle is nearer to the contact."
         yield problem("driver.face_width", pinion.face_width, what, allowed, hint)
     deepest = pair.shaper_roll(pinion.tip_roll)
     if deepest > shaper.tip_roll or pair.axis_distance + pinion.tip >= shaper.tip:

@@ -31,23 +31,23 @@ from loadshare.tooth.pair.model import Load, Number, Positions
 
 MISSED = 0.01
 """Part of the mean deflection that positions may miss without a finding."""
-UNKNOWN = "its law file does not say of which gears: written anew, they would be compared"
+UNKNOWN = "its law file does not name its gears, so they are not compared: write it anew"
 """Text that the basis adds if a law file lacks its gears."""
 _GEARS = {"driver": "driver", "driven": "driven gear"}
 Share = Annotated[float, Strict(), Field(ge=0, allow_inf_nan=False)]
 
 
 class Rim(Element):
-    """What another rim of a gear would do, by slices."""
+    """Effect of another rim thickness of a gear on the mesh, computed with slices."""
 
     thickness: tuple[Length, Length, Length]
-    """Of a thinner rim, of the gear's own, and of a thicker one, below the root [length]."""
+    """Thickness below the root of a thinner rim, the gear's own and a thicker one [length]."""
 
     stiffness: tuple[Number, Number, Number]
-    """Mean stiffness of the mesh at the rated torque, over that on the gear's own rim [-]."""
+    """Mean stiffness of the mesh at the rated torque, relative to that with the own rim [-]."""
 
     assumed: bool
-    """Whether the gear's own is assumed because the pair does not say."""
+    """Whether the gear's own rim is assumed because the pair file does not give it."""
 
     def text(self, gear: str, depth: str) -> str:
         """Return a line of text; `depth` is the gear's own, in words, in case it is assumed."""
@@ -84,7 +84,7 @@ class Stamp(Element):
     """Rated torque on the driver [torque]."""
 
     loads: tuple[Number, ...]
-    """Parts of it at which the contact was solved [-]."""
+    """Fractions of the torque at which the contact was solved [-]."""
 
     positions: Positions
     """Positions of the mesh cycle [-]."""
@@ -99,13 +99,13 @@ class Stamp(Element):
     """Whether the law holds at the positions, or is the mean over their parts of the cycle."""
 
     teeth: int | None = None
-    """Teeth in the finite-element model, where the pair file says [-]."""
+    """Teeth in the finite-element model, if the pair file gives them [-]."""
 
     layers: int | None = None
-    """Finite elements over the face width, where the pair file says [-]."""
+    """Finite elements over the face width, if the pair file gives them [-]."""
 
     gears: PairGears | None = None
-    """The gears, against which a case is compared; older files lack them."""
+    """The gears, with which those of a case are compared; older files lack them."""
 
 
 class MeshLaw(Element):
@@ -124,27 +124,27 @@ class MeshLaw(Element):
     """Hertz contact [angle/torque^(2/3)]."""
 
     misfit: tuple[Share, ...]
-    """Largest miss of the law at the loads that were solved, over the elastic angle there [-]."""
+    """Largest error of the law at the loads solved, relative to the elastic angle there [-]."""
 
     rim: dict[Literal["driver", "driven"], Rim] = Field(default_factory=dict)
-    """What other rims of either gear would do."""
+    """Effect of other rim thicknesses of either gear."""
 
     sampled: Number | None = None
-    """Mean deflection at the positions over that of the whole cycle, by slices [-]."""
+    """Mean deflection at the positions, relative to that of the whole cycle, with slices [-]."""
 
     carried: dict[str, tuple[Share, ...]] = Field(default_factory=dict)
-    """With pitch deviations, part of T on every pair of teeth by position, named by their numbers,
+    """With pitch deviations, fraction of T on each pair of teeth by position, named by its numbers,
     "driver tooth-driven tooth" [-]."""
 
     computed: Stamp
-    """What it was computed from."""
+    """What the law was computed from."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield lists whose length is not the number of positions, and where the mesh is rigid."""
         for key in ("a", "b", "c", "misfit"):
             found = len(getattr(self, key))
             if found != self.computed.positions:
-                message = f"has {count(found)}, computed.positions is {self.computed.positions}"
+                message = f"has {count(found)}, but computed.positions is {self.computed.positions}"
                 yield Rule(message, (key,))
         for k, (b, c) in enumerate(zip(self.b, self.c, strict=False)):
             if b.si == c.si == 0.0:
@@ -160,17 +160,17 @@ class MeshLaw(Element):
             lines.append(
                 f"Sampled at {count(self.computed.positions, 'position')}, the mean deflection is "
                 f"{100.0 * missed:+.1f} % off that of the whole cycle; analysis.sampling = "
-                '"means" carries it right.'
+                '"means" gives it correctly.'
             )
         if self.sideways > SLICES:
             lines.append(
-                "Slices leave out that helical teeth on so narrow a face bend sideways: the mesh "
-                f"yields some {100.0 * self.sideways:.0f} % more. Finite elements follow it."
+                "Slices neglect the sideways bending of helical teeth on so narrow a face: the "
+                f"mesh yields about {100.0 * self.sideways:.0f} % more. Finite elements include it."
             )
         if self.yielding > CERTIFY.compressed:
             lines.append(
                 f"Under T the teeth yield by {100.0 * self.yielding:.0f} % of their height, too "
-                "much for linear elasticity to follow."
+                "much for linear elasticity to apply."
             )
         return (*lines, *self._most_loaded())
 
@@ -215,8 +215,8 @@ class MeshLaw(Element):
         most = max(shares)
         where = ", ".join(str(k + 1) for k, share in enumerate(shares) if share == most)
         yield (
-            f"In contact under T are the teeth {', '.join(self.carried)} (driver's and driven "
-            f"gear's); most is on {teeth}, {100.0 * most:.0f} % at position {where}."
+            f"The teeth in contact under T are {', '.join(self.carried)} (driver's and driven "
+            f"gear's); {teeth} carries most, {100.0 * most:.0f} % at position {where}."
         )
 
     def as_law(self, assumed: Sequence[str] = ()) -> dict[str, Any]:
@@ -231,7 +231,7 @@ class MeshLaw(Element):
         means = ", means over the cycle" if made.sampling == "means" else ""
         taken = f"; assumed: {', '.join(assumed)}" if assumed else ""
         unknown = "" if made.gears else f"; {UNKNOWN}"
-        more = f"; yields some {100.0 * self.sideways:.0f} % more, bending sideways"
+        more = f"; yields about {100.0 * self.sideways:.0f} % more by sideways bending"
         left = more if self.sideways > SLICES else ""
         return {key: [value.text for value in getattr(self, key)] for key in "abc"} | {
             "sampling": made.sampling,

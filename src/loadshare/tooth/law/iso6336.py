@@ -193,7 +193,9 @@ def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool 
     width = min(width, other)
     ratio = contact_ratio(one, two, distance)
     if ratio < 1.0:
-        raise ValueError(f"ε_α = {ratio:.4g}: a pair must take over before the one before it ends")
+        raise ValueError(
+            f"ε_α = {ratio:.4g}: each pair of teeth must meet before the previous one parts"
+        )
     found = formula_stiffness(
         (one.teeth, math.inf if two.internal else two.teeth),
         profile_shift=(one.profile_shift, two.profile_shift),

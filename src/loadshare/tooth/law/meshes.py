@@ -208,7 +208,7 @@ def _read(
                     problems |= dict.fromkeys(disagreements(case, name, gears, file.name))
                 if found != positions:
                     message = (
-                        f"holds {count(found, 'position')}, operating.positions is {positions}"
+                        f"has {count(found, 'position')}, but operating.positions is {positions}"
                     )
                     hint = f"Write it again: loadshare ltca PAIR.toml --positions {positions}."
                     problems[case.problem(key, message, "", hint)] = None

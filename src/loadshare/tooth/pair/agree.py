@@ -40,7 +40,7 @@ def disagreements(case: Case, name: str, gears: PairGears, source: str) -> Itera
     source_of = ("meshes", name, "law_file" if mesh.geometry is None else "geometry")
     if gears.shaft_angle is not None:
         message = f"{here} axes {degrees(gears.shaft_angle.si)} apart"
-        hint = "The axes of a face gear and its pinion are at right angles in a case."
+        hint = "In a case, the axes of a face gear and its pinion must be at right angles."
         yield case.problem(source_of, message, "a pair of axes at 90 deg", hint)
     cut = facing(mesh, case.gears, case.centres())
     for end, facing_it, own in zip(mesh.ends, cut, (gears.driver, gears.driven), strict=True):

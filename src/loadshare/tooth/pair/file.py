@@ -184,7 +184,7 @@ class PairFile:
         if part >= CERTIFY.meaningless:
             raise Refused(
                 f"under {self.torque:.4g} N·m the teeth yield by {part:.3g} times their height, "
-                "of which linear elasticity says nothing; check torque, width, rim and elasticity"
+                "to which linear elasticity does not apply; check torque, width, rim and elasticity"
             )
 
 

@@ -21,8 +21,8 @@ ROUND_OFF = 1e-9
 
 REMEDY = {
     "face": "Crown the flank along the lead, relieve its ends, or make the misalignment smaller.",
-    "inner end": "Take fewer pinion teeth, or make the misalignment smaller.",
-    "outer end": "Take fewer pinion teeth, or make the misalignment smaller.",
+    "inner end": "Use fewer pinion teeth, or make the misalignment smaller.",
+    "outer end": "Use fewer pinion teeth, or make the misalignment smaller.",
     "tip": "Relieve the tip.",
     "root": "Relieve the partner's tip.",
 }

@@ -24,7 +24,7 @@ class PairGear(Element):
     """Number of teeth [-]."""
 
     base_radius: Size
-    """Base radius; of a face gear the acting radius [length]."""
+    """Base radius; for a face gear, the acting radius [length]."""
 
     module: Size | None = None
     """Normal module [length]."""
@@ -33,8 +33,8 @@ class PairGear(Element):
     """Normal pressure angle [angle]."""
 
     helix_angle: Angle | None = None
-    """Helix angle, positive for a right-hand helix [angle]; of a herringbone gear that of
-    either half, whose hand says nothing."""
+    """Helix angle, positive for a right-hand helix [angle]; for a herringbone gear, that of either
+    half, with either sign."""
 
     profile_shift: Number | None = None
     """Profile shift coefficient [-]."""
@@ -49,7 +49,7 @@ class PairGear(Element):
     """Tip radius of the generating rack, in modules [-]."""
 
     face_width: Size | None = None
-    """Face width, of a herringbone gear that of both halves [length]."""
+    """Face width; for a herringbone gear, that of both halves [length]."""
 
 
 class PairGears(Element):
@@ -62,7 +62,7 @@ class PairGears(Element):
     """Base helix angle, without its sign [angle]."""
 
     shaft_angle: Steep | None = None
-    """Angle between the axes of a face-gear pair where it is no right angle [angle]."""
+    """Angle between the axes of a face-gear pair, if not a right angle [angle]."""
 
     helices: Literal[1, 2] = 1
     """2 for a herringbone pair [-]."""

@@ -61,10 +61,10 @@ class Pitch(Element):
     """Pitch deviations of a gear's loaded flanks, by tooth in the order in which they mesh."""
 
     single: Deviations | None = None
-    """Of the pitch from each tooth to the next, the last one's to the first [length]."""
+    """Deviation of the pitch from each tooth to the next, of the last to the first [length]."""
 
     cumulative: Deviations | None = None
-    """How far each tooth stands ahead in the sense of rotation [length]; 0 for teeth left out."""
+    """How far each tooth is ahead in the sense of rotation [length]; 0 for teeth left out."""
 
     first_tooth: Annotated[int, Strict(), Field(ge=1)] = 1
     """Tooth that meets at the pitch point at the first position, from 1 [-]."""
@@ -72,7 +72,7 @@ class Pitch(Element):
     def rules(self) -> Iterator[Rule]:
         """Yield a rule if both lists are given, or neither."""
         if (self.single is None) == (self.cumulative is None):
-            yield Rule("takes one list", allowed="single or cumulative")
+            yield Rule("needs exactly one list", allowed="single or cumulative")
 
     @property
     def ahead(self) -> tuple[float, ...]:
@@ -84,13 +84,13 @@ class Pitch(Element):
 
 
 class Body(Element):
-    """What any gear has."""
+    """The keys common to gears of every kind."""
 
     teeth: Teeth
     """Number of teeth [-]."""
 
     rim: Size | None = None
-    """Where the gear's body ends: radius, of a face gear thickness below the root [length]."""
+    """Radius at which the gear's body ends; for a face gear, thickness below the root [length]."""
 
     youngs_modulus: Modulus = Quantity(STEEL, 2.06e11)
     """Modulus of elasticity [pressure]."""
@@ -123,7 +123,7 @@ class Cylindrical(Body):
     """A cylindrical gear, or one half of a herringbone gear."""
 
     face_width: Size
-    """Face width, of one half for a herringbone gear [length]."""
+    """Face width; for a herringbone gear, that of one half [length]."""
 
     module: Size | None = None
     """Normal module [length]; the driven gear takes it from the driver."""
@@ -132,7 +132,8 @@ class Cylindrical(Body):
     """Normal pressure angle [angle]; the driven gear takes it from the driver."""
 
     helix_angle: Angle | None = None
-    """Helix angle, positive for a right-hand helix [angle]; none, or what fits the driver."""
+    """Helix angle, positive for a right-hand helix [angle]; when left out, 0 for the driver and the
+    matching angle for the driven gear."""
 
     profile_shift: Number = 0.0
     """Profile shift coefficient [-]."""
@@ -147,7 +148,7 @@ class Cylindrical(Body):
     """Tip radius of the generating rack, in modules [-]."""
 
     internal: bool = False
-    """Whether the teeth point to the axis."""
+    """Whether the teeth point inwards."""
 
     modification: Modified = Modified()
     """Micro-geometry of its flanks."""
@@ -179,37 +180,37 @@ class Face(Body):
     """Height of the teeth above the shaper's pitch cylinder, in modules [-]."""
 
     shaft_angle: Steep = Quantity("90 deg", 1.5707963267948966)
-    """Angle between the pinion's axis, away from where the axes cross, and the gear's, the way its
-    teeth point [angle]."""
+    """Angle between the pinion's axis, pointing away from where the axes cross, and the gear's,
+    pointing the way its teeth do [angle]."""
 
     shaper: Cutter
     """The shaper that cuts it."""
 
 
 class Parallel(Element):
-    """How far the axes of a cylindrical pair are off."""
+    """Misalignment of the axes of a cylindrical pair."""
 
     centre_distance: Length = Quantity("0 mm", 0.0)
     """Change of the centre distance [length]."""
 
     inclination: Angle = Quantity("0 deg", 0.0)
-    """Turn of the driven axis within the plane of both axes [angle]."""
+    """Rotation of the driven axis within the plane of both axes [angle]."""
 
     deviation: Angle = Quantity("0 deg", 0.0)
-    """Turn of the driven axis out of that plane [angle]."""
+    """Rotation of the driven axis out of that plane [angle]."""
 
     axial_shift: Length = Quantity("0 mm", 0.0)
     """Shift of the driven gear along its axis [length]."""
 
 
 class Crossed(Element):
-    """How far a face-gear pair is off."""
+    """Misalignment of a face-gear pair."""
 
     shaft_angle: Angle = Quantity("0 deg", 0.0)
     """Change of the angle between the axes [angle]."""
 
     offset: Length = Quantity("0 mm", 0.0)
-    """Shift of the gear across both axes [length]."""
+    """Shift of the gear perpendicular to both axes [length]."""
 
     gear_shift: Length = Quantity("0 mm", 0.0)
     """Shift of the gear along its axis, positive towards the pinion [length]."""
@@ -228,8 +229,8 @@ class Analysis(Element):
     """Model of the teeth: finite elements, or slices, which are a hundred times faster."""
 
     sampling: Literal["points", "means"] = "points"
-    """points: the law of a position is that of its point of the cycle; means: the mean over its
-    part of the cycle, so that the mean over the cycle does not depend on how many there are."""
+    """points: the law of a position is that at its point of the cycle; means: the mean over its
+    part of the cycle, so that the mean over the cycle does not depend on their number."""
 
     points: Annotated[int, Strict(), Field(ge=3, le=ALLOWED.line_points)] = Field(
         default_factory=lambda values: POINTS[values.get("compliance", "finite elements")]
@@ -246,13 +247,15 @@ class Analysis(Element):
         """Yield options that do not fit the model."""
         for key in self.given("teeth", "layers") if self.compliance == "slices" else ():
             hint = 'Leave it out, or take compliance = "finite elements".'
-            yield Rule("is of finite elements, not of slices", (key,), hint=hint)
+            yield Rule("applies to finite elements, not to slices", (key,), hint=hint)
         if self.teeth is not None and self.teeth % 2 == 0:
-            yield Rule("is even: the loaded tooth is in the middle", ("teeth",), "1, 3, 5, …")
+            yield Rule(
+                "is even, but the loaded tooth must be in the middle", ("teeth",), "1, 3, 5, …"
+            )
 
 
 class PairContent(Element):
-    """What pair files of every kind say."""
+    """The keys common to pair files of every kind."""
 
     title: Text = ""
     """One line that says what the pair is."""
@@ -287,7 +290,7 @@ class PairContent(Element):
 
 
 class HelicoidContent(PairContent):
-    """Two cylindrical gears: spur, helical or herringbone, one of them internal or none."""
+    """Two cylindrical gears: spur, helical or herringbone, at most one of them internal."""
 
     kind: Literal["helicoid"]
     """helicoid: two cylindrical gears."""
@@ -302,17 +305,17 @@ class HelicoidContent(PairContent):
     """Gap between the halves of a herringbone pair [length]."""
 
     centre_distance: Size | None = None
-    """Centre distance [length]; the one without backlash when left out."""
+    """Centre distance [length]; when left out, that without backlash."""
 
     misalignment: Parallel = Parallel()
-    """How far the axes are off."""
+    """Misalignment of the axes."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield a gap between halves that there are not."""
         yield from super().rules()
         if self.helices == 1 and self.helix_gap.si:
             hint = "Leave it out, or give helices = 2."
-            yield Rule("is between the halves of a herringbone pair", ("helix_gap",), hint=hint)
+            yield Rule("applies only to herringbone pairs", ("helix_gap",), hint=hint)
 
 
 class FaceGearContent(PairContent):
@@ -325,7 +328,7 @@ class FaceGearContent(PairContent):
     """The face gear."""
 
     misalignment: Crossed = Crossed()
-    """How far the pair is off."""
+    """Misalignment of the pair."""
 
 
 CONTENTS: dict[str, type[HelicoidContent] | type[FaceGearContent]] = {
