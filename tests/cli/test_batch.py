@@ -127,7 +127,7 @@ def test_a_case_that_is_none_any_more_names_the_result_that_it_had(command, star
     case.write_text("nonsense = 1\n", encoding="utf-8")
     result = command("batch", case, "-o", out, "--jobs", "1")
     assert result.exit_code == 1
-    assert "case.json: left by an earlier run, not of the case as it is now" in result.stdout
+    assert "case.json: left by an earlier run, does not belong to the present case" in result.stdout
     assert (out / "case.json").read_bytes() == before
 
 
@@ -221,9 +221,9 @@ def test_a_doctored_file_is_not_kept_and_the_summary_says_why(
     assert result.exit_code == 0
     (found,) = summary(tmp_path)["cases"]
     assert found["outcome"] == "certified"
-    assert found["message"].startswith("the file there was not kept: ")
+    assert found["message"].startswith("the existing file was not kept: ")
     assert message in found["message"]
-    assert "floating_sun_3: certified: the file there was not kept" in result.stdout
+    assert "floating_sun_3: certified: the existing file was not kept" in result.stdout
     assert file.read_text(encoding="utf-8") == good
 
 
@@ -378,7 +378,7 @@ def test_a_batch_ends_where_it_stands(cases, tmp_path, environment, sent, code, 
         guard.cancel()
     assert batch.returncode == code
     # The file of a case exists a moment before its process reports it.
-    assert re.search(r"Interrupted: [01] of 4 cases done\.\nThe same command goes on", stderr)
+    assert re.search(r"Interrupted: [01] of 4 cases done\.\nThe same command continues", stderr)
     assert "Traceback" not in stderr
     assert set(outcomes(out).items()) <= {("floating_sun_3", "certified")}
     assert len(summary(out)["not_done"]) + len(outcomes(out)) == 4

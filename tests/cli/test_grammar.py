@@ -122,7 +122,7 @@ steps = 1
     assert {row["rings.4.float [um]"] for row in rows} == {2.0, 4.0}
     refused = command("study", case, "march", "--over", "rings.4.float=2 um, 4 um")
     assert refused.exit_code == 2
-    assert "a march varies no input over values" in refused.stderr
+    assert "a march does not vary inputs over values" in refused.stderr
     refused = command("study", case, "floats", "-o", tmp_path / "found.toml")
     assert refused.exit_code == 2
     assert "a sweep can write .csv" in refused.stderr.replace("\n", " ")
@@ -148,22 +148,22 @@ def test_the_ending_or_a_word_tells_the_form(text, form, file):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("run", RING, "-o", "x.txt"), ".txt does not say what to write. This command writes"),
-        (("run", RING, "-o", "x"), "it has no ending that says what to write"),
-        (("sweep", RING, "--over", "a=1", "-o", "x.toml"), "no case comes of this command"),
-        (("compare", RING, "-o", "x.toml"), "no case comes of this command"),
+        (("run", RING, "-o", "x.txt"), "unknown ending .txt. Allowed: "),
+        (("run", RING, "-o", "x"), "it has no ending, which says what to write"),
+        (("sweep", RING, "--over", "a=1", "-o", "x.toml"), "this command cannot write a case."),
+        (("compare", RING, "-o", "x.toml"), "this command cannot write a case."),
         (("run", RING, "-o", "-", "-o", "csv:-"), "only one file can go to standard output"),
-        (("run", RING, "-o", "-", "--json"), "standard output takes one file only"),
+        (("run", RING, "-o", "-", "--json"), "only one file can go to standard output"),
         (
             ("run", RING, "-o", "x.csv", "-o", "json:x.csv"),
-            "is to be written twice, in different forms",
+            "would be written twice in different forms",
         ),
-        (("run", RING, "-o", "x.csv", "-o", "x.csv"), "is to be written twice; name it once"),
+        (("run", RING, "-o", "x.csv", "-o", "x.csv"), "would be written twice; name it once"),
         (("critical", RING), "is missing: KEY=FROM:TO"),
         (("critical", RING, "--over", "a=1"), "is not of the form KEY=FROM:TO"),
         (("critical", RING, "--over", "a=1:2:3"), "is not of the form KEY=FROM:TO"),
         (("critical", RING, "--over", "a=1:2", "--over", "b=1:2"), "takes one range"),
-        (("critical", RING, "a", "--over", "a=1:2"), "says it all"),
+        (("critical", RING, "a", "--over", "a=1:2"), "gives everything: leave out"),
         (("sweep", RING, "--over", "a=1, 2", "--over", "a=3, 4"), "a: is given twice"),
         (("fit", RING, "--over", "a=1:2", "--over", "a=1:3"), "a: is given twice"),
         (("tolerance", RING, "--over", "a=1:2", "--over", "a=1:3"), "a: is given twice"),
@@ -304,5 +304,6 @@ def test_who_stops_a_command_is_told_what_is_kept(command, monkeypatch, number, 
             signal.signal(one, handler)
     assert done.exit_code == code
     assert done.stderr == (
-        "Interrupted after 12 of 61 points. Nothing is kept. The same command starts again.\n"
+        "Interrupted after 12 of 61 points. Nothing is kept. "
+        "The same command starts from the beginning.\n"
     )

@@ -93,7 +93,7 @@ WRONG_FILES = {
     ("report", "result.html"): "is a page, not a case",
     ("run", "tables"): "is a folder of tables; `loadshare import` makes a case of them",
     ("check", "tables"): "is a folder of tables; `loadshare import` makes a case of them",
-    ("check", "answers"): "no case file there; loadshare check takes results by file",
+    ("check", "answers"): "no case file found; to check results, name their files",
     ("run", "unit.rexs"): "is a gear unit in REXS; `loadshare import` makes a case of it",
     ("run", "pair.toml"): "is a pair with a face gear; `loadshare ltca` analyses it",
     ("run", "law.toml"): "is the law of a mesh, which names it under its key law_file",
@@ -132,7 +132,7 @@ WORDS = {
     ("run", BASE, "--over", "a=1"): "It is an option of sweep, critical, tolerance, fit, study.",
     ("run", BASE, "--positions", "1"): "It is an option of ltca.",
     ("run", BASE, "--sett", "a=1"): "Did you mean --set?",
-    ("new", "x", "-o", "x.json"): "no JSON file comes of this command. This command writes .toml.",
+    ("new", "x", "-o", "x.json"): "this command cannot write a JSON file. Allowed: .toml.",
     ("new", "x", "--kind", "planetery"): "Did you mean planetary?",
     ("run", RING, "--set", "rings.4.float"): "is not of the form KEY=VALUE",
     ("run", RING, "--set", "rings.4.float=4 um", "--set", "rings.4.float = 5 um"): (
@@ -146,12 +146,14 @@ WORDS = {
     ("run", RING, "--set", "gears.4.base_radius=46"): 'Allowed: a length such as "46 mm".',
     ("sensitivity", RING, "rings.4.flot"): "Did you mean rings.4.float?",
     ("tolerance", RING): "or inputs (--over)",
-    ("run", ""): "Invalid value for 'CASE': an empty text names no file; is a variable",
-    ("check", RING, ""): "Invalid value for 'CASES': an empty text names no file",
-    ("batch", "", "-o", "out"): "Invalid value for 'CASES': an empty text names no file",
+    ("run", ""): "Invalid value for 'CASE': an empty text is not a file name; is a shell variable",
+    ("check", RING, ""): "Invalid value for 'CASES': an empty text is not a file name",
+    ("batch", "", "-o", "out"): "Invalid value for 'CASES': an empty text is not a file name",
     ("batch", RING, "-o", "-"): "into a folder; --json prints its summary",
-    ("batch", RING, "-o", ""): "Invalid value for '-o' / '--output': an empty text names no file",
-    ("import", ""): "Invalid value for 'UNIT': an empty text names no file",
+    ("batch", RING, "-o", ""): (
+        "Invalid value for '-o' / '--output': an empty text is not a file name"
+    ),
+    ("import", ""): "Invalid value for 'UNIT': an empty text is not a file name",
 }
 
 

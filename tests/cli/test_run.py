@@ -263,7 +263,7 @@ def test_certified_positions_are_kept_when_others_are_refused(command, half_held
     assert result.exit_code == 1
     assert "certified positions only: 1" in result.stdout
     assert "REFUSED  1 of 2 positions certified" in result.stdout
-    assert "no rung of the ladder" in result.stdout
+    assert "no method gave a certified answer" in result.stdout
     assert "REFUSED  position 2: " in result.stderr
     assert "t.csv: not written" in result.stderr
     assert not (tmp_path / "t.csv").exists()

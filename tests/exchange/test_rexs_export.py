@@ -167,7 +167,7 @@ def test_a_copy_is_not_named_as_another_form(written, tmp_path) -> None:
     for name in ("found.rexsz", "found.rexsj", "found.doc"):
         done = command("export", case, unit, "-o", tmp_path / name)
         assert done.exit_code == 2
-        assert "give it that ending, .rexs" in done.stderr
+        assert "give it the same ending, .rexs" in done.stderr
         assert not (tmp_path / name).exists()
     assert command("export", case, unit, "-o", tmp_path / "found.REXS").exit_code == 0
 

@@ -92,9 +92,7 @@ def test_report_writes_a_page(command):
 def test_a_report_is_html_and_nothing_else(command):
     result = command("report", STAR, "-o", "report.pdf")
     assert result.exit_code == 2
-    assert (
-        "report.pdf: no picture comes of this command. This command writes .html." in result.stderr
-    )
+    assert "report.pdf: this command cannot write a picture. Allowed: .html." in result.stderr
     assert not Path("report.pdf").exists()
 
 

@@ -179,7 +179,7 @@ def test_a_folder_without_samples_is_reported_before_anything_is_solved(tmp_path
     folder = tmp_path / "samlpes"
     done = CliRunner().invoke(app, ["report", str(file), "--study", f"pins={folder}"])
     assert done.exit_code == 2
-    assert "holds no samples of a tolerance study" in " ".join(done.stderr.split())
+    assert "contains no samples of a tolerance study" in " ".join(done.stderr.split())
     assert not folder.exists()
 
 

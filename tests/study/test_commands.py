@@ -117,7 +117,7 @@ def test_critical(command, tmp_path):
     assert float(row.split()[0]) == pytest.approx(8.35, abs=0.01)
     assert "float leaves boundary" in row
     assert row.split()[-1] == "1-5"
-    assert "Proved between certified solves: there are no others." in result.stdout
+    assert "Proved: there are no other events between the certified solves." in result.stdout
     with file.open() as lines:
         events = list(csv.DictReader(lines))
     assert {e["position"] for e in events} == set("12345")
@@ -230,7 +230,7 @@ def test_studies_are_listed(command, measured):
     [
         (("sweep", RING, "--over", "rings.4.float"), "is not of the form"),
         (("sweep", RING, "--over", "rings.4.flot=0 um:1 um:2"), "Did you mean float"),
-        (("sweep", RING, "--over", "a=0:1:2", "-o", "x.txt"), "does not say what to write"),
+        (("sweep", RING, "--over", "a=0:1:2", "-o", "x.txt"), "unknown ending .txt. Allowed: "),
         (("critical", RING, "--over", "rings.4.float=0 um:1 N"), "cannot be expressed"),
         (("critical", RING, "--over", "rings.4.float=0:1 um"), "0 has no unit"),
         (

@@ -147,11 +147,11 @@ def _no_case_text(path: Path) -> str:
     """Return the message for a folder or pattern without a case."""
     from loadshare.case.recognise import what_folder_is
 
-    wrong = "no case file there"
+    wrong = "no case file found"
     if path.is_dir() and any(path.glob("*.csv")):
         return f"{wrong}: it {what_folder_is(path)}"
     if path.is_dir() and any(path.glob("*.json")):
-        return f"{wrong}; loadshare check takes results by file: {path / '*.json'}"
+        return f"{wrong}; to check results, name their files: {path / '*.json'}"
     return wrong
 
 

@@ -25,7 +25,7 @@ def check(
     cases: CasePaths,
     teeth: Annotated[
         bool,
-        typer.Option("--teeth", help="Print what follows from teeth and dimensions of gears."),
+        typer.Option("--teeth", help="Print what follows from the teeth and dimensions of gears."),
     ] = False,
     change: Changes = None,
     json: Json = False,

@@ -86,7 +86,7 @@ class Command(TyperCommand):
         for param in ctx.command.params:
             texts, paths = given.get(param.name), _files(ctx.params.get(param.name))
             if any(isinstance(path, Path) for path in paths) and "" in _several(texts):
-                message = "an empty text names no file; is a variable of the shell not set?"
+                message = "an empty text is not a file name; is a shell variable not set?"
                 raise typer.BadParameter(message, ctx, param)
 
     def invoke(self, ctx: Any) -> Any:
@@ -212,7 +212,7 @@ def _add_json(ctx: Any) -> None:
     """
     others = ctx.params["file"] or []
     if any(output.file == STANDARD for output in others):
-        raise typer.BadParameter("standard output takes one file only", param_hint="--json")
+        raise typer.BadParameter("only one file can go to standard output", param_hint="--json")
     ctx.params["file"] = [*others, Output("json", STANDARD)]
 
 

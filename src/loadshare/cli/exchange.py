@@ -28,7 +28,7 @@ def import_machine(
     ],
     to: Annotated[
         Path | None,
-        output(what="Case file to write; by default that of the unit with .toml."),
+        output(what="Case file to write; by default the name of the unit with .toml."),
     ] = None,
     force: Force = False,
 ) -> None:
@@ -45,14 +45,14 @@ def import_machine(
         imported = import_tables(unit) if is_spreadsheet(unit) else import_rexs(unit)
     save_text(target, imported.text)
     if target != STANDARD:
-        say(f"Took {', '.join(imported.taken)}.")
+        say(f"Imported {', '.join(imported.taken)}.")
         for what, lines in (("Assumed", imported.assumed), ("Left out", imported.left_out)):
             for line in lines:
                 say(f"{what}: {line}", whole=True)
     try:
         imported.case(str(target))
     except CaseError as error:
-        tell_written(target, ". It is no case yet:", err=True)
+        tell_written(target, ". It is not a valid case yet:", err=True)
         fail_of(error.problems, ".")
     tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")
 
@@ -62,7 +62,7 @@ def export(
     unit: Annotated[
         Path, typer.Argument(metavar="UNIT", help="REXS file from which the case was imported.")
     ],
-    to: Annotated[Path, output(what="Copy of it to write.")],
+    to: Annotated[Path, output(what="Copy of the REXS file to write.")],
     change: Changes = None,
 ) -> None:
     """Solve a case and write what was found into a copy of its REXS file."""
@@ -72,7 +72,9 @@ def export(
 
     keep_inputs([unit])
     if to.suffix and to.suffix.lower() != unit.suffix.lower():
-        message = f"{to}: it will be what {unit.name} is; give it that ending, {unit.suffix}"
+        message = (
+            f"{to}: the copy has the form of {unit.name}; give it the same ending, {unit.suffix}"
+        )
         raise typer.BadParameter(message, param_hint="--output")
     with reporting_problems("written"):
         loaded = open_case(case, change)

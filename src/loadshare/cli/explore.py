@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 LOCAL = "127.0.0.1"
 MISSING = (
-    "The explorer needs a web server that a plain installation does not bring: "
+    "The explorer needs a web server that a plain installation does not include: "
     "pip install 'loadshare[explore]'"
 )
 
@@ -25,7 +25,7 @@ def explore(
     case: CaseFile,
     host: Annotated[
         str,
-        typer.Option(metavar="ADDRESS", help="Address to listen at; this machine alone."),
+        typer.Option(metavar="ADDRESS", help="Address to listen on; by default only this machine."),
     ] = LOCAL,
     port: Annotated[
         int,
@@ -35,8 +35,8 @@ def explore(
         list[str] | None,
         typer.Option(
             metavar="NAME",
-            help="A further name by which browsers reach the server, with its port if that is "
-            "another; may be repeated.",
+            help="Additional name by which browsers reach the server, with its port if different; "
+            "may be repeated.",
         ),
     ] = None,
     browser: Annotated[
@@ -46,8 +46,8 @@ def explore(
 ) -> None:
     """Open a live page of a case: inputs as sliders, the certified answer beside them.
 
-    The page needs no network. The server answers this machine alone unless it is told another
-    address; it changes no file.
+    The page needs no network. The server answers only this machine unless another address is
+    given; it changes no file.
     """
     try:
         import uvicorn
@@ -67,9 +67,9 @@ def explore(
     shown = LOCAL if host in ("0.0.0.0", "::") else host
     address = f"http://[{shown}]:{port}/" if ":" in shown else f"http://{shown}:{port}/"
     say(f"{loaded.title or loaded.name}: {address}", whole=True)
-    say("Ctrl-C ends it.")
+    say("Press Ctrl-C to stop.")
     if host not in (LOCAL, "localhost", "::1"):
-        say("Whoever reaches this address can use it: there is no password.")
+        say("Anyone who can reach this address can use it: there is no password.")
     if browser:
         typer.launch(address)
     uvicorn.Server(config).run(sockets=[listening])
@@ -91,5 +91,5 @@ def _listening(host: str, port: int) -> socket.socket:
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind((host, port))
     except OSError as error:
-        fail([f"{host}:{port} cannot be listened at: {error.strerror or error}"], UNUSABLE)
+        fail([f"cannot listen on {host}:{port}: {error.strerror or error}"], UNUSABLE)
     return found

@@ -36,7 +36,8 @@ _written: ContextVar[tuple[Path, ...]] = ContextVar("written", default=())
 def kept() -> str:
     """Return a sentence on what a stopped command leaves behind, and how to go on."""
     files = ", ".join(map(str, _written.get()))
-    return f"{f'Kept: {files}.' if files else 'Nothing is kept.'} The same command starts again."
+    what = f"Kept: {files}." if files else "Nothing is kept."
+    return f"{what} The same command starts from the beginning."
 
 
 def write_document(path: Path, document: dict[str, Any]) -> None:

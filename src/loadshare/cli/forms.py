@@ -95,12 +95,12 @@ def read_output(text: str, forms: Sequence[str]) -> Output:
     can = ", ".join(f".{known}" for known in forms if known != FOLDER)
     more = ", or many files into FOLDER/" if FOLDER in forms else ""
     if form in FORMS:
-        wrong = f"no {FORMS[form]} comes of this command"
+        wrong = f"this command cannot write a {FORMS[form]}"
     elif file.suffix:
-        wrong = f"the ending {file.suffix} does not say what to write"
+        wrong = f"unknown ending {file.suffix}"
     else:
-        wrong = "it has no ending that says what to write"
-    raise typer.BadParameter(f"{text}: {wrong}. This command writes {can}{more}.")
+        wrong = "it has no ending, which says what to write"
+    raise typer.BadParameter(f"{text}: {wrong}. Allowed: {can}{more}.")
 
 
 def check_case_file(file: Path, force: bool) -> None:
@@ -115,7 +115,7 @@ def check_case_file(file: Path, force: bool) -> None:
     """
     ending = file.suffix.lower().removeprefix(".")
     if ending in FORMS and ending != "toml":
-        wrong = f"no {FORMS[ending]} comes of this command. This command writes .toml."
+        wrong = f"this command cannot write a {FORMS[ending]}. Allowed: .toml."
         raise typer.BadParameter(f"{file}: {wrong}", param_hint="--output")
     if file != STANDARD and file.exists() and not force:
         fail([f"{file}: exists already; --force overwrites it"], UNUSABLE)
@@ -131,7 +131,7 @@ def _is_folder(text: str, ending: str, *, mainly: bool) -> bool:
     return text.endswith(("/", os.sep)) or Path(text).is_dir() or (mainly and ending not in FORMS)
 
 
-def outputs(*forms: str, what: str = "Write what was found") -> Any:
+def outputs(*forms: str, what: str = "Write the answer") -> Any:
     """Return the option for files of some forms."""
 
     def checked(made: list[Output] | None) -> list[Output] | None:
@@ -143,8 +143,8 @@ def outputs(*forms: str, what: str = "Write what was found") -> Any:
         twice = next((file for file in files if files.count(file) > 1), None)
         if twice is not None:
             forms_of = {output.form for output in made if output.file == twice}
-            how = ", in different forms" if len(forms_of) > 1 else "; name it once"
-            raise typer.BadParameter(f"{twice}: is to be written twice{how}.")
+            how = " in different forms" if len(forms_of) > 1 else "; name it once"
+            raise typer.BadParameter(f"{twice}: would be written twice{how}.")
         return made
 
     endings = ", ".join(f".{form}" for form in forms if form != FOLDER)

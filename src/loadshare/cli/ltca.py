@@ -49,8 +49,8 @@ def ltca(
         list[Output] | None,
         outputs(
             *FORMS,
-            what="Folder for tables, pictures and law file, a new one named after the pair when "
-            "left out; or the law file or the table alone",
+            what="Folder for tables, pictures and law file, by default a new one named after the "
+            "pair; or the law file or the table alone",
         ),
     ] = None,
 ) -> None:
@@ -164,12 +164,11 @@ def _print_summary(pair: PairFile, found: Ltca) -> None:
     )
     if found.law.bounded.any():
         where = ", ".join(str(k + 1) for k in range(len(rated)) if found.law.bounded[k])
-        say(f"b or c is held at 0 at position {where}: the angles ask for a negative one.")
+        say(f"b or c is held at 0 at position {where}, where the fit would make it negative.")
     if pair.offset:
         say(
             f"Offset and gear shift turn the driver by {1e6 * pair.offset:.3f} µrad as a whole; "
-            "the law leaves that out. In a case, state them as installation errors of the face "
-            "gear."
+            "the law excludes this. In a case, give them as installation errors of the face gear."
         )
     edges: dict[str, list[int]] = {}
     for edge in found.edges:

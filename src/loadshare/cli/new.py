@@ -37,13 +37,13 @@ def new(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Write a commented case file that runs, to change into your own."""
+    """Write a commented case file that runs, as a start for your own."""
     from loadshare.case.examples import example_text
     from loadshare.case.starter import KINDS, starter_case
     from loadshare.case.words import did_you_mean
 
     if kind not in KINDS:
-        message = f"{kind!r} is none of {', '.join(KINDS)}. {did_you_mean(kind, KINDS)}"
+        message = f"{kind!r} is not one of {', '.join(KINDS)}. {did_you_mean(kind, KINDS)}"
         raise typer.BadParameter(message.strip(), param_hint="--kind")
     title = Path(name.removesuffix(".toml")).name
     if not title:
@@ -59,7 +59,7 @@ def new(
 
 
 def schema(
-    file: Annotated[Path | None, output(what="Write it to a file instead of stdout.")] = None,
+    file: Annotated[Path | None, output(what="File to write instead of stdout.")] = None,
 ) -> None:
     """Print the JSON Schema of a case file, for editors."""
     import json

@@ -98,7 +98,7 @@ def _tolerance(value: float) -> float:
 
 Solver = Annotated[
     SolverName,
-    typer.Option(metavar="NAME", help="auto (hot path first), clarabel, osqp or cvxpy."),
+    typer.Option(metavar="NAME", help="auto (fast method first), clarabel, osqp or cvxpy."),
 ]
 Method = Annotated[
     MethodName,
@@ -124,7 +124,7 @@ Changes = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Change the case, as in operating.torque='100 N*m'; may be repeated. No value "
+        help="Change the case, as in operating.torque='100 N*m'; may be repeated. An empty value "
         "removes the key.",
         autocompletion=setting_names,
     ),

@@ -81,7 +81,7 @@ def _named(text: str) -> tuple[str, Path | None]:
 
     if equals and not (Path(folder) / STUDY).is_file():
         writes = f"loadshare tolerance CASE {quote(name)} -o {quote(folder)}"
-        message = f"{folder}: holds no samples of a tolerance study. `{writes}` writes them."
+        message = f"{folder}: contains no samples of a tolerance study. `{writes}` writes them."
         raise typer.BadParameter(message, param_hint="--study")
     return name, Path(folder) if equals else None
 
@@ -97,7 +97,7 @@ def _with_studies(chapters: list[Chapter], named: dict[str, Path | None]) -> lis
     held = {name for one in chapters if one.case for name in one.case.study}
     if unknown := [name for name in named if name not in held]:
         message = f"{', '.join(unknown)}: no such study"
-        allowed = f"Allowed: {', '.join(sorted(held))}" if held else "The cases hold none"
+        allowed = f"Allowed: {', '.join(sorted(held))}" if held else "The cases have none"
         raise typer.BadParameter(f"{message}. {allowed}.", param_hint="--study")
     if not held:
         return chapters

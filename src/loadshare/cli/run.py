@@ -28,7 +28,7 @@ PictureName: TypeAlias = Literal["share", "torque", "floats", "law", "train"]
 Picture = Annotated[
     PictureName,
     typer.Option(
-        metavar="NAME", help="What .svg, .png and .pdf show: share, torque, floats, law or train."
+        metavar="NAME", help="Content of .svg, .png and .pdf: share, torque, floats, law or train."
     ),
 ]
 Loads = Annotated[
@@ -50,7 +50,7 @@ def run(
     file: Annotated[
         list[Output] | None,
         outputs(
-            *FORMS, what="Write the result; .html is a report, .toml the case as it was changed"
+            *FORMS, what="Write the result; .html is a report, .toml the case with its changes"
         ),
     ] = None,
     picture: Picture = "share",
@@ -146,7 +146,7 @@ def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoRetu
     write_all(written, {"json": lambda: document})
     lines = [f"REFUSED  {line}" for line in refusal_lines(refusal)]
     others = [output.file for output in files if output not in written]
-    fail([*lines, *(f"{f}: not written, for want of an answer" for f in others)], REFUSED)
+    fail([*lines, *(f"{f}: not written, as there is no answer" for f in others)], REFUSED)
 
 
 def _write(

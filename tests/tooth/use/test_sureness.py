@@ -104,7 +104,7 @@ def test_what_slices_leave_out_of_narrow_helical_teeth_is_noted(tmp_path, module
     law = law_of(pair, pair.analyse())
     assert any("sideways bending" in line for line in law.findings) is noted
     # A case that computes its law reports this with the law.
-    assert ("bending sideways" in law.as_law()["basis"]) is noted
+    assert ("sideways bending" in law.as_law()["basis"]) is noted
     solid = law.computed.model_copy(update={"compliance": "finite elements"})
     other = law.model_copy(update={"computed": solid})
     assert not any("sideways bending" in line for line in other.findings)

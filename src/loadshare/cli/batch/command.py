@@ -44,29 +44,33 @@ def batch(
     jobs: Annotated[
         int | None,
         typer.Option(
-            "-j", "--jobs", metavar="N", min=1, help="Processes; by default one per processor."
+            "-j",
+            "--jobs",
+            metavar="N",
+            min=1,
+            help="Number of processes; one per processor by default.",
         ),
     ] = None,
     solver: Solver = "auto",
     method: Method = "newton",
     tolerance: Tolerance = 1e-9,
     force: Annotated[
-        bool, typer.Option("--force", help="Solve again what is solved already.")
+        bool, typer.Option("--force", help="Solve again even what is already solved.")
     ] = False,
     change: Changes = None,
     json: Json = False,
 ) -> None:
-    """Solve many cases, keeping what is solved already.
+    """Solve many cases, keeping what is already solved.
 
-    Writes one JSON file per case and a summary.json into DIR. A bad case stops no other. After an
-    interruption the same command goes on.
+    Writes one JSON file per case and a summary.json into DIR. A bad case does not stop the others.
+    After an interruption, the same command continues.
     """
     from loky import cpu_count
 
     from loadshare.lock import alone_in
 
     if folder == STANDARD:
-        message = "-: a batch writes many files, into a folder; --json prints its summary"
+        message = "-: a batch writes many files into a folder; --json prints its summary"
         raise typer.BadParameter(message, param_hint="--output")
     changes = read_changes(change or ())
     found = find_cases(cases)
@@ -95,7 +99,7 @@ def batch(
                 echo(json_text(document), nl=False)
             if stop.requested:
                 message = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
-                fail([message, "The same command goes on; what is certified is kept."], stop.code)
+                fail([message, "The same command continues; what is certified is kept."], stop.code)
     except LoadshareError as error:
         fail([str(error)], UNUSABLE)
     if any(outcome.outcome == UNWRITTEN for outcome in ordered):
@@ -120,7 +124,7 @@ def _done(tasks: Sequence[Task], jobs: int, stop: Stop) -> dict[str, Outcome]:
 
 def _stopping() -> None:
     # Past the buffers of stderr: a signal may arrive while they are being written to.
-    message = "Stopping; the cases under way are finished first. Ctrl-C again leaves them.\n"
+    message = "Stopping after the cases in progress. Press Ctrl-C again to abandon them.\n"
     os.write(2, message.encode())
 
 

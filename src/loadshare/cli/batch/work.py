@@ -106,7 +106,7 @@ def work(task: Task) -> Outcome:
     except Exception as error:  # noqa: BLE001 -- a bug met in one case must not cost the others
         messages = (f"{type(error).__name__}: {error}",)
     if outcome in ("invalid", "crashed") and task.target.exists():
-        messages += (f"{task.target}: left by an earlier run, not of the case as it is now",)
+        messages += (f"{task.target}: left by an earlier run, does not belong to the present case",)
     return Outcome(
         name=task.name,
         case=str(task.case),
@@ -177,7 +177,7 @@ def _kept(task: Task, case: Case) -> tuple[Result | None, tuple[str, ...]]:
         if error.refusal:
             return None, ()
         first = replace(error.problems[0], hint="")
-        return None, (f"the file there was not kept: {first}",)
+        return None, (f"the existing file was not kept: {first}",)
     stamp = result.stamp
     # Cases are compared, not hashes: a result also shows titles, sources and assumptions.
     found = (result.case, stamp.version, stamp.solver, stamp.method, stamp.tolerance)

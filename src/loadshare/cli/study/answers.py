@@ -94,7 +94,7 @@ def show_critical(found: Critical) -> None:
     else:
         say(f"\n{title}: none")
     if not doubtful and not found.unproved:
-        say("Proved between certified solves: there are no others.")
+        say("Proved: there are no other events between the certified solves.")
 
 
 def _of_critical(found: Critical) -> Makers:
@@ -158,7 +158,7 @@ def show_march(found: March) -> None:
 
     print_result(found.result, len(found.slips))
     if not found.slips or not found.slips[0]:
-        say("\nNo spline holds a gear: there is nothing to remember.")
+        say("\nNo gear is on a spline, so no slip carries over from step to step.")
         return
     rows = []
     for gear in found.slips[0]:
@@ -192,7 +192,7 @@ def show_sweep(found: Sweep) -> None:
     tables = {mean: _table(found, kind) for mean, kind in MEANS.items()}
     texts = [[list(column.cells) for column in made.columns] for made in tables.values()]
     if texts[0] == texts[1]:
-        tables = {"stage and by group alike": tables["stage"]}
+        tables = {"stage and group alike": tables["stage"]}
     for mean, made in tables.items():
         show(f"Sweep of {found.case}: largest Ω, by {mean}", made)
 

@@ -104,8 +104,8 @@ def sweep(
         list[str],
         over(
             "GRID",
-            "Input and its values, as in rings.4.float='0 um:12 um:61' (first, last, how many) or "
-            "'a, b, c'; KEY=KEY=GRID ties keys; a star matches any name. One or two.",
+            "Input and its values, as in rings.4.float='0 um:12 um:61' (first, last, number) or "
+            "'a, b, c'; KEY=KEY=GRID ties keys; a star matches any name. One or two inputs.",
         ),
     ],
     file: Annotated[list[Output] | None, outputs(*SWEPT)] = None,
@@ -139,7 +139,7 @@ def critical(
     position: Positions = None,
     change: Changes = None,
 ) -> None:
-    """Find where contacts, floats and splines change along an input, exactly."""
+    """Find exactly where contacts, floats and splines change along an input."""
     from loadshare.study.critical import critical as found_along
 
     along, low, high = _range(ranges, key, start, stop)
@@ -158,7 +158,7 @@ def _range(
     if given:
         if key or start or stop:
             raise typer.BadParameter(
-                "says it all: no other key, no --from, no --to", param_hint=OVER
+                "gives everything: leave out other keys, --from and --to", param_hint=OVER
             )
         if len(given) > 1:
             hint = "takes one range; tied keys are written KEY=KEY=FROM:TO"
@@ -209,7 +209,7 @@ def tolerance(
         list[str] | None,
         over(
             "LOW:HIGH",
-            "Input that varies evenly between two values, as in rings.*.float='0 um:12 um', in "
+            "Input that varies uniformly between two values, as in rings.*.float='0 um:12 um', in "
             "place of those of [study.NAME]; without NAME, a study of these alone. May be "
             "repeated.",
         ),
@@ -227,7 +227,7 @@ def tolerance(
         str | None,
         typer.Option(metavar="ADDRESS", help="Dask scheduler whose workers solve the samples."),
     ] = None,
-    workers: Annotated[int, typer.Option(metavar="K", min=1, help="Processes.")] = 2,
+    workers: Annotated[int, typer.Option(metavar="K", min=1, help="Number of processes.")] = 2,
     worst: Annotated[
         bool, typer.Option("--worst/--no-worst", help="Search for the worst case as well.")
     ] = True,
@@ -239,7 +239,7 @@ def tolerance(
 
     folders = [output.file for output in file or () if output.form == FOLDER]
     if len(folders) > 1:
-        raise typer.BadParameter("the samples go into one folder only", param_hint="--output")
+        raise typer.BadParameter("samples can only go into one folder", param_hint="--output")
     out = folders[0] if folders else None
     scatter = _scatter(ranges, "KEY=LOW:HIGH")
     stop = Stop()
@@ -267,10 +267,10 @@ def tolerance(
 def _kept(out: Path | None, done: int, total: int) -> str:
     """Return what is kept, and how to go on, in words."""
     if out is None:
-        return "nothing is kept. With -o FOLDER what is solved is, and the same command goes on."
+        return "nothing is kept. With -o FOLDER, samples are kept and the same command continues."
     if done == total > 0:
         kept = f"all {total:,} samples are kept in {out}."
-        return f"{kept} The same command looks for the worst case again."
+        return f"{kept} The same command searches for the worst case again."
     part = f"{done:,} of {total:,} samples are" if total else "what was there is"
     return f"{part} kept in {out}. The same command continues from there."
 
@@ -293,7 +293,7 @@ def march(
     file: Files = None,
     change: Changes = None,
 ) -> None:
-    """March through revolutions; spline friction depends on the slip before."""
+    """March through revolutions; spline friction depends on the previous slip."""
     from loadshare.study.march import march as marched
 
     with running_study(case, change, "steps") as (loaded, tick):
@@ -306,7 +306,7 @@ def compare(
     file: Files = None,
     change: Changes = None,
 ) -> None:
-    """Compare what was measured with what is computed."""
+    """Compare measured figures with computed ones."""
     from loadshare.study.compare import compare as compared
 
     with running_study(case, change, "positions") as (loaded, tick):
@@ -333,7 +333,7 @@ def fit(
     file: Annotated[list[Output] | None, outputs("toml", *TABLES, *FIGURES)] = None,
     change: Changes = None,
 ) -> None:
-    """Fit inputs of a case to what was measured."""
+    """Fit inputs of a case to measured figures."""
     from loadshare.study.fit import fit as fitted
 
     unknowns = ranges_of(unknown, "KEY=LOW:HIGH")
@@ -352,7 +352,7 @@ def study(
         list[str] | None,
         over(
             "VALUES",
-            "What the study varies instead of its own inputs: as for sweep, critical, fit or "
+            "Inputs to vary instead of the study's own, as for sweep, critical, fit or "
             "tolerance; may be repeated.",
         ),
     ] = None,
@@ -361,7 +361,7 @@ def study(
     ] = None,
     change: Changes = None,
 ) -> None:
-    """Run a study that the case holds, [study.NAME]."""
+    """Run a study of the case, [study.NAME]."""
     from loadshare.study.named import run_study
 
     with answered():
@@ -370,7 +370,7 @@ def study(
             for known, block in loaded.study.items():
                 echo(f"{known}: {block.kind}")
             if not loaded.study:
-                echo("The case holds no study: add a table [study.NAME].")
+                echo("The case has no study: add a table [study.NAME].")
             return
         kind = loaded.study[name].kind if name in loaded.study else ""
         if kind and varied:
@@ -405,14 +405,14 @@ def _varied(case: Case, name: str, kind: str, given: list[str]) -> Case:
         grids = settings_of(given, "KEY=GRID")
         return case.replace({at("over"): {"=".join(keys): grid for keys, grid in grids.items()}})
     if kind not in ("critical", "fit", "tolerance"):
-        raise typer.BadParameter(f"a {kind} varies no input over values", param_hint=OVER)
+        raise typer.BadParameter(f"a {kind} does not vary inputs over values", param_hint=OVER)
     form = "KEY=FROM:TO"
     if kind == "tolerance":
         return case.replace({at("inputs"): _scatter(given, form)})
     ranges = ranges_of(given, form)
     if kind == "critical":
         if len(ranges) > 1:
-            raise typer.BadParameter("takes one range for a critical", param_hint=OVER)
+            raise typer.BadParameter("takes one range for a critical study", param_hint=OVER)
         ((keys, (low, high)),) = ranges.items()
         return case.replace({at("keys"): list(keys), at("start"): low, at("stop"): high})
     return case.replace({at("unknowns"): {"=".join(k): list(v) for k, v in ranges.items()}})

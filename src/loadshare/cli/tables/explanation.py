@@ -27,7 +27,7 @@ def print_explanation(index: int, answer: Answer | None) -> None:
     """
     say(f"\nHow position {index} was solved", style="bold")
     if answer is None:
-        say("It was not: no rung of the ladder gave a certified answer.")
+        say("It was not solved: no method gave a certified answer.")
         return
     record = answer.record
     _print_facts(answer)
@@ -71,7 +71,7 @@ def _print_in_play(answer: Answer) -> None:
     rows = [name for name, role in plan.rows.items() if role is Role.IN_PLAY]
     radials = [name for name, role in plan.radials.items() if role is Role.IN_PLAY]
     if not rows and not radials:
-        say("\nNo inequality is left in play: the answer is one linear solve an iteration.")
+        say("\nNo inequality is in play: each iteration is one linear solve.")
         return
     shown = {name: forces.get(name) for name in rows}
     for name in radials:

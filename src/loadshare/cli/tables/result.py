@@ -41,7 +41,7 @@ def print_result(result: Result, wanted: int, *, loads: bool = False, cycle: boo
     """
     certified = [p.position for p in result.positions]
     if len(certified) < wanted:
-        say(f"What follows holds for the certified positions only: {ranges(certified)}")
+        say(f"The following holds for the certified positions only: {ranges(certified)}")
     print_sharing(result)
     print_omega(result)
     print_floats(result)
@@ -95,7 +95,7 @@ def print_validity(result: Result) -> None:
         text = significant(value, 3) if value >= 1e-4 or value == 0.0 else f"{value:.1e}"
         row["value"] = Cell(text, value)
     made = texts(rows, _fields(result, "figure", "value", "warning", "refusal", "where"), WORDS)
-    show("Displacements: the largest, and the bounds of the geometry", made)
+    show("Displacements: the largest, and the limits of the geometry", made)
     warning = advice(result)
     if warning:
         say(Text.assemble(("WARNING", "bold yellow"), f"  {warning}"))
@@ -106,7 +106,7 @@ def print_certificate(result: Result, wanted: int) -> None:
     fields = _fields(result, "figure", "value", "unit", "scaled", "where")
     show("Certificate: the worst residuals", texts(records.residuals(result), fields, WORDS))
     proved = records.proved(result)
-    none = "no bound of the torques is proved: they are in balance"
+    none = "no bound on the torques is proved, but they are in balance"
     say(none if math.isinf(proved) else f"torques proved to {small(proved)} of the largest")
     passed = result.passed and len(result.positions) == wanted
     certified = sum(p.certificate.passed for p in result.positions)
@@ -159,7 +159,7 @@ def print_heading(
     say(f"{records.load_text(case)}; {solved}")
     turning = any(errors.eccentricity is not None for errors in case.errors.values())
     if turning and case.march is None and count > 1 and case.operating.rotation == "neglected":
-        say("Gears do not rotate over the mesh cycle: eccentricities keep their first direction")
+        say("Gears do not rotate over the mesh cycle: eccentricities keep their initial direction")
 
 
 def print_sharing(result: Result) -> None:
@@ -184,7 +184,7 @@ def _coast(result: Result) -> list[str]:
                 most[mesh] = max(coast, most.get(mesh, 0.0))
     return [
         f"Mesh {mesh}: the coast flank carries up to {fixed(torque, places)} N·m; "
-        "the torque is the difference."
+        "the torque shown is the difference."
         for mesh, torque in most.items()
     ]
 
@@ -194,7 +194,7 @@ def print_floats(result: Result) -> None:
     if result.positions[0].floats:
         _print_rests(result.positions)
     lines = undetermined_lines(result.positions)
-    note = "Of what is not determined, the least displacement is given."
+    note = "Where displacements are not determined, the smallest are given."
     say_all([*lines, *([note] if lines else [])])
 
 

@@ -43,14 +43,14 @@ def show_sensitivity(found: Sensitivity) -> None:
         rows.append((item.key, value, *texts))
     heads = ("input", "value", *sides, "dΩ over its value")
     show("Sensitivity of the system's Ω, by group mean", table(heads, rows, words=heads[:2]))
-    say("Every figure is good to one unit of its last digit.")
+    say("Every figure is accurate to one unit of its last digit.")
     if len(found.inputs) > SHOWN:
         say(f"{len(found.inputs) - SHOWN} inputs that matter less are not shown.")
     if one_sided:
-        say("A value under falling: the derivative differs to that side.")
+        say("A value under falling means that the derivative to that side differs.")
     say_all(
         f"Position {kink.position} is on the verge of another active set: "
-        f"{', '.join(kink.elements)}. Its derivatives hold to one side each."
+        f"{', '.join(kink.elements)}. Each of its derivatives holds to one side only."
         for kink in found.kinks
     )
     say_all(_remarks(found, {item.key for item in ordered}), whole=True)

@@ -64,7 +64,7 @@ def show_tolerance(found: Tolerance) -> None:
     say_all(f"REFUSED  {count}×  {text}" for text, count in refusals)
     if found.design_refused:
         refused = counted(found.design_refused, "sample")
-        say(f"WARNING  {refused} for the shares of variance refused; their rows are left out")
+        say(f"WARNING  {refused} refused for the shares of variance; their rows are left out")
 
 
 def _show_first(
@@ -141,4 +141,4 @@ def _show_worst(found: Tolerance) -> None:
             f"by the mean of the {one.over}",
             table(heads, rows, words=("input", "of its tolerance")),
         )
-        say(f"Certified; the best of {one.solved:,} trials, there may be a worse one")
+        say(f"Certified; the largest of {one.solved:,} trials, there may be a worse case")
