@@ -28,7 +28,7 @@ def words(table):
 def test_a_case_beside_itself_differs_in_nothing(star):
     inputs, figures, *rests = comparison(["a", "b"], [ls.solve(star), ls.solve(star)])
     assert inputs.rows == figures.rows == rests == []
-    assert "written alike" in inputs.notes[0]
+    assert "inputs are the same" in inputs.notes[0]
 
 
 def test_twice_the_load_is_twice_every_torque():

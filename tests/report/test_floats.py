@@ -64,7 +64,7 @@ def test_the_seeds_balance_points_are_reported(limit_ring, picture, read):
     words = read(picture("limit_ring", "floats").spec).words()
     assert "on boundary: upper stop + arc 6" in words
     assert "on boundary: upper stop + arc 8" in words
-    assert "undetermined: no force decides" in words
+    assert "undetermined: no force determines it" in words
     for gear in ("4", "5"):
         force = math.hypot(*limit_ring.positions[0].floats[gear].reaction)
         assert f"{force:.4g} N" in words.splitlines()

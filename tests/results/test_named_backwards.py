@@ -50,5 +50,5 @@ def test_a_sweep_through_no_load_is_a_straight_line() -> None:
 
 
 def test_a_drawing_without_a_result_says_which_flanks() -> None:
-    assert "of meshes without backlash the loaded ones" in str(drawn(pair(-100.0)).chart.to_dict())
-    assert "the loaded ones" not in str(drawn(pair(100.0)).chart.to_dict())
+    assert "without backlash: loaded flanks" in str(drawn(pair(-100.0)).chart.to_dict())
+    assert "loaded flanks" not in str(drawn(pair(100.0)).chart.to_dict())

@@ -381,7 +381,7 @@ def test_an_interval_without_events():
         ("rings.4.float", "0 um", "2 kg", "cannot be expressed in um"),
         ("rings.4.float", "0 um", "2 N", "cannot be expressed in um"),
         ("rings..float", "0 um", "2 um", "is not a key path"),
-        ("gears.1.teeth", 20, 30, "is a count: .* Allowed: an input that is no count"),
+        ("gears.1.teeth", 20, 30, "is a count: .* Allowed: an input that is not a count"),
         ("gears.*.teeth", 20, 30, "gears.1.teeth: is a count"),
         ("operating.positions", 1, 5, "is a count"),
         ("gears.1.copies", 2, 4, "is a count"),

@@ -315,7 +315,7 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
     case = shipped("branches/split_torque_2")
     key = "gears.face1.axis[2]"
     assert key in [k for k, _ in ls.sensitivity(case, "gears.face1.*", positions=[1]).skipped]
-    with pytest.raises(ls.CaseError, match="not square"):
+    with pytest.raises(ls.CaseError, match="not at right angles"):
         ls.sensitivity(case, key)
 
 
@@ -337,7 +337,7 @@ def test_what_was_meant_by_an_input_that_is_none_is_told(key, message):
     ("key", "message"),
     [
         ("rings.4.flot", "is not in the case"),
-        ("gears.1.support", "is no number"),
+        ("gears.1.support", "is not a number"),
         ("rings.*.flot", "is not in the case"),
         ("rings.4.float=rings.5.float", "is not one key"),
         ([("rings.4.float", "rings.5.float")], "is not one key"),

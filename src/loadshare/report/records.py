@@ -315,7 +315,7 @@ def error_text(result: Result) -> str:
     """Return, in a sentence, how much the transmission error at the input varies."""
     errors = [p.elastic.transmission_error["input"] for p in result.positions]
     span = significant(1e6 * (max(errors) - min(errors)), 4)
-    return f"From peak to peak the transmission error at the input is {span} µrad."
+    return f"The transmission error at the input varies by {span} µrad, peak to peak."
 
 
 def meshes(result: Result) -> Iterator[Record]:

@@ -124,8 +124,8 @@ def trust(result: Result) -> Mapping[str, str]:
     assumed = ", ".join(result.case.assumed)
     found = {
         "Residuals": f"at most {small(worst)} scaled; allowed {result.stamp.tolerance:.0e}",
-        "Bound": f"every torque within {small(bound)} of the exact equilibrium's, "
-        "as a part of the largest torque",
+        "Bound": f"every torque within {small(bound)} of that at the exact equilibrium, "
+        "relative to the largest torque",
         "Uniqueness": result.uniqueness.text,
         "Displacements": advice(result) or "small for the geometry in which they were found",
         "Not determined": "; ".join(undetermined_lines(result.positions)),

@@ -52,7 +52,7 @@ def rest_lines(
     else:
         lines = [f"{place} at {count} of {len(rests)}" for place, count in where.most_common(3)]
         if len(where) > 3:
-            lines.append(f"and {len(where) - 3} other ways")
+            lines.append(f"and {len(where) - 3} other states")
     margins = [r.margin for r in rests if r.state == "inside" and r.margin is not None]
     if margins:
         lines.append(f"least margin inside {read_best(min(margins), 'm', 3)}")
@@ -66,7 +66,7 @@ def rest_lines(
 
 def _where(rest: FloatState) -> str:
     if rest.state == "undetermined":
-        return "undetermined: no force decides"
+        return "undetermined: no force determines it"
     if rest.margin is None:
         return "inside: no ring bounds it"
     if rest.state == "inside":
@@ -173,21 +173,21 @@ def advice(result: Result) -> str:
                 large.setdefault(p.position, []).append(name)
     noun = "positions" if len(result.positions) > 1 else "position"
     found = [
-        f"{mesh} carries on neither flank ({noun} {', '.join(runs(where))}): the loads may press "
-        "either one, and without a backlash it has one only; shares of load may be wrong. Give the "
-        'mesh its backlash, such as backlash = "0 um"'
+        f"{mesh} carries load on neither flank ({noun} {', '.join(runs(where))}): the loads may "
+        "press either one, but without a backlash the mesh has only one; load shares may be wrong. "
+        'Give the mesh its backlash, such as backlash = "0 um"'
         for mesh, where in neither.items()
     ]
     found += [
-        f"{mesh} is open ({noun} {', '.join(runs(where))}) by as much as teeth usually have play, "
-        "or more, and without a backlash its other flank is left out; torques may be wrong. Give "
-        'the mesh its backlash, such as backlash = "0.1 mm"'
+        f"{mesh} is open ({noun} {', '.join(runs(where))}) by as much as a usual backlash or more, "
+        "but without a backlash its other flank is left out; torques may be wrong. Give the mesh "
+        'its backlash, such as backlash = "0.1 mm"'
         for mesh, where in apart.items()
     ]
     if large:
         reasons = "; ".join(LABELS[n] for n in dict.fromkeys(n for s in large.values() for n in s))
         found.append(
             "displacements are large for the geometry in which they were found "
-            f"({noun} {', '.join(runs(large))}: {reasons}); figures may be off by some per cent"
+            f"({noun} {', '.join(runs(large))}: {reasons}); figures may be off by a few per cent"
         )
     return ". ".join(found)

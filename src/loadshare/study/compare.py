@@ -187,7 +187,7 @@ def targets(case: Case) -> list[Target]:
     """
     found = [t for name, m in case.measured.items() for t in _targets(name, m)]
     if not found:
-        message = "holds no measurement"
+        message = "contains no measurement"
         raise CaseError([case.problem("measured", message, "tables [measured.NAME]")])
     return found
 
@@ -222,8 +222,8 @@ def computed(case: Case, wanted: Iterable[Target], result: Result) -> list[float
         If a measured figure has no computed counterpart.
     """
     found = {target: _computed(target, result) for target in wanted}
-    message = "has nothing to be compared with: what it is of carries no load"
-    hint = "Name a position at which it does, or leave the figure out."
+    message = "has no computed counterpart: its mesh or stage carries no load"
+    hint = "Give a position at which it does, or leave the figure out."
     problems = [case.problem(t.key, message, hint=hint) for t, v in found.items() if math.isnan(v)]
     if problems:
         raise CaseError(problems)

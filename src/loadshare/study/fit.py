@@ -276,8 +276,8 @@ def _too_far(comparison: Comparison, unknowns: int) -> list[str]:
         return []
     return [
         f"χ² is {chi:.4g}, above {usual:.3g} for the stated uncertainties: the figures contradict "
-        "the case or one another, or further starting points lead to better values. The deviations "
-        "of the inputs mean little."
+        "the case or one another, or more starting points are needed. The standard deviations of "
+        "the inputs are unreliable."
     ]
 
 

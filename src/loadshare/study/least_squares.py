@@ -77,7 +77,7 @@ class LeastSquares:
                 try:
                     applied(self.case, [parameter], [end])
                 except CaseError as error:
-                    hint = f"The bound {parameter.text(end)} of the fit makes no case."
+                    hint = f"The bound {parameter.text(end)} of the fit does not give a valid case."
                     problems += [replace(p, hint=p.hint or hint) for p in error.problems]
         return CaseError(problems) if problems else None
 

@@ -185,7 +185,7 @@ def march(
     given = {key: value for key, value in asked.items() if value is not None}
     if case.march is None and len(given) < 3:
         lacking = " and ".join(key for key in asked if key not in given)
-        hint = f"Beside what was asked for, {lacking} would do." if given else ""
+        hint = f"In addition to what was given, {lacking} would do." if given else ""
         allowed = "a march with gear, revolutions and steps"
         raise CaseError([case.problem("march", "is missing", allowed, hint)])
     if given:

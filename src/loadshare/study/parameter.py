@@ -21,13 +21,13 @@ from loadshare.errors import CaseError, Problem
 from loadshare.settings import ALLOWED
 
 STUDY = "study"
-GRID = 'a grid "0 um:12 um:61" (first, last, how many), or a list of values with units'
+GRID = 'a grid "0 um:12 um:61" (first, last, number), or a list of values with units'
 """The values that a sweep allows, as messages state them."""
 RANGE = 'lowest and highest value, as ("0 um", "100 um")'
 """The ends that an interval allows, likewise."""
-NO_COUNT = "an input that is no count"
+NO_COUNT = "an input that is not a count"
 """The keys allowed where an input must vary smoothly, likewise."""
-OF_COUNTS = "A sweep takes counts, as in a list of values."
+OF_COUNTS = "A sweep accepts counts, as a list of values."
 """Hint for a count, where it is not allowed."""
 _QUANTITY = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*", re.DOTALL)
 
@@ -263,7 +263,7 @@ def matches(case: Case, pattern: str) -> tuple[str, ...]:
     if " [" in str(wanted[-1]):
         raise _unusable(pattern, "has a unit in its name", "the key alone, and values such as 4 um")
     if wanted[0] in ABOUT:
-        raise _unusable(pattern, "describes the case and is no input", allowed)
+        raise _unusable(pattern, "describes the case and is not an input", allowed)
     if not any("*" in str(step) for step in wanted):
         return (dotted(wanted),)
     data = case.to_dict()
@@ -336,7 +336,7 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
             raise too_many(place, points)
         count = int(points) if points.isdecimal() else 0
         if count < 2:
-            raise _unusable(place, "has no number of points from 2 on", allowed, given=given)
+            raise _unusable(place, "needs a number of points of at least 2", allowed, given=given)
     elif isinstance(given, str):
         items = list(given.split(","))
     else:
@@ -348,11 +348,11 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
     for item in items:
         value = read_value(_plain(item))
         if value is None:
-            message = f'"{item}" cannot be read: it is no number with a unit that inputs have'
+            message = f'"{item}" cannot be read: it is not a number with a unit of an input'
             raise _unusable(place, message, allowed, given=shown)
         known.append(value)
     if not known:
-        raise _unusable(place, "holds no value", allowed)
+        raise _unusable(place, "contains no value", allowed)
     unit = next((v.unit for v in known if v.unit), "")
     if unit and not all(v.unit for v in known):
         bare = next(v for v in known if not v.unit)
@@ -370,7 +370,7 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
 def too_many(place: str, points: object) -> CaseError:
     """Return the error for a grid with more points than a sweep may have."""
     most = f"up to {ALLOWED.points:,} points in all"
-    hint = "solve_many and [study] of kind tolerance take any number of samples, and keep less"
+    hint = "solve_many and [study] of kind tolerance take any number of samples but keep less"
     return _unusable(place, "is too fine", most, hint, f"{points} points")
 
 

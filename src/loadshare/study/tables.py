@@ -259,7 +259,7 @@ def march_dataset(found: March) -> xr.Dataset:
         dissipated=(
             on_spline,
             over("dissipated"),
-            about("J", "energy that friction took up in the step"),
+            about("J", "energy dissipated by friction in the step"),
         ),
         friction=(on_spline, over("friction"), about("N", "largest friction force")),
         stage=(

@@ -162,7 +162,7 @@ def test_dataset_and_picture(slope, tmp_path):
     assert len({figure.attrs["long_name"] for figure in figures}) == len(figures)
     picture = found.plot("II").save(tmp_path / "tolerance.svg")
     text = picture.read_text(encoding="utf-8")
-    assert "How Ω of stage II scatters" in text
+    assert "Distribution of Ω of stage II" in text
     assert "256 samples" in text
     assert "torque over the mean of its stage" in text
     assert found.dataset.attrs["title"] in text

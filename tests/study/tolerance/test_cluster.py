@@ -68,7 +68,7 @@ def test_a_cluster_that_is_lost_leaves_what_is_done(reference, tmp_path):
                 started.scheduler.send_signal(signal.SIGKILL)
                 started.scheduler.wait()
 
-        with pytest.raises(ls.LoadshareError, match=r"the connection is lost. \d of 5 parts"):
+        with pytest.raises(ls.LoadshareError, match=r"the connection was lost. \d of 5 parts"):
             run(out, scheduler=started.address, chunk=1, progress=kill_scheduler)
     kept = {file: file.stat().st_mtime_ns for file in out.glob("part-*.parquet")}
     assert 1 <= len(kept) < 5

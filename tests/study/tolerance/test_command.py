@@ -51,7 +51,7 @@ def test_a_study_is_reported_and_written(command, scattering, tmp_path):
         "P(Ω > 1.06)",
         "Shares of the variance of Ω of the system",
         "Largest driver torque over positions [N·m]",
-        "there may be a worse one",
+        "there may be a worse case",
         "Intervals in brackets: 95 %.",
     ):
         assert line in done.output, line
@@ -62,8 +62,8 @@ def test_a_study_is_reported_and_written(command, scattering, tmp_path):
     assert again.stdout == done.stdout
     other = command("tolerance", scattering, "-o", out, "--seed", 6, "--samples", 64)
     assert other.exit_code == 2
-    assert "samples: 128 there, 64 asked" in other.output
-    assert "seed: 5 there, 6 asked" in other.output
+    assert "samples: 128 there, 64 requested" in other.output
+    assert "seed: 5 there, 6 requested" in other.output
 
 
 def test_study_runs_it_by_name(command, scattering):
@@ -103,7 +103,7 @@ inputs = {{ "operating.power" = {{ distribution = "uniform", low = "20 kW", high
 def test_what_cannot_be_used_is_reported(command, scattering, tmp_path):
     wrong = command("tolerance", scattering, "other")
     assert wrong.exit_code == 2
-    assert "is no tolerance study of the case" in wrong.output
+    assert "is not a tolerance study of the case" in wrong.output
     wrong = command("tolerance", PATHS)
     assert wrong.exit_code == 2
     assert "has no tolerance study" in wrong.output

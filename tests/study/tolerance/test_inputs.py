@@ -150,7 +150,7 @@ def test_a_star_in_a_group():
         ([[1.0, 0.5], [0.5, 1.0]], None, "not a matrix of 3 rows"),
         ([[1.0, 0.5, 0.0], [0.4, 1.0, 0.0], [0.0, 0.0, 1.0]], None, "not symmetric"),
         ([[0.9, 0.5, 0.0], [0.5, 1.0, 0.0], [0.0, 0.0, 1.0]], None, "ones on its diagonal"),
-        (0.5, ("errors.6.installation[0]",), "means a single input"),
+        (0.5, ("errors.6.installation[0]",), "refers to a single input"),
         (0.5, ("errors.6.installation[0]", "rings.4.float"), "is not drawn"),
     ],
 )
@@ -201,13 +201,13 @@ def test_all_that_is_wrong_is_reported_at_once():
         'mean = "much": cannot be read',
         "cannot be expressed in N",
         "is negative",
-        "A truncated normal distribution keeps within limits",
-        "is drawn by rings.*.float already",
+        "A truncated normal distribution stays within limits",
+        "is already drawn by rings.*.float",
         "is not above low",
         "too far from its mean",
-        "too close for its deviation",
+        "too close together for its deviation",
         "gears.1.teeth is a count",
-        "does not share out among 16",
+        "cannot be divided among 16",
     ):
         assert part in message, part
     assert "study.tolerance.inputs" in message
@@ -240,7 +240,7 @@ def test_a_study_must_be_found():
     case = shipped("fgfbstts/limit_ring")
     with pytest.raises(ls.CaseError, match="has no tolerance study"):
         ls.tolerance(case)
-    with pytest.raises(ls.CaseError, match="is no tolerance study"):
+    with pytest.raises(ls.CaseError, match="is not a tolerance study"):
         ls.tolerance(shipped("fgfbstts/tolerance"), study="other")
 
 

@@ -215,11 +215,11 @@ def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change,
     doctored = table.set_column(table.column_names.index(column), column, made)
     parquet.write_table(doctored, file)
     run(out, chunk=1)
-    assert "part-000001.parquet: is not what was written there" in caplog.text
+    assert "part-000001.parquet: does not belong to this study or was changed" in caplog.text
     assert bits(out) == bits(reference)
     about = {**table.schema.metadata, PART_DIGEST: digest(doctored)}
     parquet.write_table(doctored.replace_schema_metadata(about), file)
-    with pytest.raises(ls.ResultError, match=r"part-000001\.parquet: .*Remove this file") as caught:
+    with pytest.raises(ls.ResultError, match=r"part-000001\.parquet: .*Delete this file") as caught:
         run(out, chunk=1)
     assert caught.value.problems[0].key == column
     file.unlink()
@@ -264,7 +264,7 @@ def test_a_study_that_was_killed_before_it_began_begins_anew(tmp_path):
     other = tmp_path / "other"
     other.mkdir()
     (other / ".notes.txt.0123456789abcdef").write_text("mine")
-    with pytest.raises(ls.LoadshareError, match="not empty and holds no tolerance study"):
+    with pytest.raises(ls.LoadshareError, match="not empty and contains no tolerance study"):
         run(other, chunk=1, samples=8)
 
 
@@ -307,7 +307,7 @@ def test_other_settings_are_reported(tmp_path):
             **{**SETTINGS, **few, "seed": 4},
         )
     message = str(caught.value)
-    for part in ("seed: 3 there, 4 asked", "case_hash", "normal mean 0 deviation 1 mrad there"):
+    for part in ("seed: 3 there, 4 requested", "case_hash", "normal mean 0 deviation 1 mrad there"):
         assert part in message, part
     assert "samples:" not in message
     about = json.loads((out / "study.json").read_text(encoding="utf-8"))
@@ -335,9 +335,21 @@ def test_workers_and_blocks_are_counted(tmp_path, name, value):
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(ls.LoadshareError, match="holds no tolerance study"):
+    with pytest.raises(ls.LoadshareError, match="contains no tolerance study"):
         run(tmp_path, samples=64)
     assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]
+
+
+@pytest.mark.parametrize("held", ["", '{"case"', "[]"])
+def test_a_damaged_study_file_is_refused_with_what_to_do(tmp_path, held):
+    file = tmp_path / "study.json"
+    file.write_text(held, encoding="utf-8")
+    with pytest.raises(
+        ls.LoadshareError, match=r"is damaged .*give a new or empty folder"
+    ) as caught:
+        run(tmp_path, samples=8)
+    assert str(caught.value).startswith(f"{file}: ")
+    assert file.read_text(encoding="utf-8") == held
 
 
 @pytest.mark.slow
@@ -421,7 +433,7 @@ def test_a_sample_that_makes_no_case_does_not_take_others_with_it(monkeypatch):
     negative = frame["rings.4.float [um]"] < 0.0
     assert found.refused == negative.sum() > 0
     assert frame.loc[~negative, "certified"].all()
-    assert any("makes no case" in text for text in found.messages)
+    assert any("does not give a valid case" in text for text in found.messages)
 
 
 @pytest.mark.parametrize("worst", mostly_slow((False, True), {False}))

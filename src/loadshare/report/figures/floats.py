@@ -55,7 +55,7 @@ def floats(result: Result, train: Train) -> Figure:
     if not gears:
         raise LoadshareError(
             f"{result.stamp.case}: no gear floats, so there is nothing to draw. A gear floats with "
-            'support = "free", or on a spline or in a ring.'
+            'support = "free", on a spline, in a ring or in a bearing with clearance.'
         )
     palette = palette_of(result)
     journeys = [Journey(result, train, gear) for gear in gears]

@@ -53,9 +53,9 @@ def law(result: Result, train: Train) -> Figure:
         panels.append(drawn | {"title": heading(title)})
     subtitle = [
         result.stamp.title or result.stamp.case,
-        "grey: the law of a mesh at each meshing position; points: where it works",
+        "grey: the law of a mesh at each meshing position; points: where it operates",
     ]
-    return marks.figure("law", marks.stages(panels), "How the meshes yield", subtitle)
+    return marks.figure("law", marks.stages(panels), "Deformation of the meshes", subtitle)
 
 
 def _working(result: Result, train: Train) -> Iterator[Row]:

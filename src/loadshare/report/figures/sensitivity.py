@@ -98,4 +98,4 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
         f"first order, by the mean of the {over}",
         f"{left} inputs of less effect, or 0, are not shown" if left else "",
     ]
-    return marks.figure("sensitivity", drawing, f"What moves Ω of {name}", subtitle)
+    return marks.figure("sensitivity", drawing, f"Inputs that affect Ω of {name}", subtitle)

@@ -75,7 +75,7 @@ def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
         subtitle.append(_exceedance(one, float(limit)))
     name = "the system" if stage == "system" else f"stage {stage}"
     grid = joined("hconcat", parts, spacing=40)
-    return drawn.figure("tolerance", grid, f"How Ω of {name} scatters", subtitle)
+    return drawn.figure("tolerance", grid, f"Distribution of Ω of {name}", subtitle)
 
 
 def _histogram(one: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
@@ -203,7 +203,7 @@ def _inputs(one: xr.Dataset) -> Drawing:
         span = where | {"x": channel("low:Q"), "x2": channel("high")}
         layers.append(layer("rule", rows, span, color=INK))
     left = len(names) - len(shown)
-    title = heading("Where it comes from", f"and {left} inputs of less effect" if left else "")
+    title = heading("Causes of the scatter", f"and {left} less influential inputs" if left else "")
     return panel(layers, 260, ROW * len(shown), title=title)
 
 

@@ -62,7 +62,9 @@ def torque_table(result: Result) -> Table:
 def position_table(result: Result) -> Table:
     """Return every mesh at every position: its point of the cycle, load, Ω and stiffness."""
     rows = list(records.meshes(result))
-    notes = ["The error is the transmission error along the line of action; stiffness is tangent."]
+    notes = [
+        "The error is the transmission error along the line of action; stiffnesses are tangents."
+    ]
     title = "Meshes at every position"
     return table(title, rows, ("mesh",), list(rows[0])[1:], MESHES, notes, most=FOLDED)
 
@@ -71,8 +73,8 @@ def yield_table(result: Result) -> Table:
     """Return the transmission error of the train and its stiffness at every position."""
     rows = list(records.yielding(result))
     notes = [
-        "How far the input turns beyond what its ratio to the output says, and the tangent of "
-        "torque over rotation.",
+        "The rotation of the input beyond that given by its ratio to the output, and the tangent "
+        "of torque over rotation.",
         records.error_text(result),
     ]
     title = "Transmission error and stiffness of the train"
@@ -107,7 +109,7 @@ def _undetermined(result: Result) -> list[str]:
     """Return notes on what the forces leave undetermined."""
     notes = [f"{line[0].upper()}{line[1:]}." for line in undetermined_lines(result.positions)]
     return notes + (
-        ["Of what is not determined, the least displacement is given."] if notes else []
+        ["Where displacements are not determined, the smallest are given."] if notes else []
     )
 
 
@@ -128,12 +130,12 @@ def validity_table(result: Result) -> Table:
     """Return the largest figures of the displacements over the positions, and their bounds."""
     warning = advice(result)
     notes = [
-        "Lines of action and stops are taken where they stand before anything moves; this is how "
-        "far that holds.",
+        "Lines of action and stops are those before any displacement; these figures show how far "
+        "that holds.",
         *([f"Warning: {warning}"] if warning else []),
     ]
     return table(
-        "Displacements: the largest, and the bounds of the geometry",
+        "Displacements: the largest, and the limits of the geometry",
         records.measures(result),
         ("figure", "where"),
         ("value", "warning", "refusal", "position"),
@@ -150,11 +152,11 @@ def certificate_table(result: Result) -> Table:
         ("figure", "where", "unit"),
         ("value", "scaled", "position"),
         notes=[
-            "Recomputed from the answer and the physics alone; a scaled residual is a part of the "
-            f"case's load or deflection. Allowed: {result.stamp.tolerance:.0e}.",
+            "Recomputed from the answer and the physics alone; a scaled residual is relative to "
+            f"the load or deflection of the case. Allowed: {result.stamp.tolerance:.0e}.",
             "Every torque lies within "
-            f"{small(records.proved(result))} of the exact "
-            "equilibrium's, as a part of the largest torque.",
+            f"{small(records.proved(result))} of that at the exact "
+            "equilibrium, relative to the largest torque.",
             f"{result.uniqueness.text[0].upper()}{result.uniqueness.text[1:]}.",
         ],
     )
@@ -169,7 +171,7 @@ def effort_text(result: Result) -> str:
     passes = _passes([e.iterations for e in efforts])
     return (
         f"Solver {stamp.solver}, outer loop {stamp.method}{passes}; programme: {kinds}; "
-        f"rung of the ladder: {ways}."
+        f"rung (method that answered): {ways}."
     )
 
 

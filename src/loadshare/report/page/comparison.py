@@ -49,9 +49,9 @@ def _differing_inputs(names: Sequence[str], cases: Sequence[Case]) -> Table:
         if len({one.get(key) for one in found}) > 1
     ]
     columns = [Column("input"), *map(Column, names)]
-    notes = [f"{len(keys) - len(rows)} other inputs are written alike."]
+    notes = [f"{len(keys) - len(rows)} other inputs are the same."]
     if not rows:
-        notes = [f"All {len(keys)} inputs are written alike."]
+        notes = [f"All {len(keys)} inputs are the same."]
     return Table("Inputs that differ", columns, rows, notes, folded=len(rows) > FOLDED)
 
 
@@ -83,8 +83,8 @@ def _differing_figures(names: Sequence[str], results: Sequence[Result]) -> Table
     columns += [Column(name, True) for name in names]
     columns += [Column(against.format(name), True) for name in names[1:]]
     notes = [
-        "The largest over the positions; changes are parts of the first case's figure. "
-        f"{len(shared) - len(rows)} other figures agree to round-off."
+        "The largest over the positions; changes are relative to the first case's figure. "
+        f"{len(shared) - len(rows)} other figures agree within round-off."
     ]
     return Table("Figures that differ", columns, [cells for _, _, cells in rows], notes)
 
@@ -146,7 +146,9 @@ def _differing_rests(names: Sequence[str], results: Sequence[Result]) -> Iterato
         if len(set(texts)) > 1:
             rows.append([Cell(gear), *map(Cell, texts)])
     if rows:
-        yield Table("Floats that rest elsewhere", [Column("gear"), *map(Column, names)], rows)
+        yield Table(
+            "Floats that rest in different places", [Column("gear"), *map(Column, names)], rows
+        )
 
 
 def _rests(result: Result, gear: str) -> str:

@@ -185,7 +185,7 @@ def _(found: Tolerance) -> Iterator[Table]:
             f"Worst case found: Ω = {one.omega:.5f} over the mean of the {one.over}",
             [Column("input"), Column("value", True), Column("of its tolerance")],
             inputs,
-            [f"Certified; the best of {one.solved:,} trials. There may be a worse one."],
+            [f"Certified; the largest of {one.solved:,} trials. There may be a worse case."],
             folded=len(inputs) > FOLDED,
         )
 

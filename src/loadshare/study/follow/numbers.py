@@ -126,7 +126,7 @@ def structure_like(base: Structure, train: Train) -> Structure:
     if shape_of(seen) != shape_of(base.train):
         found = structure_of(seen)
         if found.kinds != base.kinds or found.coordinates.names != base.coordinates.names:
-            raise ValueError("the parameter changes which elements there are")
+            raise ValueError("the parameter changes the set of elements")
         found = replace(found, force=base.force, length=base.length)
     if not turned:
         return found

@@ -94,7 +94,7 @@ class Prover:
                 else:
                     halves += [(k, (low, value, first, z)), (k, (value, high, z, last))]
             parts = halves
-        return left + [Part(k, part, "it takes too many parts") for k, part in parts]
+        return left + [Part(k, part, "it needs too many parts") for k, part in parts]
 
     def _middles(
         self, equations: Equations, ends: Sequence[Ends]
@@ -117,7 +117,7 @@ class Prover:
             return HIDDEN
         if not any(point.holds for point in alone):
             return "all of it is too close to a change for double precision"
-        return "no proof was found, however close" if width <= self.least else ""
+        return "no proof was found, however narrow" if width <= self.least else ""
 
 
 def between(values: Sequence[float], z: Sequence[Array] | Array) -> list[Ends]:

@@ -86,7 +86,7 @@ class Search:
             left = self.proved_alike(left)
             left = [s for s in left if not self._crossed(s)] if count <= FOLLOW.most else left
             if count > FOLLOW.most:
-                self.gaps += [Gap(*stretch, "too many stretches") for stretch in left]
+                self.gaps += [Gap(*stretch, "it needs too many parts") for stretch in left]
                 break
             stretches = self._cut(
                 self._hopeful(left, values) if generation > FOLLOW.hopeful else left
@@ -172,7 +172,7 @@ class Search:
             self.gaps.append(Gap(first, last, first.why))
             return True
         if last.value - first.value <= self.least:
-            self.gaps.append(Gap(first, last, "no proof was found, however close"))
+            self.gaps.append(Gap(first, last, "no proof was found, however narrow"))
             return True
         return False
 

@@ -153,7 +153,7 @@ class Branch:
             if rigid and e.states[k] == at.PINNED:
                 self.pins[k] = play
             elif not {at.PINNED: play == 0.0, at.WALL: play > 0.0}.get(int(e.states[k]), True):
-                raise BranchLost("a limit without play is another element than one with some")
+                raise BranchLost("a limit without play is a different element from one with play")
 
     def beside(self, setting: Setting) -> Branch:
         """Return the branch of the same set at another value of the input.
@@ -165,7 +165,7 @@ class Branch:
         """
         there = Branch(setting, self.active, self.equations)
         if there.size != self.size:
-            raise BranchLost("a limit without play is another element than one with some")
+            raise BranchLost("a limit without play is a different element from one with play")
         return there
 
     def play(self, z: Array) -> Array:
@@ -193,7 +193,7 @@ class Branch:
         force = z[self._pinned(k)]
         size = float(np.linalg.norm(force))
         if size <= SENSITIVITY.verge:
-            raise BranchLost("a gear that nothing pushes floats as soon as its limit has play")
+            raise BranchLost("a gear on which no force acts floats as soon as its limit has play")
         return np.asarray(force / size)
 
     def jacobians(self, z: Array) -> Array:
@@ -221,7 +221,7 @@ class Branch:
         start = self.equations.start(x[None], self.numbers)
         z, good = self.equations.solve(start, self.numbers)
         if not good[0]:
-            raise BranchLost("the equations of the active set have no solution near by")
+            raise BranchLost("the equations of the active set have no solution nearby")
         return np.asarray(z[0])
 
     def torque_gradients(self, z: Array) -> Array:

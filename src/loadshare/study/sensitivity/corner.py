@@ -114,8 +114,8 @@ class Corner:
                 self._remark(
                     key,
                     side,
-                    f"meshes {', '.join(passing)} pass to the next place of their cycle right "
-                    "there, a step; the derivative holds with them where they are",
+                    f"meshes {', '.join(passing)} pass to the next position of their cycle exactly "
+                    "there, in a step; the derivative holds for their present positions",
                 )
         motion = self.neighbourhood.motion(sign, varied)
         if motion is not None:
@@ -126,7 +126,9 @@ class Corner:
             motions = self._differenced(varied, sign, step)
         except NoDifference as why:
             return self._without(key, side, why), False
-        self._remark(key, side, f"differenced when it is {_word(side)}: no active set was proved")
+        self._remark(
+            key, side, f"found by differences when it is {_word(side)}: no active set was proved"
+        )
         return self._rates(motions), False
 
     def _without(self, key: str, side: str, why: Exception) -> Rates:

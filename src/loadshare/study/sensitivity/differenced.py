@@ -64,7 +64,7 @@ def differenced(
         noise *= SENSITIVITY.solved / amount
         slopes.append(((there - start) * sign / amount, noise))
     if len(slopes) < 3:
-        raise NoDifference(why or "its equilibrium cannot be distinguished at steps that small")
+        raise NoDifference(why or "its equilibrium cannot be distinguished at such small steps")
     return _limit(slopes)
 
 

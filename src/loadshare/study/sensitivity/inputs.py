@@ -38,7 +38,7 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
     one = isinstance(wanted, str) or not isinstance(wanted, Iterable)
     for pattern in [wanted] if one else wanted:
         if not isinstance(pattern, str) or len(split_outside(pattern, "=")) > 1:
-            hint = "Derivatives by keys that take the same value add up."
+            hint = "Derivatives by several keys with the same value add up."
             problems.append(Problem(STUDY, str(pattern), "", "is not one key", KEY, hint))
             continue
         keys = matches(case, pattern)
@@ -46,7 +46,7 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
         if not found:
             there = [value for key in keys if (value := look_up(data, parse(key))) is not None]
             counts = there and all(takes_count(parse(key)) for key in keys)
-            what = "is no number with a unit" if there else "is not in the case"
+            what = "is not a number with a unit" if there else "is not in the case"
             what = "is a count: it has no derivatives" if counts else what
             shown = str(there[0]) if len(keys) == 1 and there else ""
             hint = did_you_mean(pattern, (item.key for item in _below(data, ())))

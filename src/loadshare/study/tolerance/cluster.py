@@ -82,7 +82,7 @@ def solve_on_cluster(folder: Folder, parts: Sequence[Part], address: str) -> Ite
             if client.status == "running":
                 raise
             raise LoadshareError(
-                f"scheduler {address}: the connection is lost. {folder.kept()}"
+                f"scheduler {address}: the connection was lost. {folder.kept()}"
             ) from error
 
 
@@ -162,7 +162,7 @@ def _check_workers(client: Client, address: str) -> None:
                     f"scheduler {address}: workers differ from this machine:",
                     *apart[:SHOWN],
                     *more,
-                    "Nothing was sent. Install the same versions on all, and start workers anew.",
+                    "Nothing was sent. Install the same versions on all, and restart the workers.",
                 ]
             )
         )

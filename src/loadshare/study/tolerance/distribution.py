@@ -128,12 +128,12 @@ def _unsound(found: Distribution) -> Iterator[Wrong]:
         # Far out in a tail the quantile function has no digits left.
         nearest = max(numbers["low"] - numbers["mean"], numbers["mean"] - numbers["high"], 0.0)
         if nearest > 8.0 * numbers["deviation"]:
-            allowed = "limits that leave some of the distribution, within 8 deviations of the mean"
+            allowed = "limits that include some of the distribution within 8 deviations of the mean"
             yield Wrong("", "has its limits too far from its mean", allowed)
         elif numbers["high"] - numbers["low"] < 1e-9 * numbers["deviation"]:
             # The share of the normal distribution between them has no digits left.
-            allowed = "at least 1e-9 deviations; a uniform distribution is the same"
-            yield Wrong("", "has its limits too close for its deviation", allowed)
+            allowed = "at least 1e-9 deviations apart; or a uniform distribution, which is the same"
+            yield Wrong("", "has its limits too close together for its deviation", allowed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +188,7 @@ def correlation_matrix(given: float | Sequence[Sequence[float]], size: int) -> A
     ndarray, shape (size, size), or str
     """
     if size < 2:
-        return "means a single input: a correlation needs two"
+        return "refers to a single input, but a correlation needs two"
     if isinstance(given, int | float):
         matrix = np.full((size, size), float(given))
         np.fill_diagonal(matrix, 1.0)

@@ -94,7 +94,9 @@ class Solver:
         except CaseError:
             # Some sample gives no valid case; the others are solved all the same.
             samples = self.inputs.samples(values)
-            message |= {k: f"makes no case: {w}" for k, w in unusable(self.case, samples)}
+            message |= {
+                k: f"does not give a valid case: {w}" for k, w in unusable(self.case, samples)
+            }
             usable = np.setdiff1d(usable, list(message))
             blocks = self._blocks(values[usable]) if len(usable) else []
         for block in blocks:

@@ -53,8 +53,8 @@ class Folder:
         if not (path / STUDY).exists():
             if path.exists() and (not path.is_dir() or any(map(_is_foreign, path.iterdir()))):
                 raise LoadshareError(
-                    f"{path}: is not empty and holds no tolerance study. Allowed: a new or empty "
-                    "folder, or the folder of the same study, which is then completed"
+                    f"{path}: is not empty and contains no tolerance study. Allowed: a new or "
+                    "empty folder, or the folder of the same study, which is then completed"
                 )
             _write_sealed(path / STUDY, content)
             return
@@ -63,12 +63,15 @@ class Folder:
             whole = known.get(DIGEST) == digest_of(known)
             apart = differing(known["settings"], json.loads(json.dumps(job.settings)))
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            raise LoadshareError(f"{path / STUDY}: cannot be read: {error}") from None
+            raise LoadshareError(
+                f"{path / STUDY}: is damaged or cannot be read ({error}). Put the original file "
+                "back, or give a new or empty folder: without it the study cannot be continued."
+            ) from None
         if apart:
             raise LoadshareError(
                 "\n".join(
                     [
-                        f"{path}: holds a study with other settings"
+                        f"{path}: contains a study with other settings"
                         f"{'' if whole else ', or study.json was altered'}:",
                         *apart,
                         "Give another folder, or the same settings to complete it.",
@@ -76,7 +79,7 @@ class Folder:
                 )
             )
         if not whole:
-            log.warning("%s: is not what was written there; it is written again.", path / STUDY)
+            log.warning("%s: was changed after it was written; it is written again.", path / STUDY)
             _write_sealed(path / STUDY, content)
 
     def file(self, part: Part) -> Path:
@@ -96,7 +99,9 @@ class Folder:
         """Return the parts that are missing or damaged; the log names the latter."""
         found = [part for part in self.all if not self._whole(part)]
         for file in filter(Path.exists, map(self.file, found)):
-            log.warning("%s: is not what was written there; it is solved again.", file)
+            log.warning(
+                "%s: does not belong to this study or was changed; it is solved again.", file
+            )
         return found
 
     def _whole(self, part: Part) -> bool:
@@ -137,7 +142,9 @@ class Folder:
             return None
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass
-        log.warning("%s: is not what was written there; worst cases are sought again.", file)
+        log.warning(
+            "%s: was changed after it was written; worst cases are searched for again.", file
+        )
         return None
 
     def keep_worst(self, found: Sequence[dict[str, Any]]) -> None:
@@ -211,7 +218,7 @@ def _reading(file: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, ValueError, pa.ArrowException) as error:
-        hint = "ask for the same study again: what is not whole is solved anew"
+        hint = "run the same study again: damaged parts are solved again"
         code = getattr(error, "errno", None)
         why = (
             f"was altered since it was written ({str(error).splitlines()[0]})"
@@ -231,7 +238,7 @@ def differing(known: dict[str, Any], wanted: dict[str, Any]) -> list[str]:
         if key == "inputs" and isinstance(one, list) and isinstance(other, list):
             lines += _differing_inputs(one, other)
         else:
-            lines.append(f"  {key}: {_short(one)} there, {_short(other)} asked")
+            lines.append(f"  {key}: {_short(one)} there, {_short(other)} requested")
     return lines
 
 
@@ -239,11 +246,12 @@ def _differing_inputs(known: Iterable[Any], wanted: Iterable[Any]) -> list[str]:
     there = {"=".join(one["keys"]): one for one in known}
     here = {"=".join(one["keys"]): one for one in wanted}
     lines = [
-        f"  input {name}: {_input_text(there.get(name))} there, {_input_text(here.get(name))} asked"
+        f"  input {name}: {_input_text(there.get(name))} there, "
+        f"{_input_text(here.get(name))} requested"
         for name in dict.fromkeys((*there, *here))
         if there.get(name) != here.get(name)
     ]
-    return lines or ["  inputs: in another order"]
+    return lines or ["  inputs: in a different order"]
 
 
 def _input_text(one: dict[str, Any] | None) -> str:

@@ -190,7 +190,7 @@ class _Reader:
                 found = self._read_by_class(path, spread, keys) if by_class else one_for_all
                 double = [key for key in keys if key in seen]
                 for key in double:
-                    message = f"{key} is drawn by {seen[key]} already"
+                    message = f"{key} is already drawn by {seen[key]}"
                     self._wrong(path, message, "one distribution for each key")
                 seen |= dict.fromkeys(keys, text)
                 if found is None:
@@ -220,12 +220,12 @@ class _Reader:
                 case _:
                     tolerances, hint = None, f"{key} does not follow from a tolerance class."
             if tolerances is None:
-                allowed = "a value with its unit; or the eccentricity of a gear with a class"
+                allowed = "a value with its unit; or, for eccentricities only, a gear with a class"
                 self._wrong((*path, "high"), "cannot be derived", allowed, hint)
                 return None
             ends.add(tolerances.runout / 2.0)
         if len(ends) > 1:
-            hint = "Drop the equals sign: a star gives each key a draw of its own."
+            hint = "Drop the equals sign: a star gives each key its own draw."
             self._wrong((*path, "high"), "is not the same for all keys of one draw", hint=hint)
             return None
         return self._read(path, spread.model_copy(update={"high": f"{1e6 * ends.pop()!r} um"}))
@@ -244,7 +244,7 @@ class _Reader:
             except CaseError as error:
                 hint = f"{one.name} was tried with {one.text(end)}."
                 if one.distribution.kind == "normal":
-                    hint += " A truncated normal distribution keeps within limits."
+                    hint += " A truncated normal distribution stays within limits."
                 for problem in error.problems:
                     self._wrong(path, problem.message, problem.allowed, problem.hint or hint)
                 self.bad.update(one.keys)
@@ -260,7 +260,7 @@ class _Reader:
             if members is None:
                 continue
             for k in sorted(taken & set(members)):
-                message = f"{every[k].name} is in another group already"
+                message = f"{every[k].name} is already in another group"
                 self._wrong(("groups", g, "inputs"), message, "one group for each input")
             taken |= set(members)
             matrix = correlation_matrix(group.correlation, len(members))

@@ -37,7 +37,7 @@ def solve_parts(folder: Folder, parts: Sequence[Part], workers: int) -> Iterator
         if failure is None:
             raise LoadshareError(
                 f"part {part.number} of {part.design}: its worker process died twice, perhaps for "
-                f"want of memory. {folder.kept()}"
+                f"lack of memory. {folder.kept()}"
             )
         if failure:
             raise LoadshareError(f"part {part.number} of {part.design}: {failure}. {folder.kept()}")

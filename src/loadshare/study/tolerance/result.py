@@ -167,7 +167,7 @@ class Tolerance(Viewed):
         facts = (
             ("certified", f"{certified} samples, largest residual {self.residual:.1e}"),
             ("inputs", listed([one.name for one in self.inputs.every])),
-            ("worst self", ", ".join(f"Ω {w.omega:.4f} over the {w.over}" for w in self.worst)),
+            ("worst case", ", ".join(f"Ω {w.omega:.4f} over the {w.over}" for w in self.worst)),
             ("why refused", "; ".join(f"{n} × {m}" for m, n in self.messages.items())),
         )
         rows = []

@@ -20,7 +20,7 @@ from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.folder import Folder, read_part
 from loadshare.study.tolerance.job import Job, Part
 
-AGAIN = "Remove this file and give the same command: the part is then solved again."
+AGAIN = "Delete this file and repeat the command: the part is then solved again."
 
 
 def check_part(folder: Folder, part: Part) -> None:

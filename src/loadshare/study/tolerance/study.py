@@ -198,7 +198,7 @@ def _requested(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[
             raise CaseError([Problem(case.name, "study", "", message, allowed)])
         (name,) = own
     elif name not in own:
-        message = "is no tolerance study of the case"
+        message = "is not a tolerance study of the case"
         raise CaseError([Problem(case.name, f"study.{name}", "", message, ", ".join(own))])
     changes = {dotted(("study", name, key)): value for key, value in settings.items()}
     return (case.replace(changes) if changes else case), name
@@ -218,7 +218,7 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
         for key, count in (("samples", samples), ("indices", rows)):
             if count % TOLERANCE.sequences:
                 place = f"study.{name}.{key}"
-                message = f"{count} does not share out among {TOLERANCE.sequences} Sobol sequences"
+                message = f"{count} cannot be divided among {TOLERANCE.sequences} Sobol sequences"
                 allowed = f"a multiple of {TOLERANCE.sequences}, best with a power of 2 for each"
                 problems.append(case.problem(place, message, allowed))
     if problems:

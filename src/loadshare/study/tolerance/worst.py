@@ -231,9 +231,9 @@ def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
                     file,
                     f"worst.{known.over}.omega",
                     repr(known.omega),
-                    "is not what the inputs told there give",
+                    "is not what the inputs given there yield",
                     expected,
-                    "Remove this file and give the same command: it is then searched for again.",
+                    "Delete this file and repeat the command: it is then searched for again.",
                 )
             ]
         )
