@@ -28,7 +28,7 @@ def check_mapping(wanted: str, example: str, given: object) -> None:
         If it is not a mapping.
     """
     if not isinstance(given, Mapping):
-        raise TypeError(f"{wanted} are wanted, as in {example}, not {type(given).__name__}")
+        raise TypeError(f"{wanted} are expected, as in {example}, not {type(given).__name__}")
 
 
 def one_of(name: str, given: object, allowed: Iterable[str]) -> None:

@@ -71,7 +71,9 @@ def side_by_side(
     try:
         Path.cwd()
     except FileNotFoundError:
-        message = "the current folder is gone, and processes are started in one; change to another"
+        message = (
+            "the current folder no longer exists, but processes start in it; change to another"
+        )
         raise LoadshareError(message) from None
     waiting = deque((item, False) for item in items)
     crew = [Worker() for _ in range(min(workers, len(waiting)))]

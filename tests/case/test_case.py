@@ -179,7 +179,7 @@ def test_replace_of_what_is_not_there(drive, key, message):
 
 def test_what_is_no_change_by_key_path_is_told(drive):
     for changes in (None, [("title", "x")], "title"):
-        with pytest.raises(TypeError, match="changes by key path are wanted, as in"):
+        with pytest.raises(TypeError, match="changes by key path are expected, as in"):
             drive.replace(changes)
     for key in (1, ("operating", "torque"), ""):
         with pytest.raises(CaseError, match="is not a key path"):

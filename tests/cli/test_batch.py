@@ -334,7 +334,7 @@ def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_pa
     finally:
         guard.cancel()
     assert batch.returncode == 130
-    assert "The same command goes on" in stderr
+    assert "The same command continues" in stderr
     assert "Traceback" not in stderr
     # Each process has one case in progress, and one more may wait in the pipe between them.
     assert summary(out)["not_done"]

@@ -308,7 +308,7 @@ def test_all_problems_of_a_case_are_listed_one_per_line(command, broken):
         (("--solver", "x"), "'--solver': 'x' is not one of 'auto', 'clarabel', 'osqp', 'cvxpy'"),
         (("--method", "x"), "'--method': 'x' is not one of 'newton', 'picard', 'power'"),
         (("--position", "6"), "this case has positions 1 to 5"),
-        (("--tolerance", "nan"), "tolerance nan cannot be certified by"),
+        (("--tolerance", "nan"), "tolerance nan cannot be used for a certificate"),
         (("--tolerance", "0"), "up to 0.001"),
         (("--tolerance", "1e300"), "up to 0.001"),
         (("--set", "operating.torque"), "KEY=VALUE"),

@@ -155,7 +155,7 @@ def test_a_load_that_is_refused_without_running_away_is_not_said_to() -> None:
         (
             "rows",
             (Row("stop", "stop", [-0.0], -0.1, TableLaw((0.0, 1.0), (0.0, 1.0))),),
-            "vector of stop: is zero, so that it touches nothing",
+            "vector of stop: is zero, so it touches nothing",
         ),
         (
             "arcs",
@@ -167,15 +167,23 @@ def test_a_load_that_is_refused_without_running_away_is_not_said_to() -> None:
             (Radial("drum", np.zeros((2, 1)), [0, 0], RadialLaw((Piece(0, 1, 1, "wall"),))),),
             "matrix of drum: is zero",
         ),
-        ("stiffness", np.eye(2), r"shape \(2, 2\), wanted \(1, 1\)"),
-        ("load", np.array([np.nan]), "no finite number"),
+        ("stiffness", np.eye(2), r"has shape \(2, 2\), but \(1, 1\) is needed"),
+        ("load", np.array([np.nan]), "contains a number that is not finite"),
         ("coordinates", ("right stop",), "two elements or coordinates"),
-        ("coordinates", (), "coordinates: there is none"),
-        ("load", ["one"], "load: holds what is no number"),
-        ("load", None, r"load: shape \(\), wanted \(1,\)"),
-        ("rows", (Row("stop", "stop", [1.0], None, None),), "law of stop: None is no law"),
-        ("rows", (Row("stop", "stop", [1.0], None, RIGID),), "gap of stop: holds what is no"),
-        ("radials", (Radial("drum", [[1.0]], [0.0, 0.0], None),), "source of drum: None is no law"),
+        ("coordinates", (), "coordinates: there are none"),
+        ("load", ["one"], "load: contains something other than numbers"),
+        ("load", None, r"load: has shape \(\), but \(1,\) is needed"),
+        ("rows", (Row("stop", "stop", [1.0], None, None),), "law of stop: None is not a law"),
+        (
+            "rows",
+            (Row("stop", "stop", [1.0], None, RIGID),),
+            "gap of stop: contains a number that is not finite",
+        ),
+        (
+            "radials",
+            (Radial("drum", [[1.0]], [0.0, 0.0], None),),
+            "source of drum: None is not a law",
+        ),
     ],
 )
 def test_arrays_that_do_not_belong_together_are_named(part, value, message) -> None:
@@ -193,9 +201,9 @@ def test_lists_and_whole_numbers_will_do() -> None:
     found = solve_contact(ContactProblem(["x", "y"], np.zeros((2, 2), int), [3, 4], radials=[drum]))
     assert found.place == pytest.approx({"x": 3e-3, "y": 4e-3})
     rolls = ArcRow("arc", Arc([1, 0], [0, 0], 0), [[1]], RIGID, 0)
-    with pytest.raises(ValueError, match="nominal of arc: shape") as caught:
+    with pytest.raises(ValueError, match="nominal of arc: has shape") as caught:
         solve_contact(ContactProblem(["x"], [[1]], [1], arcs=[rolls]))
-    assert "relative of arc: shape (1, 1), wanted (3, 1)" in str(caught.value)
+    assert "relative of arc: has shape (1, 1), but (3, 1) is needed" in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -269,10 +277,13 @@ def test_an_answer_has_the_least_energy(problem: ContactProblem, seed: int) -> N
 @pytest.mark.parametrize(
     ("law", "message"),
     [
-        (PowerLaw(-1e-9), "law of stop: b = -1e-09 is no finite number of at least 0"),
+        (PowerLaw(-1e-9), "law of stop: b = -1e-09 is not a finite number of at least 0"),
         (PowerLaw(0.0, math.inf), "law of stop: c = inf"),
-        (TableLaw((0.0, 1.0, 0.5), (0.0, 1e-6, 2e-6)), "forces do not rise from 0"),
-        (TableLaw((0.0, 1.0), (1e-6, 2e-6)), "compressions do not rise from 0"),
+        (
+            TableLaw((0.0, 1.0, 0.5), (0.0, 1e-6, 2e-6)),
+            "forces are not finite numbers rising from 0",
+        ),
+        (TableLaw((0.0, 1.0), (1e-6, 2e-6)), "compressions are not finite numbers rising from 0"),
         (TableLaw((0.0,), (0.0,)), "has 1 forces and 1 compressions"),
     ],
 )
@@ -290,7 +301,7 @@ def test_laws_under_which_a_stop_would_push_from_afar_are_refused(law, message) 
         ((Piece(5.0, 0.0, 1e-3, "slip"), Piece(1.0, 1e3, math.inf, "wall")), "force falls"),
         ((Piece(0.0, -1.0, math.inf, "wall"),), r"piece 1 \(wall\): force and stiffness"),
         ((Piece(0.0, 1.0, -1.0, "wall"),), "length -1.0"),
-        ((Piece(0.0, 1.0, math.inf, "a"), Piece(0.0, 1.0, 1.0, "b")), "endless and not the last"),
+        ((Piece(0.0, 1.0, math.inf, "a"), Piece(0.0, 1.0, 1.0, "b")), "endless but not the last"),
     ],
 )
 def test_radial_laws_that_are_no_rising_graph_are_refused(pieces, message) -> None:

@@ -99,7 +99,7 @@ def test_errors_of_three_components_stay_numbers():
     ],
 )
 def test_no_key_but_those_of_the_list(key):
-    with pytest.raises(CaseError, match="is no input"):
+    with pytest.raises(CaseError, match="is not an input"):
         Inputs(shipped("fgfbstts/limit_ring")).changes({key: "/etc/passwd"})
 
 
@@ -117,9 +117,9 @@ def test_names_with_a_star_and_joined_keys():
         "rings.4.clearance",
     )
     for wrong, why in (
-        ("rings.*.flaot", "is no number"),
+        ("rings.*.flaot", "is not a number"),
         ("gaers.*.centre", "matches no key"),
-        ("gears.*.support", "is no number"),
+        ("gears.*.support", "is not a number"),
         ("rings.4.float=operating.power", "different kinds"),
         ('a"b', "is not a key path|is no number"),
     ):

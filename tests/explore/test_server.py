@@ -107,7 +107,7 @@ def test_many_positions_are_solved_one_by_one(served):
         ({FLOAT: "3 N"}, "a length is needed"),
         ({FLOAT: ""}, "is not a number"),
         ({FLOAT: "<img src=x onerror=alert(1)>"}, "is not a number"),
-        ({"meshes.4-6.law_file": "/etc/passwd"}, "is no input"),
+        ({"meshes.4-6.law_file": "/etc/passwd"}, "is not an input"),
         ({FLOAT: "9" * 500}, "is too long"),
         ({FLOAT: None}, "is not a value"),
     ],
@@ -325,7 +325,7 @@ def test_a_case_that_lacks_a_key_of_its_file_is_saved_whole(served):
     with served(case, SEED) as address:
         found = ask(address, "/toml", {"changes": {}})[2]
     assert Case(tomllib.loads(found["text"])) == case
-    assert "stands alone" in found["note"]
+    assert "does not extend the original file" in found["note"]
 
 
 def test_a_case_saved_whole_needs_no_file_of_a_law(tmp_path):
@@ -335,7 +335,7 @@ def test_a_case_saved_whole_needs_no_file_of_a_law(tmp_path):
     )
     case = load_case(file).replace({"errors": None})
     found = case_file(Inputs(case), {}, file)
-    assert "stands alone" in found["note"]
+    assert "does not extend the original file" in found["note"]
     assert ls.solve(Case(tomllib.loads(found["text"]))).positions[0].certificate.passed
 
 

@@ -69,7 +69,7 @@ def test_what_no_mapping_is(case, bench, given):
     ):
         with pytest.raises(TypeError) as caught:
             read(given)
-        assert str(caught.value).startswith(f"{what} are wanted, as in {{")
+        assert str(caught.value).startswith(f"{what} are expected, as in {{")
         assert type(given).__name__ in str(caught.value)
 
 

@@ -231,6 +231,6 @@ def test_every_shipped_case_opens_by_its_name():
 
 @pytest.mark.parametrize("given", ["limit_ring", "star/floating_sun_44", "nothing/at_all", "../x"])
 def test_an_unknown_example_is_refused_with_a_list_of_examples(given):
-    with pytest.raises(ls.CaseError, match="is no case of the package") as caught:
+    with pytest.raises(ls.CaseError, match="is not a case of the package") as caught:
         ls.examples(given)
     assert "fgfbstts/limit_ring" in str(caught.value) or "star/floating_sun_4" in str(caught.value)

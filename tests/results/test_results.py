@@ -128,7 +128,7 @@ def test_json_is_plain_and_self_contained(result):
 def test_a_file_that_holds_no_result_is_refused(tmp_path):
     for name, text in (("a.json", "{}"), ("b.json", "not json"), ("c.nc", "not netCDF")):
         (tmp_path / name).write_text(text)
-        with pytest.raises(ls.LoadshareError, match=f"{name}: holds no result"):
+        with pytest.raises(ls.LoadshareError, match=f"{name}: contains no loadshare result"):
             ls.load_result(tmp_path / name)
     with pytest.raises(ls.LoadshareError, match="missing"):
         ls.load_result(tmp_path / "missing.json")

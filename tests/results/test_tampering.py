@@ -174,9 +174,9 @@ def refusal_of(document: Any) -> str:
         (("positions", 0, "torque", "4-6"), 5000.0, r'positions[0].torque."4-6" = 5000.0: does'),
         (("positions",), [], "position 2 is missing"),
         (("positions", 1, "position"), 1, "positions[1].position = 1: appears twice"),
-        (("positions", 1, "position"), 7, "is no position of the case. Allowed: 1 to 5"),
+        (("positions", 1, "position"), 7, "is not a position of the case. Allowed: 1 to 5"),
         (("stamp", "case_hash"), "0" * 64, "stamp.case_hash"),
-        (("stamp", "tolerance"), 1.0, "tolerance 1.0 cannot be certified by"),
+        (("stamp", "tolerance"), 1.0, "tolerance 1.0 cannot be used for a certificate"),
         (("stamp", "positions"), [], "stamp.positions = []: is empty"),
         (("input", "gears", "4", "base_radius"), "3 kg", "file.json: input: gears.4.base_radius"),
         (("input", "rings", "4", "float"), "4.1 um", "is not that of the case under input"),
@@ -188,9 +188,9 @@ def refusal_of(document: Any) -> str:
         (("format",), FORMAT + 1, "Load it with that version, or a newer one."),
         (("format",), True, "format = true: was written by"),
         (("format",), 99, f"which reads {min(OLDER)} and {FORMAT}"),
-        (("refused",), {"message": "no"}, "holds a refusal and no result"),
+        (("refused",), {"message": "no"}, "contains a refusal, not a result"),
         (("colour",), "red", "colour: is not known"),
-        (("positions", 0, "claim", "flank_force", "4-6 drive"), 1.0, "position 1 is no equil"),
+        (("positions", 0, "claim", "flank_force", "4-6 drive"), 1.0, "position 1 is not an equil"),
         (("positions", 0, "claim", "shaft_torque"), {}, "is missing"),
         (("positions", 0, "claim", "flank_force", "x"), 1.0, "claim.flank_force.x: is not known"),
     ],
@@ -214,9 +214,9 @@ def test_text_that_is_no_plain_json_is_refused(small):
     torque = f"{small.positions[0].torque['4-6']!r}"
     for number in ("NaN", "Infinity", "-Infinity", "1e999"):
         assert "not a finite number" in refusal_of(text.replace(torque, number))
-    assert "holds no result" in refusal_of(text[: len(text) // 2])
-    assert "holds no result" in refusal_of("[" * 100_000)
-    assert "holds no result" in refusal_of("[]")
+    assert "contains no loadshare result" in refusal_of(text[: len(text) // 2])
+    assert "contains no loadshare result" in refusal_of("[" * 100_000)
+    assert "contains no loadshare result" in refusal_of("[]")
 
 
 def test_results_of_other_cases_are_not_taken_for_this_one(small):
@@ -225,9 +225,9 @@ def test_results_of_other_cases_are_not_taken_for_this_one(small):
         shipped("fgfbstts/limit_ring").replace({"rings.4.float": "4.1 um"}), positions=[1, 2]
     )
     here, there = json.loads(small.to_json()), json.loads(other.to_json())
-    assert "no equilibrium of the case" in refusal_of(here | {"positions": there["positions"]})
+    assert "not an equilibrium of the case" in refusal_of(here | {"positions": there["positions"]})
     mixed = there | {"input": here["input"], "stamp": here["stamp"]}
-    assert "no equilibrium of the case" in refusal_of(mixed)
+    assert "not an equilibrium of the case" in refusal_of(mixed)
 
 
 def test_a_march_begins_where_the_step_before_ended():
@@ -241,7 +241,7 @@ def test_a_march_begins_where_the_step_before_ended():
     step = stepped(train, 3)
     claim = as_data(claim_of(train, step.equilibrium))
     strange = changed(document, path[:-1], claim)
-    assert "is not the slip at the end of the step before" in refusal_of(strange)
+    assert "is not the slip at the end of the previous step" in refusal_of(strange)
     later = {**document, "positions": document["positions"][1:]}
     later["stamp"] = {**document["stamp"], "positions": [2, 3]}
     assert "a march does not begin at its step 2" in refusal_of(later)

@@ -25,7 +25,7 @@ def test_without_a_current_folder_no_process_can_be_started_and_that_is_said(tmp
     gone.mkdir()
     monkeypatch.chdir(gone)
     gone.rmdir()
-    with pytest.raises(LoadshareError, match="the current folder is gone"):
+    with pytest.raises(LoadshareError, match="the current folder no longer exists"):
         list(side_by_side(abs, [1], 2))
 
 

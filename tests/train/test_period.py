@@ -169,15 +169,16 @@ def test_places_are_those_of_fractions() -> None:
         (
             1000,
             {},
-            'operating.cycle = "common": the meshes come round together after 60 cycles of mesh '
-            "p-a1 (2.6087 revolutions of gear p), with 1000 positions in each 60000 positions. "
-            "Allowed: up to 20000 positions. Give a march over a part of it or "
+            'operating.cycle = "common": all meshes complete whole cycles after 60 cycles of mesh '
+            "p-a1 (2.6087 revolutions of gear p); with 1000 positions in each cycle, these are "
+            "60000 positions. "
+            "Allowed: up to 20000 positions. Give a march over part of it or "
             "operating.positions = 333.",
         ),
         (
             4,
             {"measured": {"gauge": {"position": 300, "omega": {"I": 1.1}, "uncertainty": 0.01}}},
-            "measured.gauge.position = 300: the case has 240. Allowed: 1 to 240.",
+            "measured.gauge.position = 300: the case has positions 1 to 240. Allowed: 1 to 240.",
         ),
     ],
 )

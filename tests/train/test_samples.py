@@ -254,7 +254,7 @@ WRONG = {
     "wrong unit": ({"rings.4.float [N]": [1.0, 2.0]}, "rings.4.float"),
     "unequal lengths": (
         {"rings.4.float [um]": [1.0, 2.0], "rings.5.float [um]": [1.0]},
-        "has 1 values, the keys before it have 2",
+        "has 1 values, but the keys before it have 2",
     ),
     "not finite": ({"rings.4.float [um]": [1.0, np.nan]}, "not finite"),
     "infinite": ({"rings.4.float [um]": [1.0, np.inf]}, "not finite"),
@@ -262,10 +262,10 @@ WRONG = {
     "negative text": ({"rings.4.clearance": ["1 um", "-2 um", "1 um"]}, "rings.4.clearance"),
     "text without a unit": ({"rings.4.clearance": ["1 um", "2", "1 um"]}, "rings.4.clearance"),
     "empty": ({}, "there is no key"),
-    "no values": ({"rings.4.float [um]": []}, "holds no value"),
+    "no values": ({"rings.4.float [um]": []}, "contains no value"),
     "lists in place of numbers": (
         {"rings.4.offset": [["1 um", "2 um"], ["3 um", "4 um"]]},
-        "is not a list of values; a list has a key for each number, as in rings.4.offset[0]",
+        "is not a list of values; in a list, each number has its own key, as in rings.4.offset[0]",
     ),
     "a table of values": ({"rings.4.float [um]": [[1.0, 2.0]]}, "not a list of values"),
     "lists of several lengths": ({"rings.4.float [um]": [[1.0], [1.0, 2.0]]}, "not a list of"),
@@ -273,7 +273,7 @@ WRONG = {
     "nothing": ({"rings.4.float [um]": [1.0, None]}, "neither a number nor a text"),
     "masked": ({"rings.4.float [um]": np.ma.array([1.0], mask=[True])}, "neither a number"),
     "complex": ({"rings.4.float [um]": [1.0j]}, "neither a number nor a text"),
-    "texts with a unit": ({"rings.4.float [um]": ["1", "2"]}, "values are no numbers"),
+    "texts with a unit": ({"rings.4.float [um]": ["1", "2"]}, "values are not numbers"),
     "no key path": ({"rings..4 [um]": [1.0]}, "is not a key path"),
 }
 
@@ -309,7 +309,7 @@ def test_whatever_has_columns_is_read_alike(samples):
 
 def test_what_has_no_columns_is_reported():
     for samples in (None, [[1.0, 2.0]], np.ones((2, 2))):
-        with pytest.raises(CaseError, match="no table of values by key"):
+        with pytest.raises(CaseError, match="is not a table of values by key"):
             columns_of(samples)
     with pytest.raises(CaseError, match="unknown key"):
         samples_of(everything(), {4: [1.0]})

@@ -27,6 +27,6 @@ def checked_tolerance(given: object) -> float:
             if 0.0 < value <= CERTIFY.largest:
                 return value
     raise ValueError(
-        f"tolerance {given!r} cannot be certified by; allowed: a number above 0 and up to "
-        f"{CERTIFY.largest:g}, such as 1e-9"
+        f"tolerance {given!r} cannot be used for a certificate; allowed: a number above 0 and up "
+        f"to {CERTIFY.largest:g}, such as 1e-9"
     )

@@ -38,7 +38,7 @@ from loadshare.train.train import Train
 
 MEANINGS = {
     "convex": "only answer: the problem is convex",
-    "least energy": "only answer of least energy: nothing that is not convex carries",
+    "least energy": "only answer of least energy: no non-convex element carries load",
     "local": "locally unique",
     "not proved": "not proved to be the only answer",
 }

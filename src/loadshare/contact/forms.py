@@ -154,6 +154,6 @@ def _only_linear(programme: Programme, what: str) -> None:
     others += [n for n, c in zip(programme.names, programme.hertz, strict=True) if c > 0.0]
     if others:
         raise ValueError(
-            f"{what} cannot say {', '.join(others)} (radial elements need second-order cones, "
+            f"{what} cannot express {', '.join(others)} (radial elements need second-order cones, "
             "Hertz laws power cones); use the conic form"
         )

@@ -142,7 +142,7 @@ def settle(
             x, last = _extrapolated(problem, state.x, x, last)
         state = _State(x, _next_forces(problem, plan, state.forces, forces, x, method), torques)
     raise Unsolved(
-        f"the {method} loop did not settle in {len(history)} passes "
+        f"the {method} loop did not converge in {len(history)} passes "
         f"(last misfit {history[-1].misfit:.2e})"
     )
 

@@ -230,16 +230,16 @@ class ContactProblem:
             If they do not; the message has all problems, one per line.
         """
         n = self.size
-        wrong = [] if n else ["coordinates: there is none"]
+        wrong = [] if n else ["coordinates: there are none"]
         for what, array, shape in self._arrays():
             if not isinstance(array, np.ndarray):
-                wrong.append(f"{what}: holds what is no number")
+                wrong.append(f"{what}: contains something other than numbers")
             elif array.shape != shape:
-                wrong.append(f"{what}: shape {array.shape}, wanted {shape}")
+                wrong.append(f"{what}: has shape {array.shape}, but {shape} is needed")
             elif not np.isfinite(array).all():
-                wrong.append(f"{what}: holds what is no finite number")
+                wrong.append(f"{what}: contains a number that is not finite")
             elif what.startswith(("vector", "relative", "matrix")) and not array.any():
-                wrong.append(f"{what}: is zero, so that it touches nothing")
+                wrong.append(f"{what}: is zero, so it touches nothing")
         laws: list[tuple[str, object, Any]]
         laws = [(f"law of {row.name}", row.law, Law) for row in self.rows]
         laws += [(f"law of {arc.name}", arc.law, Law) for arc in self.arcs]
@@ -248,7 +248,7 @@ class ContactProblem:
         for what, law, kind in laws:
             faults = list(law_faults(law))
             if not faults and not isinstance(law, kind):
-                faults = [f"{law!r} is no law"]
+                faults = [f"{law!r} is not a law"]
             wrong += [f"{what}: {fault}" for fault in faults]
         if not wrong and not np.array_equal(self.stiffness, self.stiffness.T):
             wrong.append("stiffness: is not symmetric")

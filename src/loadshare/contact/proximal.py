@@ -68,7 +68,7 @@ def solve_proximal(
         pace = float(np.abs(drift.x).max(initial=0.0))
         stretch = 4.0 * stretch + 1.0 if now == active and pace > 0.5 * run else 0.0
         at, active, run = replace(point, x=point.x + stretch * drift.x), now, pace
-    raise Unsolved("the passes of the proximal method did not settle")
+    raise Unsolved("the passes of the proximal method did not converge")
 
 
 def _pulled(programme: Programme, at: Point, pull: float) -> Programme:

@@ -147,11 +147,11 @@ def _bound_text(result: Result, solved: int) -> str:
     """Return a sentence on how good an answer is: the bound proved when it was judged."""
     done, count = len(result.positions), result.positions[0].train.count
     where = f"{done} of {count} positions" if count > 1 else "the answer"
-    later = "" if solved == count else " so far, all when nothing moves"
+    later = "" if solved == count else " so far (all once no input moves)"
     proved = max(p.certificate.proved for p in result.positions)
     return (
-        f"{where} certified{later}: every torque within {small(proved)} of the exact "
-        "equilibrium's, as a part of the largest torque"
+        f"{where} certified{later}: every torque within {small(proved)} of that at the exact "
+        "equilibrium, relative to the largest torque"
     )
 
 

@@ -58,7 +58,7 @@ class Crew:
         try:
             async with self.turn:
                 if gone.done():
-                    raise RequestError(499, "nobody waits for this any more")
+                    raise RequestError(499, "no one is waiting for this any more")
                 return await self._by_one(gone, work, item)
         finally:
             self.waiting -= 1
@@ -78,7 +78,7 @@ class Crew:
             if not finished:
                 # Not cancelled: it ends by itself when its process is killed.
                 found.add_done_callback(_looked_at)
-                raise RequestError(499, "nobody waits for this any more")
+                raise RequestError(499, "no one is waiting for this any more")
             return found.result()
         finally:
             if not finished:

@@ -40,7 +40,7 @@ def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) ->
         return {"name": name, "text": written_in(changed).to_toml(), "note": ""}
     apart = _apart(load_case(file).to_dict(), changed.to_dict())
     if apart is None:
-        note = "It stands alone: something of the original is gone, which extending cannot say."
+        note = "It does not extend the original file, as keys were removed."
         return {"name": name, "text": written_in(changed).to_toml(), "note": note}
     head = tomlkit.document()
     head.add("extends", tomlkit.item(file.name))

@@ -84,7 +84,7 @@ class Guard:
         if host not in self.hosts:
             return (
                 "This server is not known by that name. It answers to: "
-                f"{', '.join(sorted(self.hosts))}. Others are told it with --name."
+                f"{', '.join(sorted(self.hosts))}. Add others with --name."
             )
         origin = headers.get("origin")
         if origin is not None and origin.lower() not in {f"http://{host}", f"https://{host}"}:

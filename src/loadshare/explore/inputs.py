@@ -129,7 +129,7 @@ class Inputs:
             found |= dict.fromkeys((part,) if part in self.every else matches(self.case, part))
         known = [self.every[key] for key in found if key in self.every]
         if not known or len(known) < len(found):
-            message = "is no number of the case"
+            message = "is not a number of the case"
             raise CaseError([Problem(PAGE, name, "", message, "an input from the list")])
         if len({Value(1.0, one.unit).si_unit for one in known}) > 1:
             raise CaseError([Problem(PAGE, name, "", "ties inputs of different kinds")])
@@ -152,7 +152,7 @@ class Inputs:
         problems = []
         for key, value in given.items():
             if key not in self.every:
-                problems.append(Problem(PAGE, key, "", "is no input", "an input from the list"))
+                problems.append(Problem(PAGE, key, "", "is not an input", "an input from the list"))
             elif isinstance(value, bool) or not isinstance(value, str | int | float):
                 allowed = "a number with its unit"
                 problems.append(Problem(PAGE, key, "", "is not a value", allowed))

@@ -89,7 +89,7 @@ def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
     keys = inputs.keys(text(body, "name"))
     low, high = (finite(body, end) for end in ("low", "high"))
     if not 0.0 < high - low < math.inf:
-        raise RequestError(400, f"low {low:g} and high {high:g} are no ends of a stretch")
+        raise RequestError(400, f"low {low:g} and high {high:g} are not the ends of a range")
     return Along(
         with_keys_written(inputs, keys, setting(body)),
         keys,
@@ -105,7 +105,7 @@ def slopes(inputs: Inputs, body: Mapping[str, Any]) -> Slopes:
     """Return the inputs by which a page wants to differentiate; raises as `along` does."""
     wanted = body.get("keys")
     if not isinstance(wanted, list) or not 0 < len(wanted) <= EXPLORE.keys:
-        raise RequestError(400, f"keys is no list of 1 to {EXPLORE.keys} inputs")
+        raise RequestError(400, f"keys is not a list of 1 to {EXPLORE.keys} inputs")
     keys = tuple(dict.fromkeys(key for name in wanted for key in inputs.keys(str(name))))
     reaches = tuple(0.1 * (inputs.every[key].high - inputs.every[key].low) for key in keys)
     return Slopes(with_keys_written(inputs, keys, setting(body)), keys, reaches, place(body))
@@ -128,5 +128,5 @@ def finite(body: Mapping[str, Any], name: str, default: float = math.nan) -> flo
     """Return a number of a request."""
     given = body.get(name, default)
     if isinstance(given, bool) or not isinstance(given, int | float) or not math.isfinite(given):
-        raise RequestError(400, f"{name} is no number")
+        raise RequestError(400, f"{name} is not a number")
     return float(given)

@@ -53,9 +53,9 @@ async def body_of(request: Request) -> dict[str, Any]:
         # A lone surrogate, which JSON may hold, cannot be written to a file or a message.
         json.dumps(found, ensure_ascii=False).encode()
     except (ValueError, RecursionError):
-        raise RequestError(400, "the request is no JSON, or a number in it is too long") from None
+        raise RequestError(400, "the request is not JSON, or a number in it is too long") from None
     if not isinstance(found, dict):
-        raise RequestError(400, "the request is no JSON object")
+        raise RequestError(400, "the request is not a JSON object")
     return found
 
 
@@ -74,7 +74,7 @@ def setting(body: Mapping[str, Any]) -> dict[str, object]:
     """Return the inputs that a page has changed, by key."""
     given = body.get("changes", {})
     if not isinstance(given, dict):
-        raise RequestError(400, "changes is no object of values by key")
+        raise RequestError(400, "changes is not an object of values by key")
     return given
 
 
@@ -82,7 +82,7 @@ def number(body: Mapping[str, Any], name: str, default: int, least: int, most: i
     """Return a whole number of a request, within its bounds."""
     given = body.get(name, default)
     if isinstance(given, bool) or not isinstance(given, int) or not least <= given <= most:
-        raise RequestError(400, f"{name} is no whole number from {least} to {most}")
+        raise RequestError(400, f"{name} is not a whole number from {least} to {most}")
     return given
 
 
@@ -90,5 +90,5 @@ def text(body: Mapping[str, Any], name: str) -> str:
     """Return a text of a request."""
     given = body.get(name)
     if not isinstance(given, str) or not given or len(given) > EXPLORE.text * 10:
-        raise RequestError(400, f"{name} is no text")
+        raise RequestError(400, f"{name} is not a text")
     return given

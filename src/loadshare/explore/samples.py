@@ -91,7 +91,7 @@ def _of_shown(
 ) -> tuple[Case, dict[str, Any], list[str]]:
     ranges = body.get("ranges")
     if not isinstance(ranges, dict) or not ranges:
-        raise RequestError(400, "ranges is no object of [low, high] by input")
+        raise RequestError(400, "ranges is not an object of [low, high] by input")
     left = [n for n in ranges if any(inputs.every[k].geometry for k in inputs.keys(n))]
     if len(left) == len(ranges):
         raise RequestError(
@@ -104,7 +104,7 @@ def _of_shown(
             continue
         keys = inputs.keys(name)
         if not isinstance(ends, list) or len(ends) != 2:
-            raise RequestError(400, f"the range of {name} is no [low, high]")
+            raise RequestError(400, f"the range of {name} is not [low, high]")
         low, high = (finite({name: end}, name) for end in ends)
         spreads["=".join(keys)] = _spread(inputs.every[keys[0]], given, low, high)
         every += keys

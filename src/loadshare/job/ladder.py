@@ -292,8 +292,8 @@ def _with_large(refusal: Refused, part: _Part | None) -> Refused:
         for name, m in large.items()
     )
     return Refused(
-        f"{refusal}; under {part.share:.0%} of the load displacements are large for the "
-        f"geometry already: {text}; check the load and the stiffnesses",
+        f"{refusal}; under {part.share:.0%} of the load, displacements are already large for the "
+        f"geometry: {text}; check the load and the stiffnesses",
         refusal.figures,
     )
 
@@ -322,7 +322,7 @@ def _runs_away(certificate: Certificate) -> str:
     if not free or not far > max(gear.base_radius for gear in train.gears.values()):
         return ""
     return (
-        f"what floats runs away: the attempt ends {far:.1e} m off, as where the load is balanced "
-        "up to rounding in the geometry only; nothing limits the float of gear "
-        f"{', '.join(free)}: support one, or give what is even by teeth and copies"
+        f"the floating gears run away: the attempt ends {far:.1e} m off, as happens if the load is "
+        "balanced only up to rounding in the geometry; nothing limits the float of gear "
+        f"{', '.join(free)}: support one, or define symmetric gears by teeth and copies"
     )

@@ -81,7 +81,7 @@ EACH = {
     "displaced": Each("displaced", "displacements over the bound of a warning"),
     "convex": Each("convex", "whether nothing that is not convex carries"),
     "arc_curvature": Each("arc_curvature", "stiffness that arcs take across them", "N/m"),
-    "rung": Each("rung", "rung of the ladder that answered"),
+    "rung": Each("rung", "rung (method) that answered"),
 }
 
 

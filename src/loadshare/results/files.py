@@ -54,24 +54,24 @@ def load_result(path: str | Path) -> Result:
         why = f"cannot be read: {(error.strerror or str(error)).lower()}"
         raise _unread(path, why) from error
     except UnicodeDecodeError as error:
-        why = f"holds no result of loadshare: it is not UTF-8 text at byte {error.start}"
+        why = f"contains no loadshare result: it is not UTF-8 text at byte {error.start}"
         raise _unread(path, why) from error
 
 
-def _unread(path: Path, why: str = "holds no result of loadshare") -> ResultError:
+def _unread(path: Path, why: str = "contains no loadshare result") -> ResultError:
     return ResultError([Problem(str(path), "", "", why)])
 
 
 def _read_netcdf(path: Path, content: bytes) -> Result:
     """Load the result, and compare the file's arrays with those of the result."""
     if not is_sealed(content):
-        why = "holds no result of loadshare, or one that was changed: it lacks its digest"
+        why = "contains no loadshare result, or one that was changed: it lacks its digest"
         raise ResultError([Problem(str(path), "", "", why, hint=AGAIN)])
     try:
         with xr.open_dataset(BytesIO(content), engine="h5netcdf") as file:
             arrays = file.load()
     except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
-        why = "holds no result of loadshare: it is not a netCDF file"
+        why = "contains no loadshare result: it is not a netCDF file"
         raise _unread(path, why) from error
     text = arrays.attrs.pop(DOCUMENT, None)
     if not isinstance(text, str):

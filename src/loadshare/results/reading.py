@@ -136,7 +136,7 @@ def _fail(file: str, message: str, hint: str = AGAIN, key: Path = (), given: str
 def _altered(document: dict[str, Any]) -> Iterator[Wrong]:
     """Yield a problem if a digit or word was changed on which no figure depends."""
     if document.get(DIGEST) != digest_of(document):
-        message = "is not that of what this file holds: it was changed after it was written"
+        message = "does not match the content of this file, which was changed after it was written"
         yield (DIGEST,), as_given(document.get(DIGEST)), message, ""
 
 
@@ -161,13 +161,13 @@ def _parsed(text: str, file: str) -> dict[str, Any]:
             text, parse_float=number, parse_constant=number, object_pairs_hook=table
         )
     except RecursionError:
-        _fail(file, "holds no result of loadshare: its tables are nested too deeply")
+        _fail(file, "contains no loadshare result: its tables are nested too deeply")
     except ValueError as error:
-        _fail(file, f"holds no result of loadshare: {error}")
+        _fail(file, f"contains no loadshare result: {error}")
     if not isinstance(document, dict) or "positions" not in document:
-        _fail(file, "holds no result of loadshare")
+        _fail(file, "contains no loadshare result")
     if "refused" in document:
-        message, hint = "holds a refusal and no result", "The reason is under refused.message."
+        message, hint = "contains a refusal, not a result", "The reason is under refused.message."
         raise ResultError([Problem(file, "", "", message, "", hint)], refusal=True)
     found = document.get("format", 1)
     if found not in (FORMAT, *OLDER) or isinstance(found, bool):
@@ -191,7 +191,7 @@ def _read(text: str, file: str) -> _File:
     except ValidationError as error:
         if error.error_count() > ALLOWED.problems:
             # A report of each would take a thousand times its room in the file.
-            _fail(file, f"holds {error.error_count()} values that cannot stand there")
+            _fail(file, f"contains {error.error_count()} values that are not allowed there")
         raise ResultError(
             Problem(
                 file,
@@ -209,7 +209,7 @@ def _machine(given: _File, file: str) -> tuple[Case, Train]:
     try:
         case = Case(given.input, name=given.stamp.case, origin=Origin(f"{file}: input"))
         if any(mesh.geometry or mesh.law_file for mesh in case.meshes.values()):
-            _fail(file, "its meshes ask for other files", key=("input", "meshes"))
+            _fail(file, "its meshes refer to other files", key=("input", "meshes"))
         train = build_train(case)
     except CaseError as error:
         raise ResultError(error.problems) from None
@@ -232,7 +232,7 @@ def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
     """Yield positions that are missing, repeated, not requested, or not positions of the case."""
     requested, there = given.stamp.positions, [p.position for p in given.positions]
     if not requested:
-        yield ("stamp", "positions"), "[]", "is empty", "the positions that were asked for"
+        yield ("stamp", "positions"), "[]", "is empty", "the positions that were requested"
     wanted: set[int] = set()
     for at, index in enumerate(requested):
         if index in wanted:
@@ -242,13 +242,13 @@ def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
     for at, index in enumerate(there):
         path: Path = ("positions", at, "position")
         if not 1 <= index <= train.count:
-            yield path, f"{index}", "is no position of the case", f"1 to {train.count}"
+            yield path, f"{index}", "is not a position of the case", f"1 to {train.count}"
         elif index in found:
             yield path, f"{index}", "appears twice", ""
         found.add(index)
     for what, some in (
         ("is missing", [k for k in requested if k not in found]),
-        ("was not asked for", [k for k in dict.fromkeys(there) if k not in wanted]),
+        ("was not requested", [k for k in dict.fromkeys(there) if k not in wanted]),
     ):
         yield from ((("positions",), "", f"position {k} {what}", "") for k in some)
 
@@ -279,7 +279,9 @@ def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
         path: Path = ("positions", at, "claim")
         if not p.certificate.passed:
             failing = p.certificate.shortfall or "its torques are not bounded closely enough"
-            message = f"position {p.position} is no equilibrium of the case under input: {failing}"
+            message = (
+                f"position {p.position} is not an equilibrium of the case under input: {failing}"
+            )
             yield path, "", message, ""
         elif p.validity.refused:
             yield path, "", f"position {p.position}: {refusal_text(p.validity.refused)}", ""
@@ -293,7 +295,7 @@ def _wrong_slips(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]
         before = p.claim.slip
         path: Path = ("positions", at, "claim", "slip")
         if at > 0 and remembered != (before is not None):
-            yield path, "", "some positions remember their slip and some do not", ""
+            yield path, "", "some positions have a slip from before and some do not", ""
         if before is None:
             continue
         remembered = True
@@ -303,7 +305,7 @@ def _wrong_slips(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]
         for gear, slip in before.items():
             off = float(np.abs(np.array(slip) - after[gear]).max())
             if off > ROUND_OFF * size + DIGITS * float(np.abs(after[gear]).max()):
-                message = "is not the slip at the end of the step before"
+                message = "is not the slip at the end of the previous step"
                 yield (*path, gear), as_given(list(slip)), message, as_given(after[gear].tolist())
         after = {
             gear: train.slip_seen_next(gear, slip_of(spline, p.equilibrium), p.position)

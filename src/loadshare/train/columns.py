@@ -115,7 +115,7 @@ def columns_of(samples: Columns) -> list[Column]:
     columns: list[Column] = []
     problems = []
     if not hasattr(samples, "items"):
-        message, allowed = "is no table of values by key", "a mapping or a data frame"
+        message, allowed = "is not a table of values by key", "a mapping or a data frame"
         raise CaseError([Problem("samples", "", "", message, allowed)])
     for name, given in samples.items():
         key = str(name)
@@ -162,18 +162,18 @@ def _fault(column: Column, before: list[Column]) -> str:
     values = column.values
     if values.ndim != 1:
         number = f"{dotted(column.path)}[0]"
-        return f"is not a list of values; a list has a key for each number, as in {number}"
+        return f"is not a list of values; in a list, each number has its own key, as in {number}"
     if not len(values):
-        return "holds no value"
+        return "contains no value"
     if before and len(values) != len(before[0].values):
         count = len(before[0].values)
-        return f"has {len(values)} values, the keys before it have {count}"
+        return f"has {len(values)} values, but the keys before it have {count}"
     if any(other.path == column.path for other in before):
         return "is given twice"
     if values.dtype.kind not in "fiubU":
-        return "holds what is neither a number nor a text"
+        return "contains something that is neither a number nor a text"
     if column.unit and not column.has_numbers:
-        return "has a unit, but its values are no numbers"
+        return "has a unit, but its values are not numbers"
     if column.has_numbers and not np.isfinite(values.astype(float)).all():
-        return "holds a value that is not finite"
+        return "contains a value that is not finite"
     return ""

@@ -96,8 +96,8 @@ def geometry_of(case: spec.Case) -> Geometry:
     common = operating.cycle == "common" and case.march is None
     rotates = operating.positions > 1 and operating.rotation == "teeth"
     if not kinematics.determined and (rotates or common or case.march is not None):
-        message = "does not tell how fast all gears turn: a differential has two speeds"
-        hint = 'Hold a member, or solve one position, or give rotation = "neglected".'
+        message = "does not determine the speeds of all gears: a differential has two speeds"
+        hint = 'Hold a member, solve a single position, or give rotation = "neglected".'
         problems.append(case.problem("operating.input", message, hint=hint))
     march = case.march
     if march is not None and not problems and not kinematics.gears[march.gear].ratio:
@@ -136,18 +136,20 @@ def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
     if steps > most:
         cycles = found.cycles[found.fastest]
         message = (
-            f"the meshes come round together after {_number_text(cycles)} cycles of mesh "
+            f"all meshes complete whole cycles after {_number_text(cycles)} cycles of mesh "
             f"{found.fastest} ({_number_text(found.revolutions)} revolutions of gear "
-            f"{operating.input}), with {count(operating.positions, 'position')} in each "
-            f"{_number_text(steps)} positions"
+            f"{operating.input}); with {count(operating.positions, 'position')} in each "
+            f"cycle, these are {_number_text(steps)} positions"
         )
         fewer = f" or operating.positions = {most // cycles}" if most >= cycles else ""
-        hint = f"Give a march over a part of it{fewer}."
+        hint = f"Give a march over part of it{fewer}."
         raise CaseError([case.problem(key, message, f"up to {most} positions", hint)])
     for name, measurement in case.measured.items():
         if measurement.position is not None and measurement.position > steps:
             path = f"measured.{name}.position"
-            raise CaseError([case.problem(path, f"the case has {steps}", f"1 to {steps}")])
+            raise CaseError(
+                [case.problem(path, f"the case has positions 1 to {steps}", f"1 to {steps}")]
+            )
     return found
 
 

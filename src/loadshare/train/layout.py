@@ -127,7 +127,7 @@ def _phases_against(case: spec.Case, found: Mapping[str, tuple[float, float]]) -
         if given is not None and abs((given - layout + 0.5) % 1.0 - 0.5) > MEETS:
             path, allowed = ("meshes", name, "phase"), f"{layout:.4g}, or left out"
             hint = 'With operating.phases = "together" any phases may be given.'
-            yield case.problem(path, "contradicts the teeth and their places", allowed, hint)
+            yield case.problem(path, "contradicts the teeth and their positions", allowed, hint)
 
 
 def _phases_unknown(
@@ -190,7 +190,7 @@ def _spacing_hint(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str
         whole = abs(teeth[0] - teeth[1]) if alike else sum(teeth)
         if whole:
             return (
-                f"Gears about the same axis fit at angles {360.0 / whole:.6g} deg "
-                f"apart, and evenly spaced if their number divides {whole}."
+                f"Gears about the same axis fit {360.0 / whole:.6g} deg apart "
+                f"or at multiples of this, and evenly spaced if their number divides {whole}."
             )
     return ""

@@ -113,7 +113,7 @@ def _solved(rows: list[tuple[Row, Fraction]]) -> Row:
             right -= _taken(row, name, known[name])
         if not row:
             if right:
-                raise ValueError("tooth numbers contradict one another on two paths")
+                raise ValueError("the tooth numbers on two paths contradict one another")
             continue
         pivot, factor = next(iter(row.items()))
         found = {n: v / factor for n, v in row.items() if n != pivot}, right / factor

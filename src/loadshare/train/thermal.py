@@ -72,6 +72,6 @@ def fitted(case: spec.Case, bearing: Bearing, gear: Gear) -> Bearing:
         inner, outer = growth_of(case, gear.carrier), inner
     left = bearing.radius + 0.5 * given.diameter.si * (outer - inner)
     if np.any(left < 0.0):
-        message = f"is used up as the bodies grow: {1e6 * float(np.min(left)):.4g} um are left"
+        message = f"is used up as the bodies expand: {1e6 * float(np.min(left)):.4g} um are left"
         raise CaseError([case.problem(("bearings", gear.name, "clearance"), message)])
     return replace(bearing, radius=left)
