@@ -104,7 +104,7 @@ def test_a_planet_that_is_held_in_the_casing_is_reported(written, bearer) -> Non
     relations = [joint(301, bearer, 230) if r[1].get("assembly") == 301 else r for r in relations]
     found = import_rexs(written(xml(components, relations)))
     assert found.case().gears["gear_248"].support.si == pytest.approx(1e9)
-    said = "gear_248: what holds it in the casing counts as on its carrier"
+    said = "gear_248: its supports in the casing are assumed to be on its carrier"
     assert (said in found.assumed) is (bearer == 2)
 
 

@@ -49,7 +49,7 @@ def test_a_shear_modulus_that_is_assumed_is_reported(written, part, material, sh
 @pytest.mark.parametrize(("modulus", "reported"), [(70000.0, True), (210000.0, False)])
 def test_a_gear_that_is_not_of_steel_is_reported(written, modulus, reported) -> None:
     found = import_rexs(written(xml(*made_of(20, elastic_modulus=(modulus, MODULUS)))))
-    assert any("gear_20: as steel" in line for line in found.assumed) is reported
+    assert any("gear_20: treated as steel" in line for line in found.assumed) is reported
 
 
 def flanked(left: dict, right: dict):
@@ -108,7 +108,7 @@ def test_a_gear_has_whole_teeth_and_one_shaft(written) -> None:
     with pytest.raises(CaseError) as caught:
         import_rexs(written(xml(components, relations)))
     message = str(caught.value)
-    assert "cylindrical_gear 20, number_of_teeth = 20.4: is no whole number" in message
+    assert "cylindrical_gear 20, number_of_teeth = 20.4: is not a whole number" in message
     assert "cylindrical_gear 22: is on 2 shafts: 11, 12" in message
 
 
@@ -178,7 +178,9 @@ def test_a_known_version_is_nothing_to_report(written, version) -> None:
 @pytest.mark.parametrize("version", ["9.7", "1.71", "latest", ""])
 def test_an_unknown_version_is_reported(written, version) -> None:
     found = import_rexs(written(xml(*two_stages(), version))).assumed
-    assert any((version or "no version") in s and "read as one from 1.1 to 2.0" in s for s in found)
+    assert any(
+        (version or "no version") in s and "read as a version from 1.1 to 2.0" in s for s in found
+    )
 
 
 def test_a_relation_that_is_given_twice_counts_once(written) -> None:
@@ -215,7 +217,7 @@ def test_a_stage_that_joins_no_gears_is_reported(written, roles) -> None:
     relations[at : at + 1] = [("stage", {"stage": 212, **roles})] if roles else []
     found = import_rexs(written(xml(components, relations)))
     assert [line for line in found.left_out if "stage" in line] == [
-        "cylindrical_stage 212: it joins no two cylindrical gears"
+        "cylindrical_stage 212: it does not join two cylindrical gears"
     ]
 
 
@@ -257,7 +259,7 @@ def test_relations_to_components_that_are_missing_are_named(written, role) -> No
 def test_another_distance_than_that_of_the_axes_is_reported(written, distance, reported) -> None:
     unit = changed(two_stages(), _40={"center_distance": (distance, MM)})
     lines = import_rexs(written(xml(*unit))).assumed
-    said = "mesh gear_20-gear_21: the axes of its gears are 60 mm apart, whatever the"
+    said = "mesh gear_20-gear_21: the axes of its gears are 60 mm apart, not the"
     assert any(line.startswith(said) for line in lines) is reported
 
 
@@ -280,7 +282,7 @@ def test_a_pin_or_bearing_beside_the_axis_of_its_planet_is_reported(
         (components, relations), **{f"_{part}": {"support_vector": ([x, y, z + aside], MM)}}
     )
     lines = import_rexs(written(xml(*unit))).assumed
-    said = "concept_bearing 301 (planet bearing 1): it and its shafts count as on one axis, though"
+    said = "concept_bearing 301 (planet bearing 1): it and its shafts are assumed to be on one"
     assert any(line.startswith(said) and "0.03 mm" in line for line in lines) is reported
 
 
@@ -291,7 +293,7 @@ def test_another_speed_than_the_teeth_make_is_reported(written, speed, reported)
         f"_{id_}": {"rotational_speed": (n, "1 / min")} for id_, n in ((10, -1e3), (12, speed))
     }
     lines = import_rexs(written(xml(*changed(two_stages(), **speeds)))).assumed
-    said = [line for line in lines if "the teeth make it -166.667 rpm" in line]
+    said = [line for line in lines if "the teeth give -166.667 rpm" in line]
     assert bool(said) is reported
     assert not reported or said[0].startswith("gear_23: shaft 12 (out) is given a speed of -200")
 

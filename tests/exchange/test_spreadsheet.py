@@ -138,31 +138,37 @@ def test_cells_are_what_their_keys_take(box) -> None:
         ),
         (
             {"gears": GEARS.replace("teeth", "a b.c[0]")},
-            'gears.csv: row 1, column B: "a b.c[0]" is no key',
+            'gears.csv: row 1, column B: "a b.c[0]" is not a key',
         ),
         ({"gears": GEARS + "a,1,1,1\n"}, 'row 4, column A: the name "a" appears twice'),
         ({"gears": GEARS + ",1,1,1\n"}, "row 4, column A: has no name"),
         ({"gears": GEARS + "c,1,1,1;1,1,6\n"}, 'row 4, column F: "6" has no head'),
         ({"gears": GEARS.replace("module", "teeth")}, "gears.csv: row 2, column C: gears.a.teeth"),
-        ({"gears": "a,b\n"}, "gears.csv: row 1, column A: has no head. Allowed: name, then keys"),
+        (
+            {"gears": "a,b\n"},
+            "gears.csv: row 1, column A: has no heading. Allowed: name, then keys",
+        ),
         ({"gears": ""}, "gears.csv: row 1, column A: has no head"),
         ({"gears": GEARS.replace(",", "\t")}, "has no commas between its cells"),
         ({"gears": "name;teeth\na;1,5\n"}, "has no commas between its cells"),
         ({"gears": 'name,teeth\n"a,1\n'}, "gears.csv: is not CSV"),
         ({"gears": b"name,teeth\n\xff,1\n"}, "gears.csv: is not UTF-8 text at byte 11"),
-        ({"operating": "input,a\n"}, "operating.csv: row 1, column A: has no head. Allowed: key,"),
+        (
+            {"operating": "input,a\n"},
+            "operating.csv: row 1, column A: has no heading. Allowed: key,",
+        ),
         (
             {"operating": OPERATING + "speed,1 rpm,2\n"},
             "row 5, column C: is outside the columns key and",
         ),
-        ({"operating": OPERATING + ",1 rpm\n"}, "row 5, column A: has a value and no key"),
+        ({"operating": OPERATING + ",1 rpm\n"}, "row 5, column A: has a value but no key"),
         ({"operating": OPERATING + "torque,1 N*m\n"}, "operating.torque appears twice"),
         (
             {"meshes": "name,law,law.b\na-b,iso,1e-6 rad/(N*m)\n"},
             'row 2, column C: meshes."a-b".law.b cannot be combined with meshes."a-b".law',
         ),
-        ({"gaers": GEARS}, "gaers.csv: gaers is no table of a case. Allowed: case, operating, "),
-        ({"gears": "name," + ".".join("a" * 30) + "\na,1\n"}, "is no key"),
+        ({"gaers": GEARS}, "gaers.csv: gaers is not a table of a case. Allowed: case, operating, "),
+        ({"gears": "name," + ".".join("a" * 30) + "\na,1\n"}, "is not a key"),
     ],
 )
 def test_what_is_wrong_is_reported_with_its_cell(box, tables, message) -> None:
@@ -178,7 +184,7 @@ def test_a_unit_may_be_a_reciprocal(box) -> None:
 
 
 def test_a_folder_without_tables_and_none_at_all_are_reported(tmp_path) -> None:
-    for path, message in ((tmp_path, "holds no CSV file"), (tmp_path / "x", "no such file")):
+    for path, message in ((tmp_path, "contains no CSV file"), (tmp_path / "x", "no such file")):
         with pytest.raises(CaseError, match=message):
             import_tables(path)
 
@@ -205,10 +211,10 @@ def test_what_cannot_stand_in_a_cell_is_not_written(box) -> None:
     data = import_tables(box()).case().to_dict()
     data["meshes"] = {"m;n": {"driver": "a", "driven": "b", **data["meshes"]["a-b"]}}
     data["stages"] = {"I": {"meshes": ["m;n"]}}
-    with pytest.raises(CaseError, match="cannot stand in a cell as it is"):
+    with pytest.raises(CaseError, match="cannot be written to a cell as it is"):
         dict(case_frames(data))
     assert dict(case_frames({"notes": "one line\r\nand another"}))
-    with pytest.raises(CaseError, match="cannot stand in a cell as it is"):
+    with pytest.raises(CaseError, match="cannot be written to a cell as it is"):
         dict(case_frames({"notes": "one line\rand another"}))
 
 
@@ -223,7 +229,7 @@ def test_a_cell_of_a_table_may_be_as_long_as_the_table(box, tmp_path) -> None:
 
 def test_spaces_at_the_ends_of_a_title_are_named(box) -> None:
     data = import_tables(box()).case().to_dict() | {"title": "A box, which one? "}
-    with pytest.raises(CaseError, match="A cell loses the spaces at its ends"):
+    with pytest.raises(CaseError, match="A cell loses leading and trailing spaces"):
         dict(case_frames(data))
 
 
@@ -433,7 +439,7 @@ def test_empty_sheets_of_no_table_are_left_out(book, tmp_path) -> None:
     assert read() == whole
     assert import_tables(tmp_path / "box.xlsx").left_out == ("empty sheets",)
     sheets["Notes"]["B2"] = "as agreed"
-    with pytest.raises(CaseError, match="sheet Notes: notes is no table of a case"):
+    with pytest.raises(CaseError, match="sheet Notes: notes is not a table of a case"):
         read()
     sheets["Notes"]["B2"] = None
     sheets.create_sheet("errors")

@@ -35,7 +35,7 @@ def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: 
         Receive the remarks on torques and speeds.
     """
     speeds = _speeds(of, flow)
-    unknown = f"{flow.first}: no speed is given, it runs in the sense of its torque"
+    unknown = f"{flow.first}: no speed is given; it is assumed to run in the sense of its torque"
     if not flow.others and not flow.output and not speeds:
         assumed += [] if flow.speed else [unknown]
         return data
@@ -44,7 +44,7 @@ def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: 
         geometry = geometry_of(Case(_loaded(data, flow.others)))
     except CaseError:
         assumed += [] if flow.speed else [unknown]
-        left_out += [f"{name}: a torque that the case cannot have as it is" for name in flow.others]
+        left_out += [f"{name}: a torque that the case cannot represent" for name in flow.others]
         return data
     gears = geometry.gears
     if not flow.speed:
@@ -61,7 +61,7 @@ def balanced(of: Gearing, data: Data, flow: Flow, assumed: list[str], left_out: 
     for name, torque in flow.others.items():
         external[name] = along = torque * (gears[name].running or gears[name].sense)
         power += along * abs(gears[name].ratio)
-        assumed.append(f"{name}: a further torque of {along:.6g} N·m in its sense of rotation")
+        assumed.append(f"{name}: an additional torque of {along:.6g} N·m in its sense of rotation")
     if flow.output:
         assumed += _contradiction(flow, gears[flow.last], power)
     return _loaded(data, external)
@@ -88,7 +88,7 @@ def _turning(
             sense = gears[flow.first].sense * speed
             running = "counter-clockwise" if sense > 0.0 else "clockwise"
             return speed, (
-                f"{flow.first}: no speed is given; by that of {shaft} it runs {running} at "
+                f"{flow.first}: no speed is given; from that of {shaft}, it runs {running} at "
                 f"{abs(speed) * RPM:.6g} rpm"
             )
     return None
@@ -128,8 +128,8 @@ def _other_speeds(
         if expected and abs(given - expected) > ALIKE * max(abs(given), abs(expected)):
             rpm = [f"{speed * RPM:.6g}" for speed in (given, expected)]
             found.append(
-                f"{name}: {shaft} is given a speed of {rpm[0]} rpm; with that of the input, the "
-                f"teeth make it {rpm[1]} rpm, which counts"
+                f"{name}: {shaft} is given a speed of {rpm[0]} rpm; from that of the input, the "
+                f"teeth give {rpm[1]} rpm, which is used"
             )
     return found
 
@@ -142,6 +142,6 @@ def _contradiction(flow: Flow, last: Gear, power: float) -> list[str]:
     if abs(given - needed) <= ALIKE * max(abs(given), abs(needed)):
         return []
     return [
-        f"{flow.last}: the load on the output gives {given:.6g} N·m in its sense of rotation, the "
-        f"others leave {needed:.6g} N·m, which counts"
+        f"{flow.last}: the load on the output gives {given:.6g} N·m in its sense of rotation; the "
+        f"others leave {needed:.6g} N·m, which is used"
     ]

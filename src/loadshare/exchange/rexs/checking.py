@@ -52,7 +52,7 @@ def unplaced(of: Gearing) -> list[str]:
     ]
     parts += [(each.load, each.shaft, "", False) for each in applied_loads(of)]
     return [
-        f"{part.title()}: at the start of {shaft.title()}, no place along it is given"
+        f"{part.title()}: at the start of {shaft.title()}, as no place along it is given"
         for part, shaft, side, twists in parts
         if of.places.along(part, shaft, side) is None
         and (bodies := len(of.on_shaft(shaft)))
@@ -68,7 +68,7 @@ def beside_axes(of: Gearing) -> list[str]:
         off = max((of.places.off_axis(e, s) for s in shafts for e in (part, *shafts)), default=0.0)
         if off > ON_AXIS:
             found.append(
-                f"{part.title()}: it and its shafts count as on one axis, though they are "
+                f"{part.title()}: it and its shafts are assumed to be on one axis, though they are "
                 f"{1e3 * off:.6g} mm apart"
             )
     return found
@@ -87,13 +87,13 @@ def contradictions(path: Path, of: Gearing) -> list[Problem]:
         teeth = gear.number("number_of_teeth")
         if teeth is not None and abs(teeth - round(teeth)) > 1e-6:
             where = f"{where}, number_of_teeth"
-            problems.append(Problem(str(path), where, f"{teeth:g}", "is no whole number"))
+            problems.append(Problem(str(path), where, f"{teeth:g}", "is not a whole number"))
         module = gear.number("normal_module")
         if module is not None and module < 0.0:
             where, given = f"{gear.type} {gear.id}, normal_module", f"{1e3 * module:g} mm"
-            hint = "An internal gear has negative teeth, or is a ring_gear."
+            hint = "An internal gear has a negative number of teeth, or is a ring_gear."
             why = "is negative"
-            problems.append(Problem(str(path), where, given, why, "the size of a tooth", hint))
+            problems.append(Problem(str(path), where, given, why, "a module above 0", hint))
     return problems
 
 
@@ -104,7 +104,7 @@ def unclear_couplings(path: Path, of: Gearing) -> list[Problem]:
         given = coupling.attributes.get("is_engaged")
         if isinstance(given, tuple) and len(given) != 1 and not 0 < of.shift <= len(given):
             where = f"{coupling.type} {coupling.id}, is_engaged"
-            why = f"is for {len(given)} gears, gear_shift_index of the gear unit is {of.shift}"
+            why = f"is for {len(given)} gears, but gear_shift_index of the gear unit is {of.shift}"
             problems.append(Problem(str(path), where, "", why))
         elif given not in (None, "") and not isinstance(given, bool | tuple):
             where = f"{coupling.type} {coupling.id}, is_engaged"
@@ -122,16 +122,16 @@ def unused(of: Gearing, used: set[str]) -> list[str]:
         Ids of the bearings and couplings that hold or join something in the case.
     """
     found = [
-        f"stage {stage.id}: {one.title()} or {other.title()} turns loose, its coupling is open"
+        f"stage {stage.id}: {one.title()} or {other.title()} turns freely, as its coupling is open"
         for stage, one, other in of.loose
     ]
     found += [
-        f"stage {stage.id}: {one.title()} and {other.title()} mesh in stage {first.id} already"
+        f"stage {stage.id}: {one.title()} and {other.title()} already mesh in stage {first.id}"
         for (stage, one, other), (first, *_) in of.repeated
     ]
     joined = {stage.id for stage, *_ in (*of.stages, *of.loose, *(two for two, _ in of.repeated))}
     found += [
-        f"{stage.title()}: it joins no two cylindrical gears"
+        f"{stage.title()}: it does not join two cylindrical gears"
         for stage in of.model.of_type("cylindrical_stage")
         if stage.id not in joined
     ]
@@ -187,9 +187,9 @@ def _why_unused(of: Gearing, part: Component, sides: list[Component]) -> str:
     if part.type in COUPLINGS and not of.is_engaged(part):
         return "it is open"
     if part.type in COUPLINGS and not transmits(part):
-        return "its torsional stiffness is zero, it transmits no torque"
+        return "its torsional stiffness is zero, so it transmits no torque"
     if part.type in BEARINGS and radial(part) <= 0.0:
-        return "it bears no load across the axis"
+        return "it takes no load across the axis"
     if all(of.on_shaft(side) for side in sides):
         return "it lies between two shafts that turn"
     return "it neither holds nor joins gears or carriers"

@@ -72,7 +72,7 @@ def flow_of(of: Gearing, assumed: list[str], lacks: Lacks) -> Flow | None:
         return None
     added = [each for each in same if _torque(each.load)]
     if len(added) > 1:
-        assumed.append(f"{first}: the torques of {len(added)} loads on its shaft, added")
+        assumed.append(f"{first}: the sum of the torques of {len(added)} loads on its shaft")
     output, beside, further = 0.0, [], dict[str, float]()
     for each in others:
         amount = of.sense(each.shaft, each.body) * _torque(each.load)

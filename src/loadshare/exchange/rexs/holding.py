@@ -136,21 +136,21 @@ def holding_of(of: Gearing, body: Component, assumed: list[str]) -> Holding:
     if not links:
         shafts = of.shafts_of(body)
         if shafts:
-            assumed.append(f"{name}: no bearing holds it across its axis, it floats")
+            assumed.append(f"{name}: no bearing holds it across its axis, so it floats")
         return Holding({"support": "free" if shafts else "rigid"}, {}, nowhere, frozenset())
     yields = sum(_yields(level) for level in (links, seats) if level)
     stiffness = f"{1.0 / yields:.12g} N/m" if yields > 1.0 / STIFF else "rigid"
     if len(links) > 1 or yields:
-        assumed.append("supports: each gear by the bearings of its shaft, as a rigid beam")
+        assumed.append("supports: each gear is held by the bearings of its shaft, a rigid beam")
     parts = frozenset(link.part.id for link in (*links, *seats))
     offset = _offset(of, [*_shared(links), *_shared(seats)])
     if any(offset) and body.id in of.carrier_of:
-        assumed.append("planets: the misalignment of their bearings stays as it is when they turn")
+        assumed.append("planets: the misalignment of their bearings does not change when they turn")
     own, below = _clearance(links, assumed), _clearance(seats, assumed)
     gap = own + below
     if gap > 0.0:
-        more = ", and half of that of what carries its shaft" if below else ""
-        assumed.append(f"{name}: half of its bearings' mean radial clearance to every side{more}")
+        more = ", and half that of what carries its shaft" if below else ""
+        assumed.append(f"{name}: half its bearings' mean radial clearance to each side{more}")
         clearance = {"clearance": f"{0.5e6 * gap:.12g} um", "stiffness": stiffness}
         return Holding({}, clearance, offset, parts)
     return Holding({"support": stiffness}, {}, offset, parts)
@@ -163,7 +163,7 @@ def _clearance(links: list[Link], assumed: list[str]) -> float:
         given = part.number(*CLEARANCES) or 0.0
         if given < 0.0:
             assumed.append(
-                f"{part.title()}: its clearance of {1e6 * given:g} um is preload, 0 is assumed"
+                f"{part.title()}: its clearance of {1e6 * given:g} um is a preload; 0 is assumed"
             )
         gaps.append(max(given, 0.0))
     return sum(gaps) / len(gaps) if gaps else 0.0
@@ -205,7 +205,7 @@ def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link]
             if seats:
                 pinned.append((joint, seats))
             elif other.id in of.pins:
-                assumed.append("pins of which no seat is given are rigid in their carriers")
+                assumed.append("pins without a given seat are rigid in their carriers")
                 firm.append(joint)
         elif other.type == "shaft" and other.id not in of.carrier_shafts:
             riding.append(joint)
@@ -220,12 +220,14 @@ def _links(of: Gearing, body: Component, assumed: list[str]) -> tuple[list[Link]
             )
     ends = [*firm, *(seat for _, seats in pinned for seat in seats)]
     if body.id in of.carrier_of and any(joint.other.id in of.casing for joint in ends):
-        assumed.append(f"{name}: what holds it in the casing counts as on its carrier")
+        assumed.append(f"{name}: its supports in the casing are assumed to be on its carrier")
     # A single pin yields in series; beside other supports, the tilting of both shafts would count.
     seats = pinned[0][1] if pinned else []
     if firm or len({joint.other.id for joint, _ in pinned}) > 1:
         if any(radial(seat.part) < STIFF for _, seats in pinned for seat in seats):
-            assumed.append(f"{name}: held in several ways, of which shafts without gears are rigid")
+            assumed.append(
+                f"{name}: held in several ways; shafts without gears among them are rigid"
+            )
         seats = []
     held = [*firm, *(joint for joint, _ in pinned)]
     return _placed(of, body, held, assumed), _placed(of, body, seats, assumed)
@@ -250,14 +252,14 @@ def _placed(of: Gearing, body: Component, joints: list[Joint], assumed: list[str
     known = [place for place in places if place is not None]
     if unknown or (known and is_one(known) and abs(known[0]) > NEAR):
         why = "the places of its bearings are not given" if unknown else "it is held at one place"
-        assumed.append(f"{of.names[body.id]}: no tilting is seen, {why}")
+        assumed.append(f"{of.names[body.id]}: tilting is neglected, as {why}")
     assumed += [
-        f"{joint.part.title()}: no radial stiffness is given, it is rigid"
+        f"{joint.part.title()}: no radial stiffness is given; it is rigid"
         for joint in joints
         if joint.part.type in BEARINGS and joint.part.number("radial_stiffness") is None
     ]
     assumed += [
-        f"{joint.part.title()}: no w axis is given, its misalignment counts from z"
+        f"{joint.part.title()}: no w axis is given; its misalignment counts from z"
         for joint in joints
         if any(joint.part.number(f"misalignment_in_{axis}_direction") for axis in "vw")
         and all(body.vector("w_axis_vector") is None for body in (joint.part, joint.shaft))

@@ -146,33 +146,31 @@ class _Importer:
         flanks = self.of.flanks(gear)
         shift = self._first_of(gear, [gear, *flanks], *SHIFTS)
         if shift is None:
-            self.assumed.append(f"{name}: no profile shift is given, 0 is assumed")
+            self.assumed.append(f"{name}: no profile shift is given; 0 is assumed")
         elif shift:
             made["profile_shift"] = shift
         angle = self._first_of(gear, [*flanks, gear], "normal_pressure_angle")
         if angle is None:
-            self.assumed.append(f"{name}: no pressure angle is given, 20 deg is assumed")
+            self.assumed.append(f"{name}: no pressure angle is given; 20 deg is assumed")
         else:
             made["pressure_angle"] = _deg(angle)
         helix = gear.number("helix_angle_reference_diameter")
         if helix is None:
-            self.assumed.append(f"{name}: no helix angle is given, 0 is assumed")
+            self.assumed.append(f"{name}: no helix angle is given; 0 is assumed")
         elif helix:
             made["helix_angle"] = _deg(helix)
         if width := gear.number("face_width"):
             made["face_width"] = _mm(width)
-        self.assumed.append("teeth: the rack's addendum is one module, tips are not altered")
+        self.assumed.append("teeth: the rack's addendum is one module, and tips are not altered")
         shaft = self.of.shaft_of.get(gear.id)
         if shaft is not None and self.of.places.along(gear, shaft) is None:
-            self.assumed.append(f"{name}: at the start of its shaft, no place along it is given")
+            self.assumed.append(f"{name}: at the start of its shaft, as no place along it is given")
         if all(b is None or b.vector("u_axis_vector") is None for b in (shaft, gear)):
-            self.assumed.append(f"{name}: no direction of its axis is given, x is assumed")
+            self.assumed.append(f"{name}: no direction of its axis is given; x is assumed")
         if shaft is not None and not self.of.places.are_parallel(gear, shaft):
-            self.assumed.append(f"{name}: its axis is its shaft's, not the one that it gives")
+            self.assumed.append(f"{name}: its axis is that of its shaft, not its own")
         if shaft is not None and (off := self.of.places.off_axis(gear, shaft)) > ON_AXIS:
-            self.assumed.append(
-                f"{name}: at the place that it gives, {_mm(off)} off the axis of its shaft"
-            )
+            self.assumed.append(f"{name}: at its own place, {_mm(off)} off the axis of its shaft")
         made |= self._placed(gear, self.of.middle(gear))
         if gear.id in self.of.carrier_of:
             made["carrier"] = self.of.names[self.of.carrier_of[gear.id].id]
@@ -185,7 +183,7 @@ class _Importer:
         values = [value for part in given if (value := part.number(*names)) is not None]
         if any(abs(value - values[0]) > 1e-9 for value in values):
             self.assumed.append(
-                f"{self.of.names[gear.id]}: {names[0]} is given as several values, the first counts"
+                f"{self.of.names[gear.id]}: {names[0]} has several values; the first is used"
             )
         return first
 
@@ -199,7 +197,9 @@ class _Importer:
             made |= self._placed(carrier, places[0])
         elif middle is not None and len(planets) >= 2:
             made |= self._placed(carrier, middle)
-            self.assumed.append(f"{self.of.names[carrier.id]}: its axis is amid its planets")
+            self.assumed.append(
+                f"{self.of.names[carrier.id]}: its axis is in the middle of its planets"
+            )
         else:
             self._lacks(carrier, "has no place")
         return made | self.holding[carrier.id].support
@@ -250,7 +250,7 @@ class _Importer:
         self.left_out += [f"{count} {kind}" for kind, count in sorted(kinds.items())]
         self.left_out += self.of.model.dangling_relations
         idle = [g for g in self.of.model.of_type(*GEARS) if g.id not in self.of.names]
-        self.left_out += [f"gear {g.name or g.id}: no mesh of it carries load" for g in idle]
+        self.left_out += [f"gear {g.name or g.id}: none of its meshes carries load" for g in idle]
         holding = [id_ for held in self.holding.values() for id_ in held.parts]
         self.left_out += unused(self.of, {*holding, *self.links.used})
         self.left_out.append("axial forces, tilting and bending of shafts: the model is plane")

@@ -108,7 +108,7 @@ def _between(of: Gearing, one: Joint, other: Joint, assumed: list[str]) -> float
         why = (
             "no places along it are given" if None in places else "both couplings are at one place"
         )
-        assumed.append(f"{shaft.title()}: rigid between its couplings, {why}")
+        assumed.append(f"{shaft.title()}: rigid between its couplings, as {why}")
         return 0.0
     return _twist(of, shaft, (start, stop), f"{shaft.title()} between its couplings", assumed)
 
@@ -159,7 +159,7 @@ def _compliance(coupling: Component, assumed: list[str]) -> float:
     """Return the compliance of a coupling [rad/(N·m)]; 0 if its stiffness is not given."""
     stiffness = coupling.number("rotational_stiffness")
     if stiffness is None and coupling.type != "rigid_connection":
-        assumed.append(f"{coupling.title()}: no torsional stiffness is given, it is rigid")
+        assumed.append(f"{coupling.title()}: no torsional stiffness is given; it is rigid")
     return 1.0 / stiffness if stiffness else 0.0
 
 

@@ -114,10 +114,10 @@ def _width_assumed(
     """Return what is assumed about the width over which a mesh carries load."""
     given, narrower = stage.number("common_face_width"), _narrower(driver, driven)
     if "stiffness" in law and not given:
-        return [f"mesh {name}: carries on all of the narrower face, {1e3 * narrower:g} mm"]
+        return [f"mesh {name}: carries load over all of the narrower face, {1e3 * narrower:g} mm"]
     if "law" in law and given and abs(given - narrower) > ALIKE * given:
         return [
-            f"mesh {name}: carries where its faces overlap, whatever the common_face_width of "
+            f"mesh {name}: carries load where its faces overlap, not over the common_face_width of "
             f"{1e3 * given:g} mm"
         ]
     return []
@@ -135,7 +135,7 @@ def _distance_assumed(
     if abs(abs(given) - found) <= ALIKE * found:
         return []
     return [
-        f"mesh {name}: the axes of its gears are {1e3 * found:.6g} mm apart, whatever the "
+        f"mesh {name}: the axes of its gears are {1e3 * found:.6g} mm apart, not the "
         f"center_distance of {1e3 * given:g} mm"
     ]
 
@@ -147,9 +147,7 @@ def _not_of_steel(of: Gearing) -> list[str]:
         material = material_of(of.model, gear)
         young = material.number("elastic_modulus") if material is not None else None
         if young is not None and abs(young / YOUNG - 1.0) > LIKE_STEEL:
-            found.append(
-                f"{of.names[gear.id]}: as steel in its meshes, not E = {young / 1e9:g} GPa"
-            )
+            found.append(f"{of.names[gear.id]}: treated as steel, not with E = {young / 1e9:g} GPa")
     return found
 
 

@@ -129,7 +129,7 @@ def in_si(name: str, value: Value, unit: str) -> Value | None:
     text = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in numbers)
     given = text if unit in NO_UNIT else f"{text} {unit}"
     if not all(isinstance(v, float) and abs(v) <= ALLOWED.largest for v in numbers):
-        return Unread(given, "is no number of a size that can be used")
+        return Unread(given, "is not a number of a usable size")
     is_vector = target == DIRECTION or name == "support_vector"
     if len(numbers) != (3 if is_vector else 1):
         return Unread(given, f"is not {'three numbers' if is_vector else 'one number'}")
@@ -140,7 +140,7 @@ def in_si(name: str, value: Value, unit: str) -> Value | None:
     factor = factor_of(unit, target)
     if factor is not None:
         return _scaled(value, factor, unit)
-    why = "has no unit" if unit in NO_UNIT else "is in no unit that is known for it"
+    why = "has no unit" if unit in NO_UNIT else "is in a unit that is not known for it"
     return Unread(given, why, _usual(target))
 
 

@@ -27,8 +27,8 @@ CODES = {"float64": "d", "float32": "f"}
 
 OTHERS = {
     ".toml": "is a case already; `loadshare run` solves it",
-    ".nc": "is a result, which holds its case: there is nothing to import",
-    ".csv": "is one table; give the folder that holds all tables of a case",
+    ".nc": "is a result, which contains its case: there is nothing to import",
+    ".csv": "is one table; give the folder that contains all tables of a case",
     **dict.fromkeys((".xlsm", ".xls", ".xlsb", ".ods"), "is a workbook; save it as .xlsx"),
 }
 """Messages for files that are not gear units, by their endings."""
@@ -65,7 +65,7 @@ def read_model(path: Path) -> Model:
     except RecursionError:
         refuse(path, "is nested too deeply")
     if not model.components:
-        refuse(path, "is no REXS: it has no components")
+        refuse(path, "is not REXS: it has no components")
     return model
 
 
@@ -82,7 +82,7 @@ def _from_xml(content: bytes) -> Mapping[str, Any]:
     """Return the model of an XML file as a JSON file holds it."""
     root = parsed(content)
     if root.tag != "model":
-        raise _NoRexs(f"is no REXS: its first element is {root.tag}, not model")
+        raise _NoRexs(f"is not REXS: its first element is {root.tag}, not model")
     relations = root.iterfind("relations/relation")
     cases = root.iterfind("load_spectrum/load_case")
     changed = [{"components": list(map(_as_json, case.iter("component")))} for case in cases]
@@ -103,7 +103,7 @@ def parsed(content: bytes, comments: bool = False) -> ElementTree.Element:
     parser = expat.ParserCreate()
 
     def refuse(*_: Any) -> NoReturn:
-        raise _NoRexs("declares a document type, as no REXS does")
+        raise _NoRexs("declares a document type, which no REXS file does")
 
     depth = 0
 
@@ -206,7 +206,7 @@ def _from_json(content: bytes) -> Mapping[str, Any]:
         raise _NoRexs(f"is not valid JSON: {error}") from None
     model = held.get("model") if isinstance(held, Mapping) else None
     if not isinstance(model, Mapping):
-        raise _NoRexs("is no REXS: it has no model")
+        raise _NoRexs("is not REXS: it has no model")
     return model
 
 
@@ -249,11 +249,11 @@ def _model_of(given: Mapping[str, Any]) -> Model:
     whole = {component.id: component for component in every}
     for id_, count in Counter(component.id for component in every).items():
         if count > 1:
-            raise _NoRexs(f"has {count} components with the id {id_!r}: every id is that of one")
+            raise _NoRexs(f"has {count} components with the id {id_!r}: ids must be unique")
     notes: tuple[str, ...] = ()
     if not VERSIONS.fullmatch(version):
         lacks = f"version {version} is not known" if version else "no version is given"
-        notes = (f"{lacks}: read as one from 1.1 to 2.0",)
+        notes = (f"{lacks}: read as a version from 1.1 to 2.0",)
     if cases:
         notes += (f"loads are those of the first of {len(cases)} load cases",)
         changes = {c.id: c for c in map(_component, tables(cases[0].get("components")))}
@@ -262,7 +262,7 @@ def _model_of(given: Mapping[str, Any]) -> Model:
             whole[id_] = replace(whole[id_], attributes=attributes)
     once = {(r.type, frozenset(r.roles.items())): r for r in relations}
     if repeated := len(relations) - len(once):
-        notes += (f"relations given more than once count once: {repeated} left out",)
+        notes += (f"relations given more than once are used once: {repeated} left out",)
     single = tuple(once.values())
     return Model(version, whole, single, notes, _pointless(single, whole))
 

@@ -38,7 +38,7 @@ def twist_between(of: Gearing, shaft: Component, start: float, stop: float) -> T
         if low > reached + SLACK:
             break
         if low < reached - SLACK:
-            return Twist(0.0, "rigid, its sections overlap")
+            return Twist(0.0, "rigid, as its sections overlap")
         shear, assumed = _shear_modulus(of.model, section, shaft)
         outer, inner = _diameters(section, "outer", notes), _diameters(section, "inner", notes)
         notes.add(assumed)
@@ -47,11 +47,11 @@ def twist_between(of: Gearing, shaft: Component, start: float, stop: float) -> T
             part = (low + (k + 0.5) * step - at) / length
             polar = math.pi / 32.0 * (_between(outer, part) ** 4 - _between(inner, part) ** 4)
             if polar <= 0.0:
-                return Twist(0.0, "rigid, a section has no diameter, or a bore that is as large")
+                return Twist(0.0, "rigid, as a section has no diameter, or a bore as large")
             yields += step / (shear * polar)
         reached = high
     if reached < stop - SLACK or yields <= 0.0:
-        return Twist(0.0, "rigid, its sections do not cover it")
+        return Twist(0.0, "rigid, as its sections do not cover it")
     return Twist(yields, "; ".join(sorted(notes - {""})))
 
 
@@ -71,7 +71,7 @@ def _diameters(section: Component, side: str, notes: set[str]) -> tuple[float, f
     begin, end = (section.number(f"{side}_diameter_{which}") for which in ("begin", "end"))
     if begin is None and end is None:
         if side == "inner":
-            notes.add("solid, no bore is given")
+            notes.add("solid, as no bore is given")
         return 0.0, 0.0
     if begin is None or end is None:
         notes.add(f"the {side} diameter of a section is that of the one end that is given")
@@ -87,16 +87,16 @@ def _shear_modulus(model: Model, section: Component, shaft: Component) -> tuple[
     """Return the shear modulus of a section [Pa], and what was assumed for it."""
     material = material_of(model, section) or material_of(model, shaft)
     if material is None:
-        return STEEL, "steel, G = 79.3 GPa, no material is given"
+        return STEEL, "steel, G = 79.3 GPa, as no material is given"
     shear, young = material.number("shear_modulus"), material.number("elastic_modulus")
     poisson = material.number("poisson_ratio")
     if shear and shear > 0.0:
         return shear, ""
     if not young or young <= 0.0:
-        return STEEL, "steel, G = 79.3 GPa, its material gives no modulus"
+        return STEEL, "steel, G = 79.3 GPa, as its material gives no modulus"
     if poisson is not None and poisson > -1.0:
         return young / (2.0 * (1.0 + poisson)), ""
-    return young / (2.0 * (1.0 + POISSON)), "its material gives no Poisson's ratio, 0.3 is assumed"
+    return young / (2.0 * (1.0 + POISSON)), "its material gives no Poisson's ratio; 0.3 is assumed"
 
 
 def material_of(model: Model, part: Component) -> Component | None:

@@ -107,7 +107,7 @@ def _check_fit(sheet: str, row: Sequence[Any]) -> None:
     for text in row:
         if isinstance(text, str) and (len(text) > LONGEST or "\r" in text or CONTROL.search(text)):
             allowed = f"{LONGEST} characters, none of them a control character"
-            why, hint = "no cell of a workbook can hold it", "A table as CSV holds any text."
+            why, hint = "no cell of a workbook can hold it", "A CSV table can hold any text."
             where = dotted((sheet, str(row[0])))
             raise CaseError([Problem("", where, as_given(text), why, allowed, hint)])
 
@@ -178,10 +178,10 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
             # A lone carriage return, which CSV takes for a line end.
             or "\r" in cell.replace("\r\n", "")
         ):
-            what = "cannot stand in a cell as it is"
+            what = "cannot be written to a cell as it is"
             where = dotted((above[0], "…", *path) if len(above) > 1 else (*above, *path))
             spaces = isinstance(value, str) and value != value.strip()
-            hint = "A cell loses the spaces at its ends." if spaces else ""
+            hint = "A cell loses leading and trailing spaces." if spaces else ""
             raise CaseError([Problem("", where, text_of(value), what, hint=hint)])
     return head, cells
 

@@ -93,7 +93,7 @@ class _Reader:
             self.left_out.append("empty sheets")
         elif sheet.name not in known:
             hint = did_you_mean(sheet.name, known)
-            self._tell(sheet.place, f"{sheet.name} is no table of a case", choices(known), hint)
+            self._tell(sheet.place, f"{sheet.name} is not a table of a case", choices(known), hint)
         elif len(sheet.rows) > ALLOWED.entries:
             self._tell(sheet.place, f"has {len(sheet.rows)} rows", f"at most {ALLOWED.entries}")
         elif sheet.problems:
@@ -115,7 +115,7 @@ class _Reader:
             "key",
             "value",
         ]:
-            self._tell(sheet.at(0, 0), "has no head", "key, value")
+            self._tell(sheet.at(0, 0), "has no heading", "key, value")
             return
         for number, row in enumerate(sheet.rows[1:], start=1):
             key, value, *more = [*(cell.strip() for cell in row), "", ""]
@@ -127,13 +127,13 @@ class _Reader:
                 if path is not None and value:
                     self._put(sheet.at(number, 1), *path, value)
             elif value:
-                self._tell(sheet.at(number, 0), "has a value and no key", "a key")
+                self._tell(sheet.at(number, 0), "has a value but no key", "a key")
 
     def _elements(self, sheet: Sheet) -> None:
         """Read a sheet with a row for every element."""
         head = [cell.strip() for cell in sheet.rows[0]] if sheet.rows else []
         if not head or head[0].lower() != "name":
-            self._tell(sheet.at(0, 0), "has no head", "name, then keys of the case file")
+            self._tell(sheet.at(0, 0), "has no heading", "name, then keys of the case file")
             return
         section = self.data.setdefault(sheet.name, {})
         for column, text in enumerate(head):
@@ -160,7 +160,7 @@ class _Reader:
             for column, cell in enumerate(cells[1:], start=1):
                 if column >= len(head) or not head[column]:
                     if cell:
-                        self._tell(sheet.at(number, column), f"{as_given(cell)} has no head")
+                        self._tell(sheet.at(number, column), f"{as_given(cell)} has no heading")
                 elif cell and (found := columns[column]) is not None:
                     path, unit = found
                     self._put(sheet.at(number, column), (sheet.name, name, *path[2:]), unit, cell)
@@ -172,7 +172,7 @@ class _Reader:
             return head_of(text, above)
         except ValueError:
             allowed = "a key such as face_width, or centre.distance [mm] with its unit"
-            self._tell(sheet.at(row, column), f"{as_given(text)} is no key", allowed)
+            self._tell(sheet.at(row, column), f"{as_given(text)} is not a key", allowed)
             return None
 
     def _put(self, place: str, path: Path, unit: str, text: str) -> None:

@@ -27,7 +27,7 @@ def sheets_of(path: Path) -> list[Sheet]:
     with reading(path):
         files = sorted(f for f in path.iterdir() if f.suffix.lower() == ".csv" and f.stem[0] != ".")
     if not files:
-        refuse(path, "holds no CSV file")
+        refuse(path, "contains no CSV file")
     sheets: list[Sheet] = []
     problems: list[Problem] = []
     for file in files[: ALLOWED.entries]:

@@ -26,8 +26,8 @@ NOT_SAVED = (
 )
 DATES = (date, time, timedelta)
 DATE = (
-    "is a date or a time, as programs make of a name such as 4-6",
-    "Format the cell as text, or as a number, and write the value anew.",
+    "is a date or a time, which programs make of a name such as 4-6",
+    "Format the cell as text, or as a number, and enter the value again.",
 )
 
 
@@ -174,7 +174,7 @@ def _merged(place: str, rows: list[list[str]], ranges: list[str]) -> Iterator[Pr
         row = rows[top - 1] if top <= len(rows) else []
         value = row[left - 1] if left <= len(row) else ""
         if left != right and value:
-            hint = "Unmerge them, and write the value into every cell that it is for."
+            hint = "Unmerge them, and write the value into every cell to which it applies."
             yield Problem(f"{place}: {merged}", "", "", "is merged across columns", hint=hint)
         elif left == right and top > 1:
             below = rows[top:bottom]
