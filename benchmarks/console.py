@@ -17,7 +17,7 @@ Folder = Annotated[
     typer.Option("-o", "--output", metavar="DIR", file_okay=False, help="Folder to write to."),
 ]
 Cases = Annotated[Path, typer.Option("--cases", metavar="DIR", help="Folder of the shipped cases.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="Tell no steps.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Do not report steps.")]
 
 
 def application(command: Callable[..., Any]) -> typer.Typer:

@@ -49,7 +49,7 @@ def split_torque(branches: int) -> Case:
         If the number is not even and positive.
     """
     if branches < 2 or branches % 2:
-        raise ValueError(f"branches = {branches}: an even number from 2 on is needed")
+        raise ValueError(f"branches = {branches}: an even number of at least 2 is needed")
     input_, face, pinion, idler = 0.040, 0.2227792, 0.0459, 0.11475
     face_angle, angle = math.radians(20.0), math.radians(18.75)
     pairs = branches // 2
@@ -141,7 +141,7 @@ def star(planets: int, floating: bool = True) -> Case:
         If the planets do not fit.
     """
     if not 2 <= planets <= 6:
-        raise ValueError(f"planets = {planets}: between 2 and 6 find room around the sun")
+        raise ValueError(f"planets = {planets}: between 2 and 6 fit around the sun")
     module, angle = 0.003, math.radians(20.0)
     teeth = {"sun": 36, "planet": 24, "ring": 84}
     radius = {name: count * module / 2 * math.cos(angle) for name, count in teeth.items()}

@@ -36,7 +36,7 @@ def parser(description: str, what: str, count: int, folder: str) -> argparse.Arg
     found.add_argument("--first", type=int, default=0, help="number of the first one")
     found.add_argument("--processes", type=int, default=1)
     found.add_argument(
-        "--out", type=Path, default=Path("build") / folder, help="folder of what is found"
+        "--out", type=Path, default=Path("build") / folder, help="folder for what is found"
     )
     found.add_argument("--page", type=Path, help="Markdown file to write")
     return found

@@ -39,7 +39,7 @@ def main() -> None:
     parser.add_argument("--samples", type=int, default=1_000_000)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--sampling", choices=("random", "sobol"), default="random")
-    parser.add_argument("--peers", type=int, default=20, help="samples for the peer way")
+    parser.add_argument("--peers", type=int, default=20, help="number of samples for the peer")
     options = parser.parse_args()
     case = ls.load_case(CASE)
     with tempfile.TemporaryDirectory() as folder:

@@ -99,8 +99,8 @@ def workloads(cases: Path, quick: bool) -> list[Workload]:
     folder = cases / "fgfbstts"
     if not folder.is_dir():
         raise LoadshareError(
-            f"{cases}: holds no cases of the seed's transmission (fgfbstts). Allowed: the folder "
-            "`cases` of the repository; run the command there, or name it with --cases"
+            f"{cases}: contains no cases of the seed's transmission (fgfbstts). Allowed: the "
+            "folder `cases` of the repository; run the command there, or name it with --cases"
         )
     few, many = (8, 4_000) if quick else (40, 20_000)
     study = 10_000 if quick else 100_000

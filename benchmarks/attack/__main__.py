@@ -60,10 +60,8 @@ scene or certificate.
 def main() -> None:
     """Attack and report."""
     parser = argparse.ArgumentParser(description="Tampered answers against the certificate.")
-    parser.add_argument("--count", type=int, default=10_000, help="tampered answers")
-    parser.add_argument(
-        "--seeds", type=int, nargs="+", default=[1, 2], help="each has its share, and a process"
-    )
+    parser.add_argument("--count", type=int, default=10_000, help="number of tampered answers")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2], help="one process for each")
     parser.add_argument("--page", type=Path, help="Markdown file to write")
     options = parser.parse_args()
     shares = [(seed, options.count // len(options.seeds)) for seed in options.seeds]

@@ -17,18 +17,18 @@ def chart(
     folder: Folder = EVIDENCE,
     cases: Cases = SHIPPED,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Fewer samples: a look, not evidence.")
+        bool, typer.Option("--quick", help="Use fewer samples: for a look, not as evidence.")
     ] = False,
     redraw: Annotated[
-        bool, typer.Option("--redraw", help="Draw the figures that are there; measure nothing.")
+        bool, typer.Option("--redraw", help="Draw the existing figures; measure nothing.")
     ] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Measure speed against accuracy, ours and peers, and write charts and report."""
+    """Measure speed and accuracy of loadshare and peers, and write charts and report."""
     if not redraw and find_spec("mpmath") is None:
-        fail(["mpmath is not there: pip install 'loadshare[bench]'"], UNUSABLE)
+        fail(["mpmath is not installed: pip install 'loadshare[bench]'"], UNUSABLE)
     if redraw and not (folder / run.FIGURES).exists():
-        fail([f"{folder / run.FIGURES}: is not there; leave --redraw out to measure"], UNUSABLE)
+        fail([f"{folder / run.FIGURES}: does not exist; leave out --redraw to measure"], UNUSABLE)
     try:
         with writing(folder):
             files = run.chart(folder, cases, quick, redraw, teller(quiet))

@@ -29,7 +29,7 @@ same events.
 def main() -> None:
     """Judge many paths and print a Markdown table."""
     parser = kept.parser("Critical values against dense scans.", "paths", 500, "critical_paths")
-    parser.add_argument("--points", type=int, default=100_000, help="of a scan")
+    parser.add_argument("--points", type=int, default=100_000, help="number of points of a scan")
     parser.add_argument("--engine", default="compiled")
     options = parser.parse_args()
     rows = kept.run(

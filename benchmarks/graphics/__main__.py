@@ -21,22 +21,22 @@ FIGURES = "graphics.json"
 def graphics(
     folder: Folder = EVIDENCE,
     cases: Cases = SHIPPED,
-    count: Annotated[int, typer.Option(help="Equilibria of a workload.")] = 300_000,
-    registers: Annotated[int, typer.Option(help="Registers of a thread, at most.")] = 255,
+    count: Annotated[int, typer.Option(help="Number of equilibria of a workload.")] = 300_000,
+    registers: Annotated[int, typer.Option(help="Largest number of registers of a thread.")] = 255,
     draw: Annotated[
-        bool, typer.Option("--draw", help="Draw the figures that are there; measure nothing.")
+        bool, typer.Option("--draw", help="Draw the existing figures; measure nothing.")
     ] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Settle samples on a graphics processor and on a core, and write what both take.
+    """Settle samples on a graphics processor and on a core, and write the time that each takes.
 
-    What measures needs a device, and Numba for CUDA; what draws needs neither.
+    Measuring needs a device and Numba for CUDA; drawing needs neither.
     """
     figures = folder / FIGURES
     if not draw and find_spec("numba_cuda") is None:
-        fail(["Numba for CUDA is not there: pip install 'loadshare[graphics]'"], UNUSABLE)
+        fail(["Numba for CUDA is not installed: pip install 'loadshare[graphics]'"], UNUSABLE)
     if draw and not figures.exists():
-        fail([f"{figures}: is not there; leave --draw out to measure"], UNUSABLE)
+        fail([f"{figures}: does not exist; leave out --draw to measure"], UNUSABLE)
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
         if draw:

@@ -45,7 +45,7 @@ def main() -> None:
     about = "Random trains against the 50-digit reference."
     parser = kept.parser(about, "trains", 5000, "random_trains")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--stress", action="store_true", help="the stability map's problems, all")
+    parser.add_argument("--stress", action="store_true", help="all problems of the stability map")
     parser.add_argument("--planetary", action="store_true", help="planetary sets")
     parser.add_argument("--loops", action="store_true", help="planetary sets with a loop")
     options = parser.parse_args()

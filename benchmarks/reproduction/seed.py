@@ -52,7 +52,7 @@ class Seed:
         path = self.folder / "fgfbstts" / f"{name}.toml"
         if not path.is_file():
             raise LoadshareError(
-                f"{path}: is not there; --cases names the folder of the shipped cases"
+                f"{path}: does not exist; --cases names the folder of the shipped cases"
             )
         if name not in self._cases:
             self._cases[name] = load_case(path)

@@ -24,12 +24,14 @@ def stress(
     ] = None,
     problem: Annotated[
         int | None,
-        typer.Option("--problem", metavar="N", help="Only this problem of --family: explain it."),
+        typer.Option(
+            "--problem", metavar="N", help="Run and explain only this problem of --family."
+        ),
     ] = None,
     ours: Annotated[bool, typer.Option("--ours", help="Leave the peers out.")] = False,
     quick: Annotated[bool, typer.Option("--quick", help="Every tenth problem.")] = False,
     redraw: Annotated[
-        bool, typer.Option("--redraw", help="Draw the figures that are there; run nothing.")
+        bool, typer.Option("--redraw", help="Draw the existing figures; run nothing.")
     ] = False,
     case: Annotated[
         Path | None, typer.Option("--case", metavar="FILE", help="Write the problem as a case.")
@@ -46,7 +48,7 @@ def stress(
         _explain(FAMILIES[family], problem, case)
         return
     if redraw and not (folder / publish.FIGURES).exists():
-        fail([f"{folder / publish.FIGURES}: is not there; leave --redraw out to run"], UNUSABLE)
+        fail([f"{folder / publish.FIGURES}: does not exist; leave out --redraw to run"], UNUSABLE)
     chosen = [family] if family else list(FAMILIES)
     with writing(folder):
         cells, files = publish.stress(folder, chosen, not ours, quick, redraw, teller(quiet))

@@ -42,8 +42,8 @@ def test_a_problem_without_an_answer_is_refused_by_name(run):
         (("stress", "--family", "nonsense"), "stiffness-ratio"),
         (("stress", "--problem", "3"), "goes with --family"),
         (("stress", "--family", "verge", "--problem", "200"), "problems 0 to 199"),
-        (("chart", "--redraw", "-o", "nowhere"), "leave --redraw out"),
-        (("graphics", "--draw", "-o", "nowhere"), "leave --draw out"),
+        (("chart", "--redraw", "-o", "nowhere"), "leave out --redraw"),
+        (("graphics", "--draw", "-o", "nowhere"), "leave out --draw"),
         (("chart", "--cases", "nowhere", "-o", "elsewhere", "--quiet"), "--cases"),
     ],
 )

@@ -93,7 +93,7 @@ def test_without_pair_files_the_page_says_so(seed):
 
 
 def test_a_missing_case_is_named(tmp_path):
-    with pytest.raises(LoadshareError, match=r"installation_error.toml: is not there; --cases"):
+    with pytest.raises(LoadshareError, match=r"installation_error.toml: does not exist; --cases"):
         reproduce(tmp_path, lambda _: None)
 
 
