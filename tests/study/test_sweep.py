@@ -216,5 +216,5 @@ def test_signs_in_quotes_do_not_split():
 
 
 def test_what_is_no_mapping_of_inputs_is_told_what_is():
-    with pytest.raises(TypeError, match=r"inputs by key path are wanted, .* not str"):
+    with pytest.raises(TypeError, match=r"inputs by key path are expected, .* not str"):
         ls.sweep(shipped("fgfbstts/limit_ring"), "rings.4.float")  # type: ignore[arg-type]

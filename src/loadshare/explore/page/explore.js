@@ -99,7 +99,7 @@ function ask(keys = null) {
 function forget() {
   clearTimeout(resting);
   whole.stop();
-  trust("is worked out when nothing moves");
+  trust("is worked out once no input moves");
   byId("cycle").hidden = true;
 }
 
@@ -137,8 +137,8 @@ function show(request, answer) {
 }
 
 function nothing({ status, position, solved, count }) {
-  if (status === "invalid") return "this setting makes no case; nothing was solved";
-  return solved < count ? `there is no answer at position ${position}; the others follow when nothing moves` : "there is no answer for this setting";
+  if (status === "invalid") return "this setting is not a valid case; nothing was solved";
+  return solved < count ? `there is no answer at position ${position}; the others follow once no input moves` : "there is no answer for this setting";
 }
 
 function fill(request, answer) {
