@@ -202,7 +202,10 @@ def test_a_file_that_is_not_the_answer_is_replaced(command, star, tmp_path, dama
     [
         (lambda d: d["omega"].update(system=1.5), "omega.system = 1.5: does not follow"),
         (lambda d: d["positions"][0]["torque"].update({"sun-planet1": 1e3}), "positions[0].torque"),
-        (lambda d: d["positions"][0]["claim"]["rotation"].update(sun=1e-3), "no equilibrium"),
+        (
+            lambda d: d["positions"][0]["claim"]["rotation"].update(sun=1e-3),
+            "is not an equilibrium",
+        ),
         (lambda d: d.update(positions=[]), "position 1 is missing"),
         (lambda d: d.update(format=1), "was written by loadshare"),
     ],
