@@ -36,13 +36,15 @@ def fingerprint(function: Callable[..., Any]) -> str:
     waiting = [function]
     while waiting:
         one = waiting.pop()
-        code = one.__code__
-        # Code objects are left out: their printed form contains an address in memory.
-        constants = [c for c in code.co_consts if not isinstance(c, CodeType)]
-        parts.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
-        known = {name: one.__globals__.get(name) for name in code.co_names}
+        codes = _codes(one.__code__)
+        for code in codes:
+            # Code objects are left out: their printed form contains an address in memory.
+            constants = [c for c in code.co_consts if not isinstance(c, CodeType)]
+            parts.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
+        names = [name for code in codes for name in code.co_names]
+        known = {name: one.__globals__.get(name) for name in names}
         for module in [value for value in known.values() if isinstance(value, ModuleType)]:
-            read = {f"{module.__name__}.{n}": vars(module).get(n) for n in code.co_names}
+            read = {f"{module.__name__}.{n}": vars(module).get(n) for n in names}
             # Functions that are not compiled, such as NumPy's, are supplied by the compiler.
             known |= {n: v for n, v in read.items() if not isinstance(v, FunctionType)}
         for name, value in known.items():
@@ -53,11 +55,17 @@ def fingerprint(function: Callable[..., Any]) -> str:
                     waiting.append(called)
             elif isinstance(value, tuple) and hasattr(value, "_fields"):
                 # Only those entries of a settings table that the function reads.
-                used = [field for field in value._fields if field in code.co_names]
+                used = [field for field in value._fields if field in names]
                 parts += [f"{name}.{field} = {getattr(value, field)!r}" for field in used]
             elif isinstance(value, int | float | str | tuple):
                 parts.append(f"{name} = {value!r}")
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def _codes(code: CodeType) -> list[CodeType]:
+    """Return the code of a function and of all functions and comprehensions in it."""
+    within = [each for c in code.co_consts if isinstance(c, CodeType) for each in _codes(c)]
+    return [code, *within]
 
 
 class _Files(IndexDataCacheFile):

@@ -20,7 +20,7 @@ from tests.support import CASES, mostly_slow, shipped
 
 import loadshare as ls
 from loadshare import compilation, compile_watch
-from loadshare.code_cache import _Files
+from loadshare.code_cache import _Files, fingerprint
 from loadshare.compile_watch import Watch, watch
 from loadshare.job import engines
 from loadshare.job.engines import available_engine, engine_named
@@ -338,6 +338,16 @@ def test_code_is_known_again_in_another_process():
     hashed, kept = run(f"{strict}{KEPT}print(found)", PYTHONHASHSEED=seed)[0]
     assert hashed != names["found"][0]
     assert kept == names["found"][1]
+
+
+def test_a_function_within_another_counts_for_the_code_that_is_kept():
+    source = "def outer(x):\n    return [inner + {} for inner in x] if x else (lambda: {})()\n"
+    found = set()
+    for numbers in ((1, 2), (3, 2), (1, 4)):
+        names: dict[str, Any] = {}
+        exec(source.format(*numbers), names)
+        found.add(fingerprint(names["outer"]))
+    assert len(found) == 3
 
 
 @pytest.mark.slow
