@@ -254,7 +254,7 @@ WRONG = {
     "wrong unit": ({"rings.4.float [N]": [1.0, 2.0]}, "rings.4.float"),
     "unequal lengths": (
         {"rings.4.float [um]": [1.0, 2.0], "rings.5.float [um]": [1.0]},
-        "has 1 values, but the keys before it have 2",
+        "has 1 value, but the keys before it have 2",
     ),
     "not finite": ({"rings.4.float [um]": [1.0, np.nan]}, "not finite"),
     "infinite": ({"rings.4.float [um]": [1.0, np.inf]}, "not finite"),
