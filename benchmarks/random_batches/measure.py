@@ -98,7 +98,7 @@ def _apart(case: Case, samples: Samples, found: Any, sample: int) -> float:
     for position in alone.positions:
         here = found.torque.sel(position=position.position)[sample]
         largest = max(map(abs, position.torque.values()))
-        # What the batch refuses is not a number, and counts among what is not certified.
+        # What the batch refuses and a single solve answers is as far apart as can be.
         differences = [abs(float(here.sel(mesh=m)) - t) for m, t in position.torque.items()]
-        apart = max([apart, *(d / largest for d in differences if d == d)])
+        apart = max([apart, *(np.inf if np.isnan(d) else d / largest for d in differences)])
     return apart

@@ -201,9 +201,9 @@ def test_several_starts_find_what_one_misses():
     ("unknowns", "message"),
     [
         ({}, "has no unknown"),
-        ({"rings.4.float": ("3 um", "3 um")}, "is no range"),
+        ({"rings.4.float": ("3 um", "3 um")}, "is not a range"),
         ({"gears.1.teeth": (20, 30)}, "is a count"),
-        ({"rings.4.float": ("1 um", "2 um", "3 um")}, "is no range"),
+        ({"rings.4.float": ("1 um", "2 um", "3 um")}, "is not a range"),
         ({"rings.4.float": ("1 um", "2 N")}, "cannot be expressed"),
         ({"rings.4.flot": ("1 um", "2 um")}, "Did you mean float"),
         ({"rings.*.float": ("1 um", "2 um"), "rings.4.float": ("1 um", "3 um")}, "is set by"),

@@ -57,7 +57,7 @@ class LeastSquares:
             numbers, unit = grid(ends, named(key), RANGE)
             if len(numbers) != 2 or not numbers[0] < numbers[1]:
                 given = ", ".join(map(str, ends))
-                raise CaseError([Problem(STUDY, named(key), given, "is no range", RANGE)])
+                raise CaseError([Problem(STUDY, named(key), given, "is not a range", RANGE)])
             parameter = read_parameter(case, key, unit)
             check_smooth(parameter)
             self.parameters.append(parameter)
