@@ -7,6 +7,8 @@ solved alone, because it may start elsewhere.
 
 import inspect
 import pickle
+import subprocess
+import sys
 import tracemalloc
 from itertools import islice
 
@@ -15,7 +17,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from tests.solver.hot.trains import VARIED, varied
-from tests.support import furthest, shipped
+from tests.support import CASES, furthest, shipped
 
 import loadshare as ls
 from benchmarks import families
@@ -616,3 +618,12 @@ def test_the_clocking_of_a_rigid_shaft_varies_within_a_batch():
     # Clocked by more than the meshes yield, one path carries all or nothing.
     assert torques[0] == pytest.approx(367.0, rel=1e-12)
     assert abs(torques[-1]) < 1e-9
+
+
+def test_the_first_batch_of_a_process_does_not_import_dask():
+    code = (
+        f"import sys, loadshare as ls; case = {str(CASES / 'fgfbstts/base.toml')!r}; "
+        "ls.solve_many(case, {'operating.power [kW]': [1900.0]}); "
+        "sys.exit('dask.array' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

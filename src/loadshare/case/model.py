@@ -18,7 +18,7 @@ from loadshare.case.copies import with_copies
 from loadshare.case.draft import as_data, defaults, read_draft
 from loadshare.case.element import Element
 from loadshare.case.keys import Path, covers, parse
-from loadshare.case.origin import Origin
+from loadshare.case.origin import CHANGES, Origin
 from loadshare.case.revise import differing, revise
 from loadshare.case.table import fixed
 from loadshare.errors import CaseError
@@ -107,8 +107,13 @@ class Case(Content):
     @property
     def law_files(self) -> tuple[FilePath, ...]:
         """Files that mesh laws are read from, or computed from."""
+        return tuple(FilePath(file).parent / named for file, named in self._named_files)
+
+    @property
+    def _named_files(self) -> tuple[tuple[str, str], ...]:
+        """Files of mesh laws, each after the file that names it."""
         return tuple(
-            FilePath(self._origin.of(("meshes", name, key))).parent / getattr(mesh, key)
+            (self._origin.of(("meshes", name, key)), getattr(mesh, key))
             for name, mesh in self.meshes.items()
             for key in mesh.given("law_file", "geometry")
         )
@@ -189,6 +194,27 @@ class Case(Content):
         A value is None where the key is missing. For a case that `replace` made this takes no time.
         """
         return iter(differing(before._data, self._data))
+
+    def changes_since(self, before: Case) -> dict[Path, Any] | None:
+        """Return what `replace` has changed since an earlier case; None if it was not `replace`.
+
+        Parameters
+        ----------
+        before : Case
+
+        Returns
+        -------
+        dict of Path to object, or None
+            Each new value, by its key; both cases name the same files in the same places.
+        """
+
+        def place(case: Case) -> tuple[Any, ...]:
+            origin = case._origin
+            return case._name, origin.file, origin.outside, case._named_files
+
+        found = {path: after for path, _, after in self.differences(before)}
+        replaced = all(self._origin.of(path) == CHANGES for path in found)
+        return found if replaced and place(self) == place(before) else None
 
     def is_assumed(self, key: str) -> bool:
         """Tell whether an input, or a table that holds it, is marked as assumed.

@@ -16,7 +16,7 @@ class Recent(Generic[Made]):
 
     def __init__(self) -> None:
         # Replaced as a whole: other threads may be reading it.
-        self._made: tuple[tuple[Case, object, Made], ...] = ()
+        self._made: tuple[tuple[Case | None, object, Made], ...] = ()
 
     def __iter__(self) -> Iterator[Made]:
         """Iterate over the objects, the newest first."""
@@ -29,11 +29,11 @@ class Recent(Generic[Made]):
         ----------
         case : Case or None
         what : object
-            Distinguishes several objects made from one case.
+            Distinguishes several objects made from one case, or from none.
         """
         return next((m for c, w, m in self._made if c is case and w == what), None)
 
-    def keep(self, case: Case, made: Made, what: object = None) -> Made:
-        """Keep an object made from a case, and return it."""
+    def keep(self, case: Case | None, made: Made, what: object = None) -> Made:
+        """Keep an object made from a case, or from something else, and return it."""
         self._made = ((case, what, made), *self._made)[: JOB.recent]
         return made

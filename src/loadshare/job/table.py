@@ -108,7 +108,11 @@ def _coordinates(count: int, *labels: tuple[str, tuple[Any, ...]]) -> xr.Coordin
     """Return labels of samples and other dimensions, cached for batches of the same labels."""
     import xarray as xr
 
-    return xr.Coordinates({"sample": np.arange(count), **{d: list(names) for d, names in labels}})
+    every = {"sample": np.arange(count), **{dim: np.array(names) for dim, names in labels}}
+    return xr.Coordinates(
+        # `fastpath` takes labels as they are: any closer look at them would import dask first.
+        {dim: xr.Variable(dim, names, fastpath=True) for dim, names in every.items()}
+    )
 
 
 class Table:
@@ -213,7 +217,6 @@ class Table:
                 attributes["flag_values"] = np.arange(len(RUNGS), dtype=np.int8)
                 attributes["flag_meanings"] = " ".join(r.replace(" ", "_") for r in RUNGS)
             found.append((name, EVERY, self.each[name], attributes))
-        # `fastpath` takes values as they are: any closer look at them would import dask first.
         data = {
             name: xr.Variable(dims, values, attributes, fastpath=True)
             for name, dims, values, attributes in found

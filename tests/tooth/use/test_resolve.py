@@ -67,7 +67,7 @@ def test_the_positions_are_those_of_the_case(case):
     assert len(law.a) == 3
 
 
-def test_what_was_computed_is_not_computed_again(empty_cache, case, monkeypatch):
+def test_what_was_computed_is_not_computed_again(empty_cache, case, tmp_path, monkeypatch):
     reported = []
     first = resolve(case, lambda done, total: reported.append((done, total)))
     assert reported == [(1, 2), (2, 2)]
@@ -77,6 +77,46 @@ def test_what_was_computed_is_not_computed_again(empty_cache, case, monkeypatch)
 
     monkeypatch.setattr(PairFile, "analyse", fail)
     assert resolve(case, fail) == first
+    # Another file has no part in what this process remembers of the first.
+    other = written(tmp_path, CASE + 'geometry = "spur.toml"\n', "other.toml")
+    assert resolve(load_case(other), fail) == first
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"operating.torque": "37 N*m"},
+        {"errors.a.installation": ["3 um", "-4 um"], "title": "with an error"},
+        {"operating.positions": 3},
+        {"gears.b.support": "1e7 N/m"},
+        {'meshes."a-b".backlash': "20 um"},
+        {'meshes."a-b".geometry': None, 'meshes."a-b".stiffness': "1e6 N*m/rad"},
+    ],
+)
+def test_what_is_remembered_changes_no_case(case, tmp_path, changes):
+    resolve(case)
+    changed = resolve(case.replace(changes))
+    alone = written(tmp_path, case.replace(changes).to_toml(), "alone.toml")
+    assert changed == resolve(load_case(alone))
+    assert changed.name == case.name
+
+
+def test_a_pair_that_was_written_again_is_read_again(case, spur):
+    first = resolve(case).meshes["a-b"].law
+    wider = spur.read_text(encoding="utf-8").replace('"20 mm"', '"30 mm"')
+    spur.write_text(wider, encoding="utf-8")
+    law = known_law(load_pair(spur)) or computed_law(load_pair(spur))
+    again = resolve(case.replace({"operating.torque": "90 N*m"})).meshes["a-b"].law
+    assert [*again.b] == [*law.b] != [*first.b]
+
+
+def test_a_problem_names_the_file_of_a_key_and_not_a_change(tmp_path, spur):
+    text = CASE + 'geometry = "spur.toml"\n'
+    path = written(tmp_path, text, "case.toml")
+    resolve(load_case(path))
+    written(tmp_path, text.replace("100 N*m", "90 N*m"), "case.toml")
+    assert resolve(load_case(path)).problem("operating.torque", "").file == str(path)
 
 
 def test_meshes_that_share_a_pair_are_computed_once(empty_cache, spur, tmp_path):

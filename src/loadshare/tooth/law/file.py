@@ -6,6 +6,7 @@ import math
 import tomllib
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -344,6 +345,7 @@ def load_law(path: str | Path) -> MeshLaw:
     return _law(read_toml(path), Origin(str(path)))
 
 
+@lru_cache(maxsize=8)
 def parsed_law(text: str) -> MeshLaw | None:
     """Return the law that a text holds, or None if it holds none."""
     try:

@@ -10,14 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare.case.checks.fit import mm
 from loadshare.case.checks.law_origin import teeth_digest
+from loadshare.case.content import ABOUT
 from loadshare.case.keys import Path as KeyPath
 from loadshare.case.keys import covers, dotted, parse
 from loadshare.case.line_of_action import facing, mesh_distance
 from loadshare.case.meshes import SOURCES
+from loadshare.case.recent import Recent
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
-from loadshare.input import real
+from loadshare.input import Unreadable, read_file, real
 from loadshare.involute import distance_without_backlash
+from loadshare.settings import ALLOWED
 
 if TYPE_CHECKING:
     from loadshare.case import Case, Gear
@@ -80,6 +83,10 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     words = [n for n, m in case.meshes.items() if isinstance(m.law, str) and n not in leave]
     if not sources and not words:
         return case
+    contents = tuple(map(_content, case.law_files))
+    known = None if leave else _with_known_laws(case, contents)
+    if known is not None:
+        return known
     problems: Problems = {}
     laws, pairs = _read(case, sources, problems)
     of_contact = [name for name in words if case.meshes[name].law_is_of_contact]
@@ -104,7 +111,33 @@ def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = (
     assumed = _still_assumed([*case.assumed, *(dotted(("meshes", name, "law")) for name in inline)])
     if assumed:
         changes["assumed"] = assumed
-    return case.replace(changes)
+    solved = case.replace(changes)
+    return solved if leave else _recent.keep(case, (case, contents, solved))[2]
+
+
+_recent: Recent[tuple[Case, tuple[bytes | None, ...], Case]] = Recent()
+"""Cases, the content of the files that their laws come from, and the same with laws as numbers."""
+
+
+def _with_known_laws(case: Case, contents: tuple[bytes | None, ...]) -> Case | None:
+    """Return a case with the laws of a recent one that differs in nothing which affects them."""
+    for before, known, solved in _recent:
+        changes = case.changes_since(before) if known == contents else None
+        if changes is not None and not any(map(_may_affect_laws, changes)):
+            return solved.replace({dotted(path): value for path, value in changes.items()})
+    return None
+
+
+def _may_affect_laws(path: KeyPath) -> bool:
+    return path[0] in (*ABOUT, "gears", "meshes") or affects_laws(path)
+
+
+def _content(file: Path) -> bytes | None:
+    """Return the content of a file; None if it cannot be read."""
+    try:
+        return read_file(file, ALLOWED.bytes)
+    except (OSError, Unreadable):
+        return None
 
 
 def with_own_laws(case: Case, varied: Iterable[KeyPath]) -> Case:

@@ -14,6 +14,7 @@ from loadshare.case.keys import parse, unmatched, walk
 from loadshare.case.origin import Origin
 from loadshare.case.quantity import ANGLE, LENGTH
 from loadshare.case.reader import read_toml
+from loadshare.case.recent import Recent
 from loadshare.case.recognise import TAKEN_BY, is_case
 from loadshare.case.translate import validated
 from loadshare.case.words import as_given, choices, did_you_mean
@@ -209,6 +210,14 @@ def load_pair(path: str | Path) -> PairFile:
     """
     path = Path(path)
     data = read_toml(path)
+    which = path, data
+    return _recent.of(None, which) or _recent.keep(None, _pair_of(path, data), which)
+
+
+_recent: Recent[PairFile] = Recent()
+
+
+def _pair_of(path: Path, data: dict[str, Any]) -> PairFile:
     origin = Origin(str(path))
     problems = [*_unmatched(data, origin), *_missing(data, origin)]
     try:
