@@ -67,6 +67,7 @@ def rigid() -> ls.Case:
 
 FAST: dict[str, tuple] = {
     "operating.power [kW]": (everything, 300.0, 900.0),
+    "operating.speed [rpm]": (everything, 5000.0, 15000.0),
     "operating.torque [N*m]": (plain, 100.0, 1500.0),
     "operating.external.6 [N*m]": (everything, -50.0, 80.0),
     "operating.external.1 [N*m]": (everything, -50.0, 80.0),
@@ -92,6 +93,7 @@ FAST: dict[str, tuple] = {
     "splines.4.friction": (everything, 0.0, 0.3),
     "splines.4.normal_force [N]": (everything, 0.0, 900.0),
     "splines.5.friction": (everything, 0.0, 0.3),
+    "splines.5.radius [mm]": (everything, 20.0, 90.0),
     'meshes."1-2".stiffness [N*m/rad]': (everything, 5e5, 9e5),
     'meshes."4-6".law.a [urad]': (everything, 0.0, 30.0),
     'meshes."4-6".law.b [rad/(N*m)]': (everything, 1e-7, 3e-7),

@@ -13,7 +13,7 @@ from loadshare.case.counts import unit_of
 from loadshare.train.columns import Column
 
 _OF_SPLINES = (
-    *("bending_stiffness", "stick_limit", "clearance"),
+    *("bending_stiffness", "stick_limit", "clearance", "radius"),
     *("friction_force", "friction", "normal_force"),
 )
 
@@ -33,7 +33,7 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
 
 def _becomes_array(case: spec.Case, column: Column) -> bool:
     match column.path:
-        case ("operating", "torque" | "power") | ("operating", "external", _):
+        case ("operating", "torque" | "power" | "speed") | ("operating", "external", _):
             return True
         case ("operating", "forces", _, int()) | ("operating", "gravity", int()):
             return True
