@@ -50,6 +50,15 @@ def test_a_chain_of_gears_stands_by_its_teeth():
     assert centres["c"][2] == 2e-3
 
 
+def test_faces_may_touch_side_by_side():
+    """Half the sum of their widths exceeds their distance by rounding."""
+    chain(
+        a=gear(20, centre=["0 mm", "0 mm", "5 mm"]) | {"face_width": "10 mm"},
+        b=gear(30, centre=["100 mm", "0 mm"]),
+        c=gear(21, centre=["-2 mm", "0 mm", "15 mm"]) | {"face_width": "10 mm"},
+    )
+
+
 @pytest.mark.parametrize("internal", [False, True])
 @pytest.mark.parametrize("helix", ["0 deg", "20 deg"])
 def test_shifted_teeth_meet_without_backlash(internal: bool, helix: str):

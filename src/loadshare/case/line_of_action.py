@@ -50,6 +50,25 @@ def mesh_distance(mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, V
     return centre_distance(gears[mesh.driver], minus(centres[mesh.driven], centres[mesh.driver]))
 
 
+def common_width(one: Gear, two: Gear, along: float) -> float | None:
+    """Return how wide the faces of two gears overlap [m]; None if a gear gives no face width.
+
+    Parameters
+    ----------
+    one, two : Gear
+    along : float
+        Distance of their centres along the axis [m].
+    """
+    if one.face_width is None or two.face_width is None:
+        return None
+    widths = one.face_width.si, two.face_width.si
+    common, narrower = 0.5 * sum(widths) - along, min(widths)
+    # Heights are rounded in the file: faces side by side do not overlap.
+    if common <= WRITTEN * narrower:
+        return 0.0
+    return common if common < narrower * (1.0 - WRITTEN) else narrower
+
+
 def facing(
     mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
 ) -> tuple[Gear, Gear]:
@@ -67,13 +86,9 @@ def facing(
         Centres of both gears [m].
     """
     driver, driven = gears[mesh.driver], gears[mesh.driven]
-    if driver.face_width is None or driven.face_width is None:
-        return driver, driven
-    widths = driver.face_width.si, driven.face_width.si
     offset = minus(centres[mesh.driven], centres[mesh.driver])
-    common = 0.5 * sum(widths) - abs(dot(offset, axis_of(driver)))
-    # Heights are rounded in the file.
-    if not 0.0 < common < min(widths) * (1.0 - WRITTEN):
+    common = common_width(driver, driven, abs(dot(offset, axis_of(driver))))
+    if not common or common == min(g.face_width.si for g in (driver, driven) if g.face_width):
         return driver, driven
     cut = {"face_width": Quantity(f"{common!r} m", common)}
     return driver.model_copy(update=cut), driven.model_copy(update=cut)

@@ -9,7 +9,12 @@ from contextlib import suppress
 from loadshare.case.draft import Draft
 from loadshare.case.gears import STEEPEST, Gear, Tooth
 from loadshare.case.iso1328 import outside
-from loadshare.case.line_of_action import centre_distance, mesh_distance, tangent_distance
+from loadshare.case.line_of_action import (
+    centre_distance,
+    common_width,
+    mesh_distance,
+    tangent_distance,
+)
 from loadshare.case.meshes import Mesh
 from loadshare.case.place import Vector, axis_of, dot, minus
 from loadshare.case.quantity import ANGLE, LENGTH
@@ -136,16 +141,14 @@ def _check_face_overlap(
     draft: Draft, name: str, driver: Gear, driven: Gear, along: float
 ) -> Iterator[Problem]:
     """Yield gears that are too far apart along their axes [m] for their teeth to touch."""
-    if driver.face_width is None or driven.face_width is None:
-        return
-    widths = driver.face_width.si, driven.face_width.si
-    room = 0.5 * sum(widths)
-    if along >= room:
+    if common_width(driver, driven, along) == 0.0:
+        widths = [gear.face_width.si for gear in (driver, driven) if gear.face_width]
         what = (
             f"the faces do not overlap: the centres are {mm(along)} apart along the axis, "
             f"the face widths {mm(widths[0])} and {mm(widths[1])}"
         )
-        yield draft.problem(("meshes", name), what, f"less than {mm(room)} along the axis")
+        allowed = f"less than {mm(0.5 * sum(widths))} along the axis"
+        yield draft.problem(("meshes", name), what, allowed)
 
 
 def _unlike(driver: Gear, driven: Gear) -> tuple[str, str] | None:

@@ -10,7 +10,7 @@ from itertools import combinations
 from loadshare.case.checks.fit import ANGLE_TOLERANCE, OVERLAP, mm, parallel, toothed_pairs
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar, Tooth, shortened
-from loadshare.case.line_of_action import centre_distance
+from loadshare.case.line_of_action import centre_distance, common_width
 from loadshare.case.place import Vector, along_z, axis_of, dot, minus, on_axis
 from loadshare.case.quantity import LENGTH
 from loadshare.errors import Problem
@@ -193,8 +193,7 @@ def _clash(draft: Draft, one: str, two: str, centres: Mapping[str, Vector]) -> _
         return None
     offset = minus(centres[two], centres[one])
     along = abs(dot(offset, axis))
-    widths = here.face_width.si + there.face_width.si if here.face_width and there.face_width else 0
-    if along > ANGLE_TOLERANCE * here.tooth.radius and along >= 0.5 * widths:
+    if along > ANGLE_TOLERANCE * here.tooth.radius and not common_width(here, there, along):
         return None
     apart = centre_distance(here, offset)
     over = here.tooth.tip + there.tooth.tip - apart
