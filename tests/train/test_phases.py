@@ -316,6 +316,30 @@ def test_sets_that_cannot_be_assembled_are_reported_with_the_angles_that_fit() -
     assert "divides 108" in message
 
 
+def test_planets_that_fit_between_some_of_their_gears_only_name_all_conditions() -> None:
+    """Ravigneaux: three planets fit between large sun and ring, not from ring to small sun.
+
+    The hint used to name 108 alone, which three divides.
+    """
+    teeth = {"small": 27, "p": 19, "q": 22, "large": 32, "ring": 76}
+    gears: dict[str, Any] = {n: {"teeth": z, "module": "2 mm"} for n, z in teeth.items()}
+    for name in ("small", "large", "ring"):
+        gears[name]["centre"] = ["0 mm", "0 mm", "0 mm" if name == "small" else "40 mm"]
+    for name, angle in (("p", 0.0), ("q", 47.6)):
+        gears[name] |= {"carrier": "c", "copies": 3, "centre": {"angle": f"{angle} deg"}}
+    gears["p"]["centre"]["height"] = "10 mm"
+    gears["q"]["centre"]["height"] = "25 mm"
+    for gear, width in zip(gears.values(), (20, 30, 50, 20, 20), strict=True):
+        gear["face_width"] = f"{width} mm"
+    gears["ring"]["type"] = "internal"
+    gears["large"]["held"] = True
+    gears["c"] = {"type": "carrier", "centre": ["0 mm", "0 mm"]}
+    meshes = {m: {"law": "iso"} for m in ("small-p", "p-q", "q-ring", "large-q")}
+    operating: Any = {"input": "small", "output": "ring", "torque": "100 N*m"}
+    with pytest.raises(CaseError, match="fit evenly spaced if their number divides 49 and 108"):
+        build_train(Case(operating=operating, gears=gears, meshes=meshes))
+
+
 @pytest.mark.parametrize(("ring", "parts"), [(-70, 40), (0, 60)])
 def test_planets_in_pairs_are_reported_with_the_angles_that_fit(ring: int, parts: int) -> None:
     """For a ring, both gears turn alike and their difference counts; for a second sun, the sum."""

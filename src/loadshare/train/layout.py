@@ -162,10 +162,11 @@ def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) 
 
 
 def _spacing_hint(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str:
-    """Return a hint at which angles planets fit between two gears about the same axis.
+    """Return a hint at which angles planets fit between gears about the same axis.
 
-    They fit at multiples of a revolution divided by z₁ + z₂ if the two gears run in opposite senses
-    as seen from the carrier, by their difference if they run in the same sense.
+    Between two gears they fit at multiples of a revolution divided by z₁ + z₂ if the two run in
+    opposite senses as seen from the carrier, by their difference if they run in the same sense. A
+    planet that meshes with several, by itself or through its partner, has to fit between them all.
     """
     gears = {g.name: g for p in pairs.values() for g in (p.driver, p.driven)}
     meshing: dict[str, list[str]] = {name: [] for name in gears}
@@ -181,16 +182,22 @@ def _spacing_hint(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str
         near = [n for n in meshing[planet.name] if n != last.name]
         through = [n for n in near if not about(n, last.name)]
         beyond = [n for other in through for n in meshing[other] if n != planet.name]
-        first = next((gears[n] for n in (*near, *beyond) if about(n, last.name)), None)
-        if first is None or about(planet.name, last.name):
+        firsts = [gears[n] for n in (*near, *beyond) if about(n, last.name)]
+        if about(planet.name, last.name):
             continue
-        teeth = [round(g.teeth or 0) for g in (first, last)]
-        ways = [g.sense * g.relative * g.axis for g in (first, last)]
-        alike = float(ways[0] @ ways[1]) > 0.0
-        whole = abs(teeth[0] - teeth[1]) if alike else sum(teeth)
-        if whole:
+        wholes = sorted({_whole(first, last) for first in firsts} - {0})
+        if wholes:
+            common = math.gcd(*wholes)
+            apart = f"{360.0 / common:.6g} deg apart or at multiples of this, and "
             return (
-                f"Gears about the same axis fit {360.0 / whole:.6g} deg apart "
-                f"or at multiples of this, and evenly spaced if their number divides {whole}."
+                f"Gears about the same axis fit {apart if common > 1 else ''}evenly spaced if "
+                f"their number divides {' and '.join(map(str, wholes))}."
             )
     return ""
+
+
+def _whole(first: Gear, last: Gear) -> int:
+    """Return into how many equal angles the places divide at which a planet fits between two."""
+    teeth = [round(g.teeth or 0) for g in (first, last)]
+    ways = [g.sense * g.relative * g.axis for g in (first, last)]
+    return abs(teeth[0] - teeth[1]) if float(ways[0] @ ways[1]) > 0.0 else sum(teeth)
