@@ -159,6 +159,15 @@ def test_a_mesh_whose_flank_carries_is_not_warned_of():
     assert found.validity.verdict == "small"
 
 
+def test_a_mesh_of_warm_gears_whose_flank_carries_is_not_warned_of():
+    """Flanks that have grown towards each other carry although the gears have not turned so far."""
+    case = two_branches(20.0)
+    case = case.replace({f"gears.{name}.temperature": "40 K" for name in ("2", "2b")})
+    (found,) = ls.solve(case).positions
+    assert all(abs(torque) > 1.0 for torque in found.torque.values())
+    assert found.validity.verdict == "small"
+
+
 def test_planets_that_errors_unload_are_not_warned_of():
     """Both loads reach the planets of the second set through its sun, so they act as one load."""
     case = two_sets().replace({"errors.p21.pin.tangential": "300 um"})

@@ -222,11 +222,12 @@ class Measuring:
             "line_of_action": turned,
             "approach": np.maximum(-room, 0.0) / deflection,
         }
-        # A gap opens the flank that is pressed, and not the other one.
+        # A gap opens the flank that is pressed, and not the other one; growth closes both.
         openings = {NEITHER: self.uncertain, APART: self.alone if apart else []}
         for name, flanks in openings.items():
             if flanks:
-                opening = np.maximum(-(compression + situations.gap.T)[flanks], 0.0)
+                open_by = -(compression + np.maximum(situations.gap.T, 0.0))[flanks]
+                opening = np.maximum(open_by, 0.0)
                 found[name] = opening / (deflection if name == NEITHER else self.height[flanks])
         if len(of.drum):
             found["ring"] = self._arms(answers)
