@@ -23,9 +23,9 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import compiled
 from loadshare.solver.hot.contact_states import DONE
-from loadshare.solver.hot.exchange import Found, exchange
+from loadshare.solver.hot.exchange import ExchangeResult, exchange
 from loadshare.solver.hot.iterate import Iterate, at_rest
-from loadshare.solver.hot.kernel.set_arrays import Samples, packed_sets
+from loadshare.solver.hot.kernel.set_arrays import SampleArrays, packed_sets
 from loadshare.solver.hot.kernel.work import Given
 from loadshare.solver.hot.rule import rule_of, samples_to_learn
 from loadshare.train import build_train
@@ -107,7 +107,7 @@ def prepared(workload: Workload, count: int) -> Prepared:
     return Prepared(structure, loading, iterate, states)
 
 
-def on_core(start: Prepared) -> tuple[float, Iterate, Found]:
+def on_core(start: Prepared) -> tuple[float, Iterate, ExchangeResult]:
     """Settle on one core; return the time [s], the iterate and what was found."""
     times = []
     for _ in range(RUNS):
@@ -133,9 +133,9 @@ class Device:
             if not start.loading.bending[:, start.structure.springs + np.array(pair)].any()
         ]
         self.opposed = cuda.to_device(np.array(opposed, dtype=np.int64).reshape(-1, 2))
-        self.samples = Samples._make(
+        self.samples = SampleArrays._make(
             cuda.to_device(np.ascontiguousarray(getattr(start.loading, name)))
-            for name in Samples._fields
+            for name in SampleArrays._fields
         )
         self._pack()
 

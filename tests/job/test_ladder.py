@@ -26,7 +26,7 @@ from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options, position
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.hot import contact_states, vectorised
-from loadshare.solver.hot.exchange import Found, exchange, first_sets
+from loadshare.solver.hot.exchange import ExchangeResult, exchange, first_sets
 from loadshare.solver.hot.iterate import at_rest
 from loadshare.train import Train, build_train
 from loadshare.train.situations import situation_of
@@ -153,7 +153,7 @@ def test_a_wrong_set_is_not_handed_out(monkeypatch):
     def lost(structure, loading):
         nothing = np.zeros(1, bool)
         sets = first_sets(structure, loading)
-        return at_rest(structure, loading), Found(nothing, sets, np.zeros(1, int), nothing)
+        return at_rest(structure, loading), ExchangeResult(nothing, sets, np.zeros(1, int), nothing)
 
     def content(structure, loading, sets, parts, state, one_only):
         settle(structure, loading, sets, parts, state, one_only)

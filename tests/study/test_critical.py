@@ -17,7 +17,7 @@ from benchmarks.critical_paths.table import text
 from loadshare.case.starter import starter_case
 from loadshare.study.follow.active import switch_names
 from loadshare.study.follow.line import Line
-from loadshare.study.follow.search import Search
+from loadshare.study.follow.search import ChangeSearch
 from loadshare.study.follow.zero import first_zero
 from loadshare.study.parameter import read_parameter
 from loadshare.study.positions import certified
@@ -277,9 +277,9 @@ def test_a_zero_is_found_whatever_the_gauges_do_beyond_it(before, beyond, sign):
     assert len(requested) <= 5
 
 
-def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> Search:
+def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> ChangeSearch:
     line = Line(case, read_parameter(case, key, unit), low, high)
-    return Search(line, 1, low, high)
+    return ChangeSearch(line, 1, low, high)
 
 
 def test_no_set_is_proved_to_hold_over_its_events():
@@ -301,10 +301,10 @@ def test_a_ring_without_play_pins_its_gear_only_there():
     assert search.exit(first, last) == 0.0
 
 
-def drawn(number: int) -> Search:
+def drawn(number: int) -> ChangeSearch:
     path = random_path(number)
     line = Line(path.case, read_parameter(path.case, path.keys, path.unit), path.start, path.stop)
-    return Search(line, 1, path.start, path.stop)
+    return ChangeSearch(line, 1, path.start, path.stop)
 
 
 def test_a_spline_without_friction_and_force_is_free():

@@ -7,7 +7,7 @@ import pytest
 
 import loadshare as ls
 from loadshare.study.follow.line import Line
-from loadshare.study.follow.search import Search
+from loadshare.study.follow.search import ChangeSearch
 from loadshare.study.parameter import read_parameter
 
 FIRST = 9
@@ -79,8 +79,8 @@ def idlers() -> dict[str, object]:
     return gears | {f"meshes.{name}": mesh for name in ("g1-i", "i-j", "j-h1")}
 
 
-def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> Search:
-    return Search(Line(case, read_parameter(case, key, unit), low, high), 1, low, high)
+def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> ChangeSearch:
+    return ChangeSearch(Line(case, read_parameter(case, key, unit), low, high), 1, low, high)
 
 
 @pytest.fixture

@@ -162,7 +162,7 @@ def start_study(question: Scatter) -> Plain:
     }
 
 
-class Part(NamedTuple):
+class SampleRange(NamedTuple):
     """Some samples of a study: its job as text, the first of them from 0, how many at most."""
 
     job: str
@@ -170,7 +170,7 @@ class Part(NamedTuple):
     rows: int
 
 
-def samples(part: Part) -> Plain:
+def samples(part: SampleRange) -> Plain:
     """Draw and solve some samples, up to the end of a block at most."""
     job = known_job(part.job)
     block, at = divmod(part.first, JOB.block)

@@ -28,7 +28,7 @@ from loadshare.explore.guard import Guard
 from loadshare.explore.inputs import Inputs
 from loadshare.explore.questions import along, finite, place, slopes
 from loadshare.explore.request import RequestError, body_of, setting, text
-from loadshare.explore.samples import Growing, Part, samples, scatter, start_study
+from loadshare.explore.samples import Growing, SampleRange, samples, scatter, start_study
 from loadshare.explore.studies import criticals, rates, trace
 
 log = logging.getLogger("loadshare")
@@ -165,7 +165,7 @@ class Explorer:
         yield {"begun": study["told"]}
         growing = Growing(study)
         while growing.done < study["samples"]:
-            part = Part(study["job"], growing.done, study["rows"])
+            part = SampleRange(study["job"], growing.done, study["rows"])
             found = await self.crew.done(request, samples, part)
             growing.take(found)
             yield await asyncio.to_thread(growing.statistics)

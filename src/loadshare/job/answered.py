@@ -15,7 +15,7 @@ from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
 from loadshare.job.block import NONE
 from loadshare.job.engines import available_engine
-from loadshare.job.hot import Solved
+from loadshare.job.hot import HotAnswers
 from loadshare.job.ladder import AUTO, climb
 from loadshare.job.machine import Machine
 from loadshare.job.positions import Progress, result_of, share, wanted_of
@@ -32,7 +32,7 @@ Unanswered = Refused | CaseError
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class MachineSamples:
     """Samples of one machine at positions that are solved together, position by position.
 
     Attributes
@@ -41,7 +41,7 @@ class Part:
         Numbers of the samples.
     positions : tuple of int
     samples : Samples
-    solved : Solved
+    solved : HotAnswers
         S answers for every position.
     others : dict of int to Answer
         Answers of the ladder, by number among these.
@@ -52,7 +52,7 @@ class Part:
     rows: Numbers
     positions: tuple[int, ...]
     samples: Samples
-    solved: Solved
+    solved: HotAnswers
     others: dict[int, Answer]
     refused: dict[int, Unanswered]
 
@@ -102,16 +102,16 @@ class Answered:
     ----------
     positions : tuple of int
         1-based, as requested; without a request, all that any sample has.
-    parts : tuple of Part
+    parts : tuple of MachineSamples
     lacking : mapping of int to tuple of int
         Requested positions that a sample does not have.
     """
 
     positions: tuple[int, ...]
-    parts: tuple[Part, ...]
+    parts: tuple[MachineSamples, ...]
     lacking: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
 
-    def of(self, sample: int) -> Iterator[tuple[Part, int]]:
+    def of(self, sample: int) -> Iterator[tuple[MachineSamples, int]]:
         """Yield the parts that hold a sample, and its place there."""
         for part in self.parts:
             for row in np.flatnonzero(part.rows == sample).tolist():
@@ -198,14 +198,16 @@ def answer_samples(
     return Answered(every, tuple(parts), lacking)
 
 
-def _part(machine: Machine, rows: Numbers, samples: Samples, positions: tuple[int, ...]) -> Part:
+def _part(
+    machine: Machine, rows: Numbers, samples: Samples, positions: tuple[int, ...]
+) -> MachineSamples:
     """Solve samples at some positions; those that the hot path does not solve climb the ladder."""
     here = machine.at(positions[0])
     situations = samples.abreast(positions)
     engine = available_engine("auto", situations.count)
     found = here.answer(situations, CERTIFY.tolerance, engine, starts=positions)
-    solved = Solved(here, situations, found, CERTIFY.tolerance)
-    part = Part(rows, positions, samples, solved, {}, {})
+    solved = HotAnswers(here, situations, found, CERTIFY.tolerance)
+    part = MachineSamples(rows, positions, samples, solved, {}, {})
     for k in np.flatnonzero(~(found.passed & solved.small)).tolist():
         p, row = divmod(k, len(rows))
         try:

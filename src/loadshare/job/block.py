@@ -76,8 +76,8 @@ class Block:
         """Return the block over other positions, without an answer at those that it lacks."""
         lacking = np.array([k not in self.positions for k in positions])
         at = [self.positions.index(k) if k in self.positions else 0 for k in positions]
-        arrays = {name: getattr(self, name)[:, at] for name in NOTHING}
-        for name, nothing in NOTHING.items():
+        arrays = {name: getattr(self, name)[:, at] for name in UNANSWERED}
+        for name, nothing in UNANSWERED.items():
             arrays[name][:, lacking] = nothing
         none = self.equilibria[0].mapped(lambda array: np.full_like(array, np.nan))
         lacks = zip(lacking.tolist(), at, strict=True)
@@ -95,7 +95,7 @@ class Block:
 
 
 NONE = "the sample has no such position"
-NOTHING = {
+UNANSWERED = {
     **dict.fromkeys(("certified", "determined", "convex"), False),
     **dict.fromkeys(("residual", "bound", "displaced", "arc_curvature"), np.nan),
     "rung": np.int8(0),
@@ -142,7 +142,7 @@ class _Open:
 
     def __init__(self, rows: Numbers, positions: tuple[int, ...]) -> None:
         shape = len(rows), len(positions)
-        arrays: dict[str, Any] = {name: np.full(shape, v) for name, v in NOTHING.items()}
+        arrays: dict[str, Any] = {name: np.full(shape, v) for name, v in UNANSWERED.items()}
         self.block = Block(rows, positions, (), message={}, **arrays)
         self.deflection, self.load = np.full((2, *shape), np.nan)
         self.equilibria: list[Equilibria] = []
@@ -188,7 +188,7 @@ class _Open:
         """Record that a sample has no answer at a position."""
         block = self.block
         for name in ("certified", "rung", "residual", "bound", "displaced"):
-            getattr(block, name)[row, p] = NOTHING[name]
+            getattr(block, name)[row, p] = UNANSWERED[name]
         self.equilibria[p].forget(row)
         block.message[int(block.rows[row]), block.positions[p]] = why
 

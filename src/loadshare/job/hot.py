@@ -27,7 +27,7 @@ HOT, SEARCHED = "hot path", "proximal search"
 
 
 @dataclass(eq=False, repr=False)
-class Solved:
+class HotAnswers:
     """Answers of the hot path to situations of one machine, handed out one by one.
 
     Parameters
@@ -96,13 +96,13 @@ class _Placed:
 
     Attributes
     ----------
-    solved : Solved
+    solved : HotAnswers
     rows, indices : list of int
         Numbers among the solved answers, and positions.
     train : Train
     """
 
-    solved: Solved
+    solved: HotAnswers
     rows: list[int]
     indices: list[int]
     train: Train
@@ -137,7 +137,7 @@ def hot_answers(
     """Return the answers that the hot path finds, by position."""
     situations = machine.situations(indices)
     found = machine.answer(situations, tolerance, available_engine(engine, len(indices)))
-    solved = Solved(machine, situations, found, tolerance)
+    solved = HotAnswers(machine, situations, found, tolerance)
     passed = np.flatnonzero(found.passed).tolist()
     wanted = [indices[r] for r in passed]
     return dict(zip(wanted, solved.answers(passed, wanted, machine.train), strict=True))

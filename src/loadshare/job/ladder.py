@@ -34,7 +34,7 @@ from loadshare.solver import Iteration, Options, solve_scene
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.balancing import balancing
 from loadshare.solver.contradiction import contradiction
-from loadshare.solver.position import Known
+from loadshare.solver.position import SceneResults
 from loadshare.train.mesh import approach_of
 from loadshare.train.placed import train_at
 from loadshare.train.situations import situation_of
@@ -139,7 +139,7 @@ def climb(
     if math.isfinite(steps):
         _refuse_if_too_large(index, lighter())
     first: Refused | None = None
-    known = Known(work=Work(steps))
+    known = SceneResults(work=Work(steps))
     seen: list[tuple[Iteration, ...]] = []
     for rung, rung_options in rungs(options):
         try:

@@ -28,10 +28,10 @@ from loadshare.job.block import Block, solve_block
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
 from loadshare.job.positions import Progress, wanted_of
-from loadshare.job.table import USUAL, Table, checked
+from loadshare.job.table import USUAL, AnswerTable, checked
 from loadshare.one_thread import one_thread
 from loadshare.settings import CERTIFY, JOB
-from loadshare.train.columns import Columns, columns_of
+from loadshare.train.columns import SampleTable, columns_of
 from loadshare.train.samples import Samples, groups_of, samples_of, unusable
 from loadshare.train.shape import shape_of
 
@@ -141,7 +141,7 @@ def _machine(case: Case, samples: Samples) -> Machine:
 
 def solve_many(
     case: Case | str | Path,
-    samples: Columns,
+    samples: SampleTable,
     *,
     positions: Iterable[int] | None = None,
     keep: Iterable[str] = USUAL,
@@ -212,7 +212,7 @@ def solve_many(
         groups = groups_of(case, columns)
         trains = [group.train for _, group in groups]
         wanted = wanted_of(trains, positions)
-        found = Table(trains, wanted, len(columns[0].values), kept)
+        found = AnswerTable(trains, wanted, len(columns[0].values), kept)
         found.fill(_solved(case, groups, wanted, tolerance, engine, workers, least_norm), progress)
     except CaseError as error:
         # The value that it names may be another sample's.

@@ -13,7 +13,7 @@ import numpy as np
 from loadshare._version import __version__
 from loadshare.array_types import Array
 from loadshare.case import Case
-from loadshare.job.block import NOTHING, RUNGS, Block
+from loadshare.job.block import RUNGS, UNANSWERED, Block
 from loadshare.results.dataset import VARIABLES, Variable
 from loadshare.results.figures import COMPONENTS
 from loadshare.results.share import MeshTorques, mesh_torques, shares
@@ -115,7 +115,7 @@ def _coordinates(count: int, *labels: tuple[str, tuple[Any, ...]]) -> xr.Coordin
     )
 
 
-class Table:
+class AnswerTable:
     """Variables of all samples, filled block by block."""
 
     def __init__(
@@ -145,7 +145,7 @@ class Table:
         if later and "torque" not in written:
             written.append("torque")
         self.variables = {name: self._empty(np.nan, KEPT[name].dims) for name in written}
-        self.each = {name: self._empty(NOTHING[e.field], ()) for name, e in EACH.items()}
+        self.each = {name: self._empty(UNANSWERED[e.field], ()) for name, e in EACH.items()}
         self.message: dict[tuple[int, int], str] = {}
 
     def _empty(self, value: Any, dims: tuple[str, ...]) -> np.ndarray:

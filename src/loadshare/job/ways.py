@@ -13,12 +13,12 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import JOB
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
-from loadshare.solver.hot.exchange import Engine, Found, exchange, first_sets
+from loadshare.solver.hot.exchange import Engine, ExchangeResult, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.proximal import search
 from loadshare.solver.hot.rule import Rule, rule_of
 
-Way = Callable[[Loading, Numbers], tuple[Iterate, Found]]
+Way = Callable[[Loading, Numbers], tuple[Iterate, ExchangeResult]]
 """A way to solve some samples, given with their numbers."""
 
 
@@ -38,7 +38,9 @@ class Start:
         return Start(self.states[rows], self.share[rows])
 
 
-def start_of(structure: Structure, loading: Loading, iterate: Iterate, found: Found) -> Start:
+def start_of(
+    structure: Structure, loading: Loading, iterate: Iterate, found: ExchangeResult
+) -> Start:
     """Return the solutions of samples as a start for others."""
     share = np.abs(iterate.force) / pushes(loading)[:, None]
     return Start(found.states[:, : structure.rows], share)
@@ -46,7 +48,7 @@ def start_of(structure: Structure, loading: Loading, iterate: Iterate, found: Fo
 
 def from_rest(
     structure: Structure, loading: Loading, engine: Engine, singly: bool = False
-) -> tuple[Iterate, Found]:
+) -> tuple[Iterate, ExchangeResult]:
     """Solve samples that begin without any displacement."""
     iterate = at_rest(structure, loading)
     return iterate, exchange(structure, loading, iterate, engine, singly=singly)
@@ -64,7 +66,7 @@ def ways_from_rest(structure: Structure, engine: Engine) -> list[Way]:
 
 
 def take_over(
-    iterate: Iterate, found: Found, rows: Numbers, other: Iterate, more: Found
+    iterate: Iterate, found: ExchangeResult, rows: Numbers, other: Iterate, more: ExchangeResult
 ) -> Numbers:
     """Take over what another way has found of some samples; return which of these it solved."""
     found.put(rows, more)
@@ -75,7 +77,7 @@ def take_over(
 
 def from_near(
     structure: Structure, loading: Loading, engine: Engine, near: Sequence[tuple[Numbers, Start]]
-) -> tuple[Iterate, Found]:
+) -> tuple[Iterate, ExchangeResult]:
     """Solve samples that begin at starts, each given with the numbers of its samples."""
     iterate, states = at_rest(structure, loading), first_sets(structure, loading)
     for rows, start in near:
@@ -86,7 +88,7 @@ def from_near(
 
 def by_rule(
     structure: Structure, loading: Loading, engine: Engine, rule: Rule
-) -> tuple[Iterate, Found]:
+) -> tuple[Iterate, ExchangeResult]:
     """Solve samples that begin where a rule says."""
     states, iterate = rule.start(structure, loading)
     return iterate, exchange(structure, loading, iterate, engine, states)
@@ -105,7 +107,7 @@ def learned_rule(structure: Structure, loading: Loading, engine: Engine) -> Rule
 
 def by_any_way(
     structure: Structure, loading: Loading, engine: Engine, tolerance: float
-) -> tuple[Iterate, Found]:
+) -> tuple[Iterate, ExchangeResult]:
     """Solve samples from rest, by one way after another, and by a search if none of them does."""
     first, *others = ways_from_rest(structure, engine)
     iterate, found = first(loading, np.arange(loading.count))
@@ -122,7 +124,7 @@ def search_all(
     structure: Structure,
     loading: Loading,
     iterate: Iterate,
-    found: Found,
+    found: ExchangeResult,
     rows: Numbers,
     led: Flags,
     tolerance: float,

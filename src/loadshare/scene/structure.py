@@ -38,7 +38,7 @@ from loadshare.train.train import Train
 
 
 @dataclass(frozen=True, slots=True)
-class Columns:
+class ColumnSlices:
     """Columns of each kind of element.
 
     Attributes
@@ -60,7 +60,7 @@ class Columns:
     radials: slice
 
     @classmethod
-    def of(cls, counts: Iterable[int]) -> Columns:
+    def of(cls, counts: Iterable[int]) -> ColumnSlices:
         """Put kinds of elements with these numbers of columns one after another."""
         ends = list(accumulate(counts, initial=0))
         return cls(*(slice(*pair) for pair in pairwise(ends)))
@@ -140,7 +140,7 @@ class Structure:
     ----------
     train : Train
     coordinates : Coordinates
-    columns : Columns
+    columns : ColumnSlices
         Columns of the elements, in this order.
     vectors : ndarray, shape (m, n)
         A; rows of springs are scaled to unit norm, those of contacts are not. Arcs are taken at
@@ -167,7 +167,7 @@ class Structure:
 
     train: Train
     coordinates: Coordinates
-    columns: Columns
+    columns: ColumnSlices
     vectors: Array
     names: tuple[str, ...]
     kinds: tuple[str, ...]
@@ -430,7 +430,7 @@ def structure_of(train: Train) -> Structure:
     structure = Structure(
         train,
         at,
-        Columns.of(map(len, groups)),
+        ColumnSlices.of(map(len, groups)),
         np.array([vector for *_, vector in columns]).reshape(-1, at.size),
         tuple(name for name, *_ in columns),
         tuple(kind for _, kind, _ in columns),

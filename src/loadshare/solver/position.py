@@ -25,7 +25,7 @@ from loadshare.train.memory import SlipFriction
 
 
 @dataclass(slots=True)
-class Known:
+class SceneResults:
     """Results of plans of a scene with a back-end, and the work that is left for further plans.
 
     Attributes
@@ -43,7 +43,7 @@ class Known:
 
 
 def solve_scene(
-    scene: Scene, options: Options, known: Known | None = None
+    scene: Scene, options: Options, known: SceneResults | None = None
 ) -> tuple[Equilibrium, Record]:
     """Find the equilibrium of a scene.
 
@@ -51,7 +51,7 @@ def solve_scene(
     ----------
     scene : Scene
     options : Options
-    known : Known, optional
+    known : SceneResults, optional
         Results of plans of this scene with this back-end, to be added to: none is settled twice.
 
     Returns
@@ -67,7 +67,7 @@ def solve_scene(
     """
     solver = backend(options.solver)
     plan = Plan.lean(scene) if options.reduce else Plan.full(scene)
-    known = known or Known()
+    known = known or SceneResults()
     rounds = 0
     while True:
         rounds += 1
@@ -105,7 +105,7 @@ def solve_scene(
 
 
 def _settle(
-    scene: Scene, plan: Plan, solver: Backend, options: Options, known: Known
+    scene: Scene, plan: Plan, solver: Backend, options: Options, known: SceneResults
 ) -> tuple[Settled, str]:
     """Run the outer loop, with the other method if the chosen one does not settle."""
     other = {"newton": "picard", "picard": "newton"}.get(options.method)
@@ -120,7 +120,7 @@ def _settle(
 
 
 def _once(
-    scene: Scene, plan: Plan, solver: Backend, options: Options, method: str, known: Known
+    scene: Scene, plan: Plan, solver: Backend, options: Options, method: str, known: SceneResults
 ) -> Settled:
     """Run the outer loop on a plan, unless that was done before."""
     key = (*plan.rows.values(), *plan.radials.values(), plan.condensed, method)

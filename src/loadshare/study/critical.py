@@ -21,7 +21,7 @@ from loadshare.libraries import pd
 from loadshare.pictures import Figure, picture
 from loadshare.study.events import Event, events_of, flanks_changed
 from loadshare.study.follow.line import Line
-from loadshare.study.follow.search import Search
+from loadshare.study.follow.search import ChangeSearch
 from loadshare.study.parameter import (
     RANGE,
     STUDY,
@@ -196,7 +196,7 @@ def critical(
     done = 0
     for group in alike((line.first, line.last), chosen):
         here = line.at(group[0])
-        search = Search(here, group[0], low, high)
+        search = ChangeSearch(here, group[0], low, high)
         search.run()
         found = [e for change in search.changes for e in events_of(here, group[0], change)]
         if any(here.first.meshes[n].turned != m.turned for n, m in here.last.meshes.items()):

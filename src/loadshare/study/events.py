@@ -7,7 +7,7 @@ from functools import partial
 
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import switch_names
-from loadshare.study.follow.changes import Change, Gap, Point, change_between
+from loadshare.study.follow.changes import Change, Gap, PathPoint, change_between
 from loadshare.study.follow.line import Line
 
 _STATES = {
@@ -153,7 +153,7 @@ def flanks_changed(line: Line, position: int, gap: Gap) -> list[Event]:
     gap : Gap
     """
     first, last = gap.first, gap.last
-    if not (isinstance(first, Point) and isinstance(last, Point)):
+    if not (isinstance(first, PathPoint) and isinstance(last, PathPoint)):
         return []
     names = switch_names(line.structure)
     carrying = {

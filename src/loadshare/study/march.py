@@ -28,7 +28,7 @@ from loadshare.pictures import Figure, picture
 from loadshare.results import Result
 from loadshare.results.dataset import unchanging
 from loadshare.settings import CERTIFY, MARCH
-from loadshare.study.memory.step import Ways, stepped
+from loadshare.study.memory.step import StepHistory, stepped
 from loadshare.study.positions import BACKEND
 from loadshare.study.tables import march_dataset
 from loadshare.train import Train, build_train
@@ -199,7 +199,7 @@ def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) 
     answers: list[Answer] = []
     slips: list[dict[str, Slip]] = []
     before: dict[str, Vector] = {gear: np.zeros(3) for gear in train.splines}
-    steps, ways = range(1, train.count + 1), Ways()
+    steps, history = range(1, train.count + 1), StepHistory()
 
     def result() -> Result:
         return result_of(case, solved, train, answers, BACKEND, CERTIFY.tolerance, steps)
@@ -207,7 +207,7 @@ def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) 
     for index in steps:
         remembering = train_at(train.remembering(before), index)
         try:
-            answer = stepped(remembering, index, ways)
+            answer = stepped(remembering, index, history)
             refused = answer.refused()
             if refused is not None:
                 raise refused

@@ -15,7 +15,7 @@ from loadshare.results.dataset import VARIABLES
 from loadshare.results.figures import COMPONENTS
 
 if TYPE_CHECKING:
-    from loadshare.job.answered import Part
+    from loadshare.job.answered import MachineSamples
     from loadshare.study.march import March
     from loadshare.study.sensitivity import Sensitivity
     from loadshare.study.sweep import Sweep
@@ -98,7 +98,7 @@ def _filled(
     return positions, names, arrays
 
 
-def _answered(part: Part) -> tuple[np.ndarray, np.ndarray]:
+def _answered(part: MachineSamples) -> tuple[np.ndarray, np.ndarray]:
     """Return the samples and positions of the answers in a part."""
     each = len(part.rows)
     return part.rows[part.there % each], np.array(part.positions)[part.there // each]

@@ -20,7 +20,7 @@ from loadshare.errors import CaseError, Problem
 _UNIT = re.compile(r"(?P<key>.*\S)\s+\[(?P<unit>[^\]]*)\]")
 
 
-class Columns(Protocol):
+class SampleTable(Protocol):
     """Anything with named columns: a mapping or a data frame."""
 
     def items(self) -> Iterable[tuple[Any, Any]]:
@@ -98,7 +98,7 @@ class Column:
         return found
 
 
-def columns_of(samples: Columns) -> list[Column]:
+def columns_of(samples: SampleTable) -> list[Column]:
     """Read a table of samples.
 
     Parameters

@@ -15,7 +15,7 @@ from loadshare.array_types import Array
 from loadshare.certify.arrays import arrays_of
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.groups import Plan
+from loadshare.certify.bound.groups import SharedData
 from loadshare.certify.bound.layout import springs_of
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
@@ -26,7 +26,7 @@ def is_covered(columns: Columns) -> bool:
     return columns.train.slip is None
 
 
-class Judged(NamedTuple):
+class BatchFigures(NamedTuple):
     """Figures of S claims; NaN where they are left to NumPy.
 
     Attributes
@@ -48,14 +48,14 @@ class Judged(NamedTuple):
     displaced: Array
 
 
-def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Judged:
+def judged(columns: Columns, situations: Situations, answers: Equilibria) -> BatchFigures:
     """Judge S claims with compiled code."""
     from loadshare.certify.bound import kernel
 
     (spring, arm), pushed = springs_of(columns, situations), bool(situations.push.any())
     plan = _plans.get(columns)
     if plan is None or plan.key != (spring.tobytes(), pushed):
-        plan = _plans[columns] = Plan(columns, spring, arm, pushed)
+        plan = _plans[columns] = SharedData(columns, spring, arm, pushed)
     here, claim = arrays_of(situations, answers)
     claims = len(answers.rotation)
     found, sets = plan.found(claims), plan.sets(claims)
@@ -66,7 +66,7 @@ def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Jud
     kernel.bound_all(plan.layout, here, claim, found, groups, errors)
     with np.errstate(invalid="ignore"):
         relative = np.where(errors < np.inf, errors / found.largest + 2.0 * EPS, np.inf)
-    return Judged(relative, found.worst, found.scale, found.deflection, found.displaced)
+    return BatchFigures(relative, found.worst, found.scale, found.deflection, found.displaced)
 
 
-_plans: WeakKeyDictionary[Columns, Plan] = WeakKeyDictionary()
+_plans: WeakKeyDictionary[Columns, SharedData] = WeakKeyDictionary()

@@ -32,7 +32,7 @@ from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.elements import Elements
 from loadshare.certify.bound.laws import elements
-from loadshare.certify.bound.response import Part, Response, yielding
+from loadshare.certify.bound.response import ActingGroup, Response, yielding
 from loadshare.certify.bound.signs import doubts
 from loadshare.settings import BOUND
 
@@ -171,7 +171,7 @@ def put_aside(columns: Columns, spare: Array, torques: Array) -> Array:
     return np.asarray(pushed @ np.abs(columns.matrix.high[columns.radials]))
 
 
-class _Enclosure(Part):
+class _Enclosure(ActingGroup):
     """Claims in which the same columns act, and the boxes that enclose their errors."""
 
     def solve(self, scale: Array) -> tuple[Array, Array]:

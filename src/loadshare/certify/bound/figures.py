@@ -11,7 +11,7 @@ from loadshare.array_types import Array, Numbers
 from loadshare.certify.bound.acts import Acts
 
 
-class Found(NamedTuple):
+class ClaimFigures(NamedTuple):
     """Figures of S claims."""
 
     number: Numbers  # (S,): of the set that acts; −1 if there are too many sets

@@ -20,7 +20,7 @@ from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.acts import CLOSED, OPEN, Acts
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.figures import Found, Sets, Workspace
+from loadshare.certify.bound.figures import ClaimFigures, Sets, Workspace
 from loadshare.certify.bound.layout import layout_of
 from loadshare.certify.bound.statics import Statics, force_at_end, held_moves
 from loadshare.settings import BOUND
@@ -67,7 +67,7 @@ class Operators(NamedTuple):
     is_covered: bool  # whether balance determines these forces
 
 
-class Plan:
+class SharedData:
     """The data that all batches of a train share.
 
     Parameters
@@ -120,7 +120,7 @@ class Plan:
         sizes += [()] * (len(Workspace._fields) - len(sizes))
         return Workspace(*(np.zeros((*size, BOUND.abreast)) for size in sizes))
 
-    def found(self, count: int) -> Found:
+    def found(self, count: int) -> ClaimFigures:
         """Return space for the figures of `count` claims."""
         pulls, n = len(self.pulls), self.contacts.shape[1]
         rows, number = (self._rows, n, pulls, pulls), np.empty(count, dtype=np.intp)
@@ -131,7 +131,7 @@ class Plan:
             *[(count, pulls)] * 2,
             *[(count,)] * 15,
         ]
-        return Found._make([number, acts, *map(np.empty, sizes)])
+        return ClaimFigures._make([number, acts, *map(np.empty, sizes)])
 
     def sets(self, count: int) -> Sets:
         """Return space for the sets of elements of `count` claims."""

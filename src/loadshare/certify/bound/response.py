@@ -13,7 +13,7 @@ from loadshare.certify.bound.elements import Elements
 from loadshare.settings import BOUND
 
 
-class Part:
+class ActingGroup:
     """Claims in which the same columns act."""
 
     def __init__(
@@ -105,12 +105,12 @@ class Response:
 
     Parameters
     ----------
-    part : Part
+    part : ActingGroup
     row : int
         The claim.
     """
 
-    def __init__(self, part: Part, row: int) -> None:
+    def __init__(self, part: ActingGroup, row: int) -> None:
         known = part.statics
         p, n = known.particular, known.redundant
         self.soft, self.skew = part.soft[row], part.skew[row]
@@ -137,7 +137,7 @@ class Response:
         self._follow(part)
         self._sizes = tuple(np.abs(v) for v in (*self.force_by, *self.moved_by))
 
-    def _follow(self, part: Part) -> None:
+    def _follow(self, part: ActingGroup) -> None:
         """Let levels and rooms follow the torques over their splines."""
         twist, unit = part.twist, np.eye(len(part.twist))
         by = [twist @ v for v in self.force_by]

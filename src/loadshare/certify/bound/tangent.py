@@ -42,13 +42,13 @@ class Tangents:
     flanks : ndarray, shape (S, flanks)
         Stiffness of every flank along its line of action at the force that it carries [N/m]; 0
         where it is open.
-    rows : list of Rows
+    rows : list of ActingRows
         Rows of the acting elements, claim by claim.
     """
 
     columns: Columns
     flanks: Array
-    rows: list[Rows]
+    rows: list[ActingRows]
 
     def torsion(self, gear: str) -> Array:
         """Return the torque on a gear per rotation of it, (S,) [N·m/rad].
@@ -70,7 +70,7 @@ class Tangents:
             return np.asarray(turn.radius**2 / yields)
 
 
-class Rows(NamedTuple):
+class ActingRows(NamedTuple):
     """Rows of the acting elements of a claim.
 
     Attributes
@@ -133,7 +133,7 @@ def tangents_of(columns: Columns, situations: Situations, answers: Equilibria) -
         return Tangents(columns, 1.0 / soft, [_rows(claim, found, k) for k in range(claim.count)])
 
 
-def _rows(claim: Claim, found: Elements, row: int) -> Rows:
+def _rows(claim: Claim, found: Elements, row: int) -> ActingRows:
     """Return the rows of the acting elements of a claim, and what follows torques over splines."""
     columns, matrix = claim.columns, claim.columns.matrix.high
     scalar = np.flatnonzero(found.active[row, : columns.first_pair])
@@ -160,7 +160,7 @@ def _rows(claim: Claim, found: Elements, row: int) -> Rows:
     twist = np.zeros((len(columns.moments), len(directions)))
     twist[:, : len(flanks)] = columns.moments[:, flanks]
     twist *= np.sign(claim.torque_on_splines[row])[:, None]
-    return Rows(
+    return ActingRows(
         np.array(directions).reshape(-1, len(columns.coordinates)),
         np.array(yields),
         pushing,

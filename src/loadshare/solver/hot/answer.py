@@ -18,7 +18,7 @@ from loadshare.train.equilibria import Equilibria, Names
 from loadshare.train.situations import Situations
 
 if TYPE_CHECKING:
-    from loadshare.solver.hot.products import Rows
+    from loadshare.solver.hot.products import SparseRows
 
 
 def equilibria(
@@ -106,7 +106,7 @@ class _Map:
     matrices: tuple[Array, ...]
 
     @cached_property
-    def rows(self) -> list[Rows]:
+    def rows(self) -> list[SparseRows]:
         """Sparse transposed matrices: a coordinate belongs to one or two gears, a force to one."""
         from loadshare.solver.hot.products import rows_of
 

@@ -24,7 +24,7 @@ from loadshare.solver.hot.kernel.conclude import conclude
 from loadshare.solver.hot.kernel.fill import fill
 from loadshare.solver.hot.kernel.options import bare, cached
 from loadshare.solver.hot.kernel.passes import give_up, run
-from loadshare.solver.hot.kernel.set_arrays import Samples, packed_sets, unpacked
+from loadshare.solver.hot.kernel.set_arrays import SampleArrays, packed_sets, unpacked
 from loadshare.solver.hot.kernel.work import Given, work_for
 
 UNDECIDED = -1
@@ -52,7 +52,7 @@ def settle(
     _settle_all(
         *packed_sets(structure, loading, sets),
         sets,
-        Samples._make(getattr(loading, name) for name in Samples._fields),
+        SampleArrays._make(getattr(loading, name) for name in SampleArrays._fields),
         Given(rows, *state, one_only, verdict, proposal),
         ends,
         ABREAST.widest,

@@ -30,7 +30,7 @@ _KEYS = np.random.default_rng(11).integers(1 << 62, size=1 << 12) | 1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found:
+class ExchangeResult:
     """Result of the hot path.
 
     Attributes
@@ -50,11 +50,13 @@ class Found:
     turns: Numbers
     held: Flags
 
-    def take(self, rows: Numbers) -> Found:
+    def take(self, rows: Numbers) -> ExchangeResult:
         """Return the result of some samples."""
-        return Found(self.solved[rows], self.states[rows], self.turns[rows], self.held[rows])
+        return ExchangeResult(
+            self.solved[rows], self.states[rows], self.turns[rows], self.held[rows]
+        )
 
-    def put(self, rows: Numbers, other: Found) -> None:
+    def put(self, rows: Numbers, other: ExchangeResult) -> None:
         """Replace some samples by those of another result, in its order; turns are added up."""
         self.solved[rows] = other.solved
         self.states[rows] = other.states
@@ -117,7 +119,7 @@ def exchange(
     states: States | None = None,
     singly: bool = False,
     limit: int | None = None,
-) -> Found:
+) -> ExchangeResult:
     """Find a consistent set for every sample.
 
     Parameters
@@ -137,7 +139,7 @@ def exchange(
 
     Returns
     -------
-    Found
+    ExchangeResult
         Samples that ran into a cycle, a mechanism or a law without meaning are not solved.
     """
     given = first_sets(structure, loading) if states is None else states
@@ -180,7 +182,7 @@ def exchange(
             one_only[rows] = True
         _without_wedges(structure, loading, here, other)
         states[rows, :switches] = other
-    return Found(solved, states[:, :switches], turns, held)
+    return ExchangeResult(solved, states[:, :switches], turns, held)
 
 
 def _alike(states: States) -> tuple[Numbers, list[int]]:

@@ -11,7 +11,7 @@ from loadshare.settings import HOT
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.elements import arc_at, pick
 from loadshare.solver.hot.iterate import Iterate
-from loadshare.solver.hot.radials import Block
+from loadshare.solver.hot.radials import RadialTangent
 
 
 class OnSet:
@@ -85,7 +85,7 @@ class OnSet:
         self.outside = np.zeros((count, structure.switches - structure.rows), dtype=int)
         self.patience = np.where(states[structure.rows :] == at.WALL, HOT.inward, HOT.outside)
         self.fixed: dict[int, at.Graph] = {}
-        self.linear: dict[int, Block] = {}
+        self.linear: dict[int, RadialTangent] = {}
 
     def _shared(self) -> Array:
         """Return redundants (r, q), orthonormal, in which only rigid elements take part.

@@ -10,7 +10,7 @@ from loadshare.settings import HOT
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.elements import piece, times
 from loadshare.solver.hot.on_set import OnSet
-from loadshare.solver.hot.radials import Block, block
+from loadshare.solver.hot.radials import RadialTangent, block
 from loadshare.solver.hot.signs import wrong_elements
 from loadshare.solver.hot.symmetric import solve
 
@@ -65,7 +65,7 @@ def run(on: OnSet, patient: Flags) -> None:
     on.settled &= ~on.refused
 
 
-def _pass(on: OnSet, blocks: list[Block]) -> None:
+def _pass(on: OnSet, blocks: list[RadialTangent]) -> None:
     """Make one Newton pass: redundants, forces, compressions, coordinates."""
     particular, n = on.basis.particular, on.basis.redundant
     tangent, shift = _tangents(on)
@@ -152,7 +152,7 @@ def _renew_laws(on: OnSet) -> Array:
     return misfit
 
 
-def _blocks(on: OnSet) -> list[Block]:
+def _blocks(on: OnSet) -> list[RadialTangent]:
     """Return the tangents of the radial elements at their present offsets."""
     blocks = []
     for j, status, k in on.radial:

@@ -12,7 +12,7 @@ from loadshare.array_types import Array, Numbers
 compiled = compilation.jit(nogil=True, error_model="numpy")
 
 
-class Rows(NamedTuple):
+class SparseRows(NamedTuple):
     """Entries of a matrix that are not zero, row by row."""
 
     start: Numbers
@@ -20,14 +20,14 @@ class Rows(NamedTuple):
     value: Array
 
 
-def rows_of(matrix: Array) -> Rows:
+def rows_of(matrix: Array) -> SparseRows:
     """Return the entries of a matrix that are not zero."""
     # Always contiguous, whatever NumPy returns: code is compiled for each layout separately.
     rows, at = map(np.ascontiguousarray, np.nonzero(matrix))
-    return Rows(np.searchsorted(rows, np.arange(len(matrix) + 1)), at, matrix[rows, at])
+    return SparseRows(np.searchsorted(rows, np.arange(len(matrix) + 1)), at, matrix[rows, at])
 
 
-def products(table: Array, rows: Rows) -> Array:
+def products(table: Array, rows: SparseRows) -> Array:
     """Return every row of a table (S, n) times every row of a matrix (k, n), shape (S, k)."""
     found = np.empty((len(table), len(rows.start) - 1))
     # Entry by entry: most rows have one or none.

@@ -26,7 +26,7 @@ from loadshare.settings import HOT, SEARCH
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.elements import arc_at
-from loadshare.solver.hot.exchange import Found, exchange, first_sets
+from loadshare.solver.hot.exchange import ExchangeResult, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest
 from loadshare.solver.hot.radials import beyond
 from loadshare.solver.hot.softened import Laws
@@ -265,7 +265,7 @@ class Proximal:
         return states
 
 
-def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
+def search(structure: Structure, loading: Loading) -> tuple[Iterate, ExchangeResult]:
     """Find a consistent set for a single sample from the ends of the proximal passes.
 
     Parameters
@@ -280,7 +280,7 @@ def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
         Not solved where the sample has no equilibrium, or the passes find none.
     """
     iterate, passes, before = at_rest(structure, loading), Proximal(structure, loading), b""
-    found = Found(
+    found = ExchangeResult(
         np.zeros(1, bool), first_sets(structure, loading), np.zeros(1, int), np.zeros(1, bool)
     )
     tried: list[bytes] = []
@@ -310,8 +310,8 @@ def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
 
 
 def _with_idle_open(
-    structure: Structure, loading: Loading, iterate: Iterate, found: Found
-) -> tuple[Iterate, Found]:
+    structure: Structure, loading: Loading, iterate: Iterate, found: ExchangeResult
+) -> tuple[Iterate, ExchangeResult]:
     """Open contacts that carry round-off, if the set is consistent without them at the same place.
 
     With many such contacts no bound could show which of them act.

@@ -14,7 +14,7 @@ _BOTH = np.eye(2)
 
 
 @dataclass(slots=True)
-class Block:
+class RadialTangent:
     """Tangent of a radial element of the set: compression = offset + compliance · force.
 
     On the level piece the force along `along` is `bound`, and the compression along it is free.
@@ -53,7 +53,7 @@ def direction(first: Array, second: Array) -> Array:
 
 def block(
     columns: slice, status: int, law: at.Graph, offset: Array, force: Array, push: Array
-) -> Block:
+) -> RadialTangent:
     """Return the tangent of a radial element at its current offset and force."""
     count = len(offset)
     radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
@@ -91,7 +91,7 @@ def block(
     dyad = along[:, :, None] * along[:, None, :]
     compliance = inner[:, None, None] * dyad + outer[:, None, None] * (_BOTH - dyad)
     bound = law.bound if status == at.SLIP else None
-    return Block(columns, compliance, start[:, None] * along, along, bound)
+    return RadialTangent(columns, compliance, start[:, None] * along, along, bound)
 
 
 def misplaced(

@@ -28,7 +28,7 @@ from loadshare.solver.hot.exchange import first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 
 
-class Part(NamedTuple):
+class ArrayWeights(NamedTuple):
     """Weights of the numbers in one array of a loading.
 
     Attributes
@@ -60,7 +60,7 @@ class Rule:
     place : ndarray, shape (sets, values)
         Constants of the coordinates, and of the forces of radial elements, in the units of the
         force method; without values where no wall is predicted.
-    parts : sequence of Part
+    parts : sequence of ArrayWeights
     """
 
     switches: Numbers | slice
@@ -68,7 +68,7 @@ class Rule:
     share: Array
     constant: Array
     place: Array
-    parts: Sequence[Part] = ()
+    parts: Sequence[ArrayWeights] = ()
 
     def start(self, structure: Structure, loading: Loading) -> tuple[States, Iterate]:
         """Return the sets and the iterate with which S samples begin."""
@@ -155,7 +155,9 @@ def rule_of(structure: Structure, loading: Loading, states: States, iterate: Ite
         start += len(columns)
         used = np.flatnonzero(here.any(axis=1))
         whole = len(used) > RULE.dense * table.shape[1] and np.isfinite(table).all()
-        parts.append(Part(name, None, here) if whole else Part(name, used, here[used]))
+        parts.append(
+            ArrayWeights(name, None, here) if whole else ArrayWeights(name, used, here[used])
+        )
     return Rule(switches, met, shares, constant, place, parts)
 
 

@@ -15,14 +15,14 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES
 from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
 from loadshare.solver.hot.iterate import Iterate
-from loadshare.solver.hot.products import Rows, rows_of
+from loadshare.solver.hot.products import SparseRows, rows_of
 
 _how = {"nogil": True, "error_model": "numpy", "_nrt": False}
 compiled = compilation.jit(**_how)
 inlined = compilation.within(forceinline=True, **_how)
 
 
-class Figures(NamedTuple):
+class VaryingArrays(NamedTuple):
     """Arrays that vary, as in `Loading`, with x (S, n), force (S, m) and the least force (S,)."""
 
     x: Array
@@ -34,12 +34,12 @@ class Figures(NamedTuple):
     radial: Array
 
 
-class Layout(NamedTuple):
+class SharedArrays(NamedTuple):
     """Arrays that all samples share: A, the lines between centres of arcs, levers of splines."""
 
-    vectors: Rows
-    relative: Rows  # three rows an arc
-    levers: Rows
+    vectors: SparseRows
+    relative: SparseRows  # three rows an arc
+    levers: SparseRows
     nominal: Array
     springs: int
     flat: int
@@ -76,7 +76,7 @@ class Touching:
     ) -> None:
         self._of = structure.kept(
             ("touching",),
-            lambda: Layout(
+            lambda: SharedArrays(
                 rows_of(structure.vectors),
                 rows_of(loading.relative.reshape(-1, structure.size)),
                 rows_of(loading.carried),
@@ -86,9 +86,9 @@ class Touching:
                 structure.columns.radials.start,
             ),
         )
-        varying = (getattr(loading, name) for name in Figures._fields[3:])
+        varying = (getattr(loading, name) for name in VaryingArrays._fields[3:])
         figures = (iterate.x, iterate.force, least, *varying)
-        self._here = Figures(*(np.require(array, np.float64, ["C"]) for array in figures))
+        self._here = VaryingArrays(*(np.require(array, np.float64, ["C"]) for array in figures))
         count = len(states)
         self.number, first = np.empty((2, count), dtype=np.intp)
         self._carries = np.empty((count, structure.rows + len(structure.radials)), dtype=np.int8)

@@ -12,7 +12,7 @@ from loadshare.study.follow.line import Missing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Point:
+class PathPoint:
     """A certified point on a set, or one between two such points, found by the set's equations.
 
     Attributes
@@ -54,22 +54,24 @@ class Change:
     apart: float
 
 
-def change_between(first: Point, last: Point, value: float, confirmed: bool = False) -> Change:
+def change_between(
+    first: PathPoint, last: PathPoint, value: float, confirmed: bool = False
+) -> Change:
     """Return the change from the set of one point to that of another, which happens at a value."""
     apart = float(max(value - first.value, last.value - value))
     worst = max(first.worst, last.worst)
     return Change(value, first.active, last.active, confirmed, worst, apart)
 
 
-Stretch = tuple[Point | Missing, Point | Missing]
+Stretch = tuple[PathPoint | Missing, PathPoint | Missing]
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
     """A stretch on which nothing was proved, and why."""
 
-    first: Point | Missing
-    last: Point | Missing
+    first: PathPoint | Missing
+    last: PathPoint | Missing
     why: str
 
 

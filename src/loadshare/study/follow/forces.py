@@ -34,7 +34,7 @@ class Force(NamedTuple):
     spread: Array
 
 
-class Slope(NamedTuple):
+class ContactSlope(NamedTuple):
     """A contact's slope: by how much it varies, and its force's derivative along the chord."""
 
     off: Array
@@ -110,24 +110,24 @@ def _slack(s: Stretches, columns: int | slice, slack: Array) -> Array:
 # --- Contacts -----------------------------------------------------------------------------------
 
 
-def varying_slopes(s: Stretches, dev: Array) -> dict[int, Slope]:
+def varying_slopes(s: Stretches, dev: Array) -> dict[int, ContactSlope]:
     """Return contacts whose slope varies: by how much, and how their force changes on the chord."""
     e, found = s.equations, {}
     if len(e.curved):
         every = _curved(s, dev)
         for i, k in enumerate(e.curved.tolist()):
-            found[k] = Slope(*(part[:, i] for part in every))
+            found[k] = ContactSlope(*(part[:, i] for part in every))
     bending, still = s.numbers.bending, np.zeros(s.count)
     varies = (bending != bending[:1]).any(axis=0)
     acting = {*range(e.structure.springs), *e.linear.tolist()}
     for k in sorted(k for k in acting if varies[k]):
         b = s.sampled(bending[:, k])
         off = np.where(b.low > 0.0, 1.0 / b.low - 1.0 / b.high, np.inf)
-        found[k] = Slope(off, still, still)
+        found[k] = ContactSlope(off, still, still)
     return found
 
 
-def _curved(s: Stretches, dev: Array) -> Slope:
+def _curved(s: Stretches, dev: Array) -> ContactSlope:
     """Enclose slopes and derivatives of forces, δ = bF + cF^(2/3)."""
     columns = s.equations.curved
     approach, dev = s.approach[columns], dev[:, columns]
@@ -150,7 +150,7 @@ def _curved(s: Stretches, dev: Array) -> Slope:
         wide = np.maximum(upper - here, here - lower)
         own, own_spread = _times(here, wide, part.rate, part.spread)
         moved, spread = moved - sign * own, spread + own_spread
-    return Slope(off, moved, spread)
+    return ContactSlope(off, moved, spread)
 
 
 def _times(one: Array, one_off: Array, other: Array, other_off: Array) -> tuple[Array, Array]:
@@ -162,7 +162,7 @@ def _times(one: Array, one_off: Array, other: Array, other_off: Array) -> tuple[
 # --- Arcs and radial elements -------------------------------------------------------------------
 
 
-def friction_bound(s: Stretches, k: int, slopes: dict[int, Slope]) -> Bound:
+def friction_bound(s: Stretches, k: int, slopes: dict[int, ContactSlope]) -> Bound:
     """Return a radial element's friction bound on the chord, and how it follows the contacts."""
     e, j = s.equations, k - s.equations.radials.start
     value = s.sampled(s.state.laws[k].bound)
@@ -198,7 +198,7 @@ def friction_bound(s: Stretches, k: int, slopes: dict[int, Slope]) -> Bound:
 
 
 def _turning_force(
-    s: Stretches, k: int, where: int | None, dev: Array, slopes: dict[int, Slope]
+    s: Stretches, k: int, where: int | None, dev: Array, slopes: dict[int, ContactSlope]
 ) -> Iterator[Force]:
     """Yield the components of a force that turns, and the condition on an unknown one."""
     e, offset, here = s.equations, s.offsets[k], s.columns[k]

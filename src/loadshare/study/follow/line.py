@@ -30,7 +30,7 @@ from loadshare.train.situations import Situations, situation_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Solved:
+class SolvedValue:
     """A certified equilibrium at a value.
 
     Attributes
@@ -142,7 +142,7 @@ class Line:
             parts.append(Numbers.of(structure, situation_of(train, position)))
         return Numbers.stacked(parts)
 
-    def solved(self, position: int, values: Array) -> list[Solved | Missing]:
+    def solved(self, position: int, values: Array) -> list[SolvedValue | Missing]:
         """Solve and certify a position at values (S,)."""
         if self._samples is not None:
             situations = self._at(values).situations(position)
@@ -155,7 +155,7 @@ class Line:
             ]
         return [self._one(position, value) for value in values.tolist()]
 
-    def _one(self, position: int, value: float) -> Solved | Missing:
+    def _one(self, position: int, value: float) -> SolvedValue | Missing:
         try:
             train, structure = self._own(value)
         except (CaseError, ValueError) as problem:
@@ -170,11 +170,11 @@ class Line:
 
     def _from_batch(
         self, structure: Structure, situations: Situations, found: Answers, k: int, value: float
-    ) -> Solved:
+    ) -> SolvedValue:
         x = coordinates(structure, situations.take(slice(k, k + 1)), found.equilibria.one(k, 1))
-        return Solved(value, found.states[k].copy(), x, float(found.verdicts.worst[k]))
+        return SolvedValue(value, found.states[k].copy(), x, float(found.verdicts.worst[k]))
 
-    def _from_ladder(self, position: int, value: float) -> Solved | Missing:
+    def _from_ladder(self, position: int, value: float) -> SolvedValue | Missing:
         """Return the answer of a slower method, with states read from forces and radii."""
         try:
             train = self.train(value)
@@ -185,4 +185,4 @@ class Line:
         situation = situation_of(train, position)
         x, numbers = coordinates(structure, situation, found), Numbers.of(structure, situation)
         states = read_states(structure, numbers, found, x)
-        return Solved(value, states, x, answer.certificate.worst)
+        return SolvedValue(value, states, x, answer.certificate.worst)

@@ -24,7 +24,7 @@ HIDDEN = "round-off hides what holds its bodies"
 """Why no part of a stretch, however short, is enclosed."""
 
 
-class Part(NamedTuple):
+class UnprovedPart(NamedTuple):
     """A part of a stretch that is not proved.
 
     Attributes
@@ -70,9 +70,9 @@ class Prover:
         numbers = self.line.numbers(self.position, values)
         return prove(Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers))
 
-    def unproved(self, equations: Equations, ends: Sequence[Ends]) -> list[Part]:
+    def unproved(self, equations: Equations, ends: Sequence[Ends]) -> list[UnprovedPart]:
         """Prove stretches, as a whole or in parts, and return the parts that are not proved."""
-        left: list[Part] = []
+        left: list[UnprovedPart] = []
         parts = list(enumerate(ends))
         known: dict[float, _Alone] = {}
         while parts:
@@ -90,11 +90,11 @@ class Prover:
                 low, high, first, last = part
                 why = self._hopeless([known[v] for v in (low, value, high)], high - low)
                 if why or not good or known[value] == _Alone(holds=False, enclosed=True):
-                    left.append(Part(k, part, why))
+                    left.append(UnprovedPart(k, part, why))
                 else:
                     halves += [(k, (low, value, first, z)), (k, (value, high, z, last))]
             parts = halves
-        return left + [Part(k, part, "it needs too many parts") for k, part in parts]
+        return left + [UnprovedPart(k, part, "it needs too many parts") for k, part in parts]
 
     def _middles(
         self, equations: Equations, ends: Sequence[Ends]

@@ -23,7 +23,7 @@ from loadshare.study.follow.centre import centred
 from loadshare.study.follow.changes import (
     Change,
     Gap,
-    Point,
+    PathPoint,
     Stretch,
     change_between,
     distinct,
@@ -31,7 +31,7 @@ from loadshare.study.follow.changes import (
 )
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
-from loadshare.study.follow.line import Line, Missing, Solved
+from loadshare.study.follow.line import Line, Missing, SolvedValue
 from loadshare.study.follow.numbers import Numbers
 from loadshare.study.follow.parts import HIDDEN, Prover, between
 from loadshare.study.follow.stretches import Stretches
@@ -41,7 +41,7 @@ UNREAD = "the active set of its equilibrium could not be identified"
 """Why a certified answer is not a point."""
 
 
-class Search:
+class ChangeSearch:
     """The changes of one position between two values.
 
     Parameters
@@ -97,12 +97,12 @@ class Search:
 
     # --- Points ---------------------------------------------------------------------------------
 
-    def points(self, values: Array) -> list[Point | Missing]:
+    def points(self, values: Array) -> list[PathPoint | Missing]:
         """Return certified points, solved to round-off on the set of elements that carry."""
         answers, structure = self.line.solved(self.position, values), self.line.structure
-        solved = {k: a for k, a in enumerate(answers) if isinstance(a, Solved)}
-        found: list[Point | Missing] = [
-            Missing(a.value, UNREAD) if isinstance(a, Solved) else a for a in answers
+        solved = {k: a for k, a in enumerate(answers) if isinstance(a, SolvedValue)}
+        found: list[PathPoint | Missing] = [
+            Missing(a.value, UNREAD) if isinstance(a, SolvedValue) else a for a in answers
         ]
         waiting = [(k, tuple(s.states.tolist()), s.x) for k, s in solved.items()]
         # Idle contacts may have to open one at a time.
@@ -125,7 +125,7 @@ class Search:
                 for i in np.flatnonzero(good).tolist():
                     k, x, states = rows[i], z[i, : equations.n], tuple(carries[i].tolist())
                     if set_of(structure, numbers.row(i), states, x) == active:
-                        found[k] = Point(solved[k].value, active, z[i], solved[k].worst)
+                        found[k] = PathPoint(solved[k].value, active, z[i], solved[k].worst)
                     else:
                         waiting.append((k, states, x))
         return found
@@ -189,7 +189,7 @@ class Search:
     def _unconfirmed(self, gap: Gap) -> Change | None:
         """Return the change between the ends of a gap, if there is one."""
         first, last = gap.first, gap.last
-        if not (isinstance(first, Point) and isinstance(last, Point)):
+        if not (isinstance(first, PathPoint) and isinstance(last, PathPoint)):
             return None
         if first.active.states == last.active.states:
             return None
@@ -203,10 +203,14 @@ class Search:
 
     def proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
         """Prove stretches whose ends have the same set, and return the others."""
-        groups: dict[WorkingSet, list[tuple[Point, Point]]] = {}
+        groups: dict[WorkingSet, list[tuple[PathPoint, PathPoint]]] = {}
         left: list[Stretch] = []
         for first, last in stretches:
-            if isinstance(first, Point) and isinstance(last, Point) and first.active == last.active:
+            if (
+                isinstance(first, PathPoint)
+                and isinstance(last, PathPoint)
+                and first.active == last.active
+            ):
                 groups.setdefault(first.active, []).append((first, last))
             else:
                 left.append((first, last))
@@ -218,7 +222,7 @@ class Search:
             for k, (low, high, p, q), why in parts:
                 if k not in lost:
                     worst = max(point.worst for point in group[k])
-                    first, last = (Point(v, active, z, worst) for v, z in ((low, p), (high, q)))
+                    first, last = (PathPoint(v, active, z, worst) for v, z in ((low, p), (high, q)))
                     self.gaps.append(Gap(first, last, why))
         return left
 
@@ -247,7 +251,7 @@ class Search:
             self.changes.append(change_between(first, last, value, confirmed=True))
         return True
 
-    def _reached(self, point: Point, value: float) -> Point | None:
+    def _reached(self, point: PathPoint, value: float) -> PathPoint | None:
         """Return how far a point's set is proved to hold towards an event at a value, as a point.
 
         It is short of the event only where round-off hides everything nearer; None where more
@@ -294,7 +298,7 @@ class Search:
         z, good = equations.solve(np.repeat(near[None], len(values), axis=0), numbers)
         return centred(equations, z, numbers), good, numbers
 
-    def exit(self, near: Point, far: Point) -> float | None:
+    def exit(self, near: PathPoint, far: PathPoint) -> float | None:
         """Return the value at which a set is left on the way to another, None if it is not found.
 
         This is where the first gauge of the near end's set vanishes.

@@ -24,7 +24,7 @@ from loadshare.scene import assemble
 from loadshare.scene.scene import Scene
 from loadshare.settings import CERTIFY, MARCH
 from loadshare.solver import Options, Record, solve_scene
-from loadshare.solver.position import Known, with_ranges
+from loadshare.solver.position import SceneResults, with_ranges
 from loadshare.train.elements import Spline
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
@@ -48,7 +48,7 @@ def with_slips_held(
     if gears:
         scene = without_slips(whole, gears, slips_before(train))
     for (rung, options), few in product(tries, plans):
-        known = Known(work=Work(steps), each=few)
+        known = SceneResults(work=Work(steps), each=few)
         try:
             found, record = solve_scene(scene, options, known)
         except Refused:

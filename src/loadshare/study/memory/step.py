@@ -26,7 +26,7 @@ _ENDLESS = math.inf, math.inf
 
 
 @dataclass(slots=True)
-class Ways:
+class StepHistory:
     """The method that solved the previous step, which is tried first at the next.
 
     Attributes
@@ -41,7 +41,7 @@ class Ways:
     bounds: dict[str, float] = field(default_factory=dict)
 
 
-def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
+def stepped(train: Train, index: int, history: StepHistory | None = None) -> Answer:
     """Solve and certify a position of a train whose splines remember their slip.
 
     Parameters
@@ -50,7 +50,7 @@ def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
         One that remembers slip (`Train.remembering`).
     index : int
         1-based.
-    ways : Ways, optional
+    history : StepHistory, optional
         Of the previous step; updated in place.
 
     Raises
@@ -64,19 +64,20 @@ def stepped(train: Train, index: int, ways: Ways | None = None) -> Answer:
     assert train.slip is not None
     # A slip at the end of its clearance mostly stays there.
     ends = tuple(g for g, s in train.splines.items() if slip_at_end(s, train.slip[g]))
-    follows, ways = any(s.friction_force is None for s in train.splines.values()), ways or Ways()
+    follows = any(s.friction_force is None for s in train.splines.values())
+    history = history or StepHistory()
     # Where friction follows the torque, iteration on fixed bounds finds those of the torques.
-    if ways.bounds and (answer := _followed(train, index, ways)) is not None:
+    if history.bounds and (answer := _followed(train, index, history)) is not None:
         return answer
-    sets = sorted((*_subsets(ends), ()), key=lambda gears: gears != ways.held.get(ends))
+    sets = sorted((*_subsets(ends), ()), key=lambda gears: gears != history.held.get(ends))
     # If a plan finds no answer soon, a wider one or another set of held slips mostly does.
     limits = ((MARCH.quick, math.inf),) if follows else ((math.inf, MARCH.quick_plan), _ENDLESS)
     for (steps, each), gears in product(limits, sets):
         answer = with_slips_held(train, index, gears, islice(rungs(BACKEND), 1), steps, (each,))
         if answer is not None:
-            ways.held[ends] = gears
+            history.held[ends] = gears
             return answer
-    followed = partial(_followed, ways=ways)
+    followed = partial(_followed, history=history)
     for other in (followed,) if follows else (negligible_friction, searched, alternating):
         answer = other(train, index)
         if answer is not None:
@@ -97,7 +98,7 @@ def _subsets(gears: Sequence[str]) -> Iterator[tuple[str, ...]]:
         yield from combinations(gears, count)
 
 
-def _followed(train: Train, index: int, ways: Ways) -> Answer | None:
+def _followed(train: Train, index: int, history: StepHistory) -> Answer | None:
     r"""Return a certified answer where friction follows the torque, by iteration on fixed bounds.
 
     With fixed bounds F the step is convex and its torques T are unique, so continuous in F. They
@@ -107,13 +108,13 @@ def _followed(train: Train, index: int, ways: Ways) -> Answer | None:
     gears = [g for g, s in train.splines.items() if s.friction_force is None]
     rate = np.array([train.splines[g].friction_per_torque for g in gears])
     drive = float(np.abs(situation_of(train, index).torque).max(initial=0.0))
-    bounds = np.array([ways.bounds.pop(g, 0.0) for g in gears])
+    bounds = np.array([history.bounds.pop(g, 0.0) for g in gears])
     inverse, least = np.eye(len(gears)), math.inf
     before: tuple[Array, Array] | None = None
     for _ in range(MARCH.passes):
         try:
             fixed = _bounded(train, dict(zip(gears, bounds.tolist(), strict=True)))
-            answer = stepped(fixed, index, ways)
+            answer = stepped(fixed, index, history)
         except Refused:
             return None
         found = answer.equilibrium
@@ -131,7 +132,7 @@ def _followed(train: Train, index: int, ways: Ways) -> Answer | None:
         bounds = np.maximum(bounds + inverse @ off, 0.0)
     followed = if_certified(train, found, answer.record, f"{answer.rung}, friction followed")
     if followed is not None:
-        ways.bounds.update(zip(gears, bounds.tolist(), strict=True))
+        history.bounds.update(zip(gears, bounds.tolist(), strict=True))
     return followed
 
 

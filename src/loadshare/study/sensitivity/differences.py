@@ -56,7 +56,7 @@ Function = Callable[[Sequence[Sequence[float]]], list[Group]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Slope:
+class SideSlope:
     """A one-sided derivative, per SI unit.
 
     Attributes
@@ -76,7 +76,7 @@ class Derivative:
 
     Attributes
     ----------
-    falling, rising : Slope or Exception
+    falling, rising : SideSlope or Exception
         The exception says why the input cannot go to that side.
     kinked : bool
         Whether the sides differ.
@@ -84,12 +84,12 @@ class Derivative:
         In SI units; the input can move by four steps to every side that exists.
     """
 
-    falling: Slope | Exception
-    rising: Slope | Exception
+    falling: SideSlope | Exception
+    rising: SideSlope | Exception
     kinked: bool
     step: float
 
-    def to(self, sign: float) -> Slope | Exception:
+    def to(self, sign: float) -> SideSlope | Exception:
         """Return the derivative on the side of a sign."""
         return self.rising if sign > 0.0 else self.falling
 
@@ -142,14 +142,14 @@ def differentiate(of: Function, value: Value, rounding: Array) -> Derivative:
 
 def _sides(found: Derivative) -> tuple[bool, bool]:
     """Return whether there is a derivative on each side."""
-    return isinstance(found.falling, Slope), isinstance(found.rising, Slope)
+    return isinstance(found.falling, SideSlope), isinstance(found.rising, SideSlope)
 
 
 def _relative(found: Derivative) -> float:
     """Return the largest error over the largest derivative, of the sides that exist."""
     worst = 0.0
     for side in (found.falling, found.rising):
-        if isinstance(side, Slope):
+        if isinstance(side, SideSlope):
             size = float(np.abs(side.value).max(initial=0.0))
             worst = max(worst, float(side.error.max(initial=0.0)) / size if size else 0.0)
     return worst
@@ -199,13 +199,13 @@ def _differentiated(of: Function, value: Value, rounding: Array, usual: float) -
     return Derivative(both, both, False, min(steps) * to_si)
 
 
-def _central(below: Points, above: Points, h: float, value: Value, rounding: Array) -> Slope:
+def _central(below: Points, above: Points, h: float, value: Value, rounding: Array) -> SideSlope:
     """Return the difference of fourth order; that at twice the step gives its error."""
     once, twice, four = ((above[k] - below[k]) / (2.0 * k * h * value.factor) for k in (1, 2, 4))
     near, far = (4.0 * once - twice) / 3.0, (4.0 * twice - four) / 3.0
     still = (once == 0.0) & (twice == 0.0) & (four == 0.0)
     noise = _noise(near, h, value, SENSITIVITY.central * rounding)
-    return Slope(near, np.where(still, 0.0, np.abs(near - far) + noise))
+    return SideSlope(near, np.where(still, 0.0, np.abs(near - far) + noise))
 
 
 def _forward(
@@ -214,7 +214,7 @@ def _forward(
     sign: float,
     value: Value,
     rounding: Array,
-) -> Slope | Exception:
+) -> SideSlope | Exception:
     """Return the one-sided difference of third order; that of second order gives its error."""
     if isinstance(side, Exception):
         return side
@@ -224,7 +224,9 @@ def _forward(
     found, check = (scale * np.tensordot(w, values, 1) for w in (_FORWARD, _FORWARD_CHECK))
     still = (values == here).all(axis=0)
     noise = _noise(found, h, value, SENSITIVITY.forward * rounding)
-    return Slope(np.where(still, 0.0, found), np.where(still, 0.0, np.abs(found - check) + noise))
+    return SideSlope(
+        np.where(still, 0.0, found), np.where(still, 0.0, np.abs(found - check) + noise)
+    )
 
 
 def _noise(found: Array, h: float, value: Value, rounding: Array) -> Array:

@@ -28,8 +28,8 @@ from loadshare.settings import EPS, SENSITIVITY
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import set_of, switch_names
 from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
-from loadshare.study.sensitivity.differences import Slope
-from loadshare.study.sensitivity.motion import Gauges, Motion, Point
+from loadshare.study.sensitivity.differences import SideSlope
+from loadshare.study.sensitivity.motion import BranchPoint, Gauges, Motion
 from loadshare.study.sensitivity.variation import Variation
 from loadshare.train.equilibrium import Equilibrium
 
@@ -47,7 +47,7 @@ class Neighbourhood:
 
     Attributes
     ----------
-    own : Point or None
+    own : BranchPoint or None
         The equilibrium on its own active set; None if that cannot be read.
     verge : tuple of str
         Elements that have neither gap nor force there, or are at a corner of their law.
@@ -55,12 +55,12 @@ class Neighbourhood:
 
     def __init__(self, setting: Setting, found: Equilibrium) -> None:
         self._setting = setting
-        self.own: Point | None = None
+        self.own: BranchPoint | None = None
         self.verge: tuple[str, ...] = ()
-        self._points: list[Point] = []
-        self._others: dict[tuple[Point, tuple[tuple[int, int], ...]], Point | None] = {}
+        self._points: list[BranchPoint] = []
+        self._others: dict[tuple[BranchPoint, tuple[tuple[int, int], ...]], BranchPoint | None] = {}
         try:
-            self.own = Point(*setting.branch_of(found))
+            self.own = BranchPoint(*setting.branch_of(found))
         except BranchLost:
             return
         names = switch_names(setting.structure)
@@ -84,7 +84,7 @@ class Neighbourhood:
                 return found
         return None
 
-    def gives_way(self, change: Slope, step: float) -> bool:
+    def gives_way(self, change: SideSlope, step: float) -> bool:
         """Return whether an input loads a body along a move that nothing resists, however far."""
         if self.own is None or not self._unbalanced(self.own, change, step)[0]:
             return False
@@ -98,7 +98,7 @@ class Neighbourhood:
         return not caught and all(g.closing(loose) is None for g in self.own.gauges.values())
 
     @staticmethod
-    def _unbalanced(point: Point, slope: Slope, step: float) -> tuple[bool, Array]:
+    def _unbalanced(point: BranchPoint, slope: SideSlope, step: float) -> tuple[bool, Array]:
         """Return whether a set cannot balance an input's effect, and what is left unbalanced."""
         branch, unbalanced = point.branch, point.tangent.unbalanced
         explicit, error = slope.value[: branch.size], slope.error[: branch.size]
@@ -107,7 +107,7 @@ class Neighbourhood:
         known = np.abs(unbalanced.T) @ error + SENSITIVITY.follows * size
         return bool((left > np.maximum(known, SENSITIVITY.round_off / step)).any()), left
 
-    def _followed(self, point: Point, sign: float, varied: Variation) -> Motion | None:
+    def _followed(self, point: BranchPoint, sign: float, varied: Variation) -> Motion | None:
         """Return the motion on a set, if the set holds on that side."""
         branch, z, tangent = point.branch, point.z, point.tangent
         slope, step = self._slope(point, sign, varied)
@@ -138,17 +138,19 @@ class Neighbourhood:
         return Motion(branch, z, tangent, rate, error, slope, elements, one_sided, beside)
 
     @staticmethod
-    def _slope(point: Point, sign: float, varied: Variation) -> tuple[Slope | None, float]:
+    def _slope(
+        point: BranchPoint, sign: float, varied: Variation
+    ) -> tuple[SideSlope | None, float]:
         """Return how an input changes the equations on a side, if it can, and the step used."""
         try:
             change = varied.change(point.branch, point.z)
         except _NOTHING:
             return None, 0.0
         slope = change.to(sign)
-        return slope if isinstance(slope, Slope) else None, change.step
+        return slope if isinstance(slope, SideSlope) else None, change.step
 
     @staticmethod
-    def _verge(point: Point) -> Gauges | None:
+    def _verge(point: BranchPoint) -> Gauges | None:
         """Return the gauges on the verge, undetermined ones included; None if one is violated."""
         gauges = {key: g for key, g in point.gauges.items() if g.switch not in point.idle}
         if any(g.value < -10.0 * SENSITIVITY.verge for g in gauges.values()):
@@ -156,7 +158,7 @@ class Neighbourhood:
         return {key: g for key, g in gauges.items() if g.value <= 10.0 * SENSITIVITY.verge}
 
     def _with(
-        self, point: Point, still: tuple[tuple[int, int], ...], sign: float, varied: Variation
+        self, point: BranchPoint, still: tuple[tuple[int, int], ...], sign: float, varied: Variation
     ) -> Iterator[Motion]:
         """Yield motions with elements in their other states, all and one by one, if they hold."""
         for changes in (still, *((one,) for one in still if len(still) > 1)) if still else ():
@@ -172,7 +174,9 @@ class Neighbourhood:
                 error = slope.error[:size]
                 yield Motion(other.branch, other.z, other.tangent, rate, error, slope)
 
-    def _beside(self, point: Point, changes: tuple[tuple[int, int], ...]) -> Point | None:
+    def _beside(
+        self, point: BranchPoint, changes: tuple[tuple[int, int], ...]
+    ) -> BranchPoint | None:
         """Return a point with elements in other states, if there is one; it suits every input."""
         if (point, changes) not in self._others:
             states = list(point.branch.active.states)
@@ -183,13 +187,13 @@ class Neighbourhood:
             with suppress(BranchLost, ValueError):
                 known, tied = (setting.structure, setting.numbers), point.branch.active.tied
                 branch = Branch(setting, set_of(*known, tuple(states), x, tied))
-                other = Point(branch, branch.solve(x), point.idle)
+                other = BranchPoint(branch, branch.solve(x), point.idle)
             self._others[point, changes] = other
         return self._others[point, changes]
 
     def _still(
         self,
-        point: Point,
+        point: BranchPoint,
         sign: float,
         rate: Array,
         step: float,
@@ -233,7 +237,7 @@ class Neighbourhood:
                 still.append(key)
         return tuple(still) if _has_room(tied) else None
 
-    def _near(self, sign: float, varied: Variation) -> Iterator[Point]:
+    def _near(self, sign: float, varied: Variation) -> Iterator[BranchPoint]:
         """Yield points on the sets of certified solves a small step to that side."""
         for amount in self._amounts(sign, varied):
             try:
@@ -256,7 +260,7 @@ class Neighbourhood:
         branch, z = self.own.branch, self.own.z
         change = varied.change(branch, z)
         slope, reach = change.to(sign), 4.0 * change.step
-        if not isinstance(slope, Slope):
+        if not isinstance(slope, SideSlope):
             return
         before = branch.gauges(z)
         after = Branch(varied.setting(sign * change.step), branch.active).gauges(z)
@@ -284,7 +288,7 @@ class Neighbourhood:
         tied: frozenset[int],
         amount: float,
         varied: Variation,
-    ) -> Point:
+    ) -> BranchPoint:
         """Follow a set back to the value, from three points on its branch by Newton's method."""
         idle = soft - tied
         states = tuple(at.OPEN if k in idle else c for k, c in enumerate(branch.active.states))
@@ -297,7 +301,7 @@ class Neighbourhood:
             branch_points.append(z)
         first, second, third = branch_points
         z = here.solve((first / 3.0 - 2.0 * second + 8.0 / 3.0 * third)[: here.n])
-        return Point(here, z, idle)
+        return BranchPoint(here, z, idle)
 
 
 def _has_room(rows: list[tuple[Array, float]]) -> bool:

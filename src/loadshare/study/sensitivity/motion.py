@@ -13,7 +13,7 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.settings import EPS, SENSITIVITY
 from loadshare.study.sensitivity.branch import Branch, Gauge
-from loadshare.study.sensitivity.differences import Slope
+from loadshare.study.sensitivity.differences import SideSlope
 
 Gauges = dict[tuple[int, int], Gauge]
 """Gauges, by element and the state to which it would change."""
@@ -94,7 +94,7 @@ class Motion:
         Derivative of z with respect to the input, per SI unit.
     error : ndarray, shape (size,)
         Bound on the error of the equations that the rate solves.
-    change : Slope
+    change : SideSlope
         Derivative of the residual and of the torques with respect to the input, at z.
     elements : tuple of str
         Elements in another state than at the value itself.
@@ -111,7 +111,7 @@ class Motion:
     tangent: Tangent
     rate: Array
     error: Array
-    change: Slope
+    change: SideSlope
     elements: tuple[str, ...] = ()
     one_sided: bool = True
     beside: tuple[Motion, ...] = ()
@@ -130,7 +130,7 @@ class Motion:
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class BranchPoint:
     """A branch and its unknowns at the input's own value.
 
     Attributes

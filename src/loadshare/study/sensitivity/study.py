@@ -18,8 +18,8 @@ from loadshare.job.positions import wanted_positions
 from loadshare.results.share import shares
 from loadshare.settings import SENSITIVITY
 from loadshare.study.positions import each_certified, loaded
-from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
+from loadshare.study.sensitivity.position import PositionSensitivity
 from loadshare.study.sensitivity.result import SIDES, Kink, Rates, Sensitivity
 from loadshare.study.sensitivity.variation import Trains
 from loadshare.tooth import affects_laws, resolve
@@ -28,7 +28,7 @@ from loadshare.train.build import train_of
 from loadshare.train.geometry import geometry_of
 
 
-class Slope(NamedTuple):
+class LargestShare(NamedTuple):
     """The largest share of a stage, its derivative, and the derivative's stated error."""
 
     share: float
@@ -83,7 +83,7 @@ def sensitivity(
     geometry = geometry_of(case)
     train = train_of(case, geometry)
     chosen = wanted_positions(train, positions)
-    corners = [Corner(train, answer) for answer in each_certified(train, chosen)]
+    solved = [PositionSensitivity(train, answer) for answer in each_certified(train, chosen)]
     rates: dict[tuple[int, str, str], Rates] = {}
     usable, skipped = [], []
     wanted, named = inputs_of(case, inputs), [inputs] if isinstance(inputs, str) else inputs or ()
@@ -94,14 +94,14 @@ def sensitivity(
         try:
             own = following if affects_laws(parse(item.key)) else case
             trains = Trains((case, geometry, train), own, item, chosen)
-            rates |= {at: of for c in corners for at, of in c.rates(trains, item).items()}
+            rates |= {at: of for c in solved for at, of in c.rates(trains, item).items()}
         except CaseError as refusal:
             if len(wanted) == 1 or item.key in named:
                 raise
             skipped.append((item.key, refusal.problems[0].message))
         else:
             usable.append(item)
-    shares, pairs = (_largest(train, corners, rates, kind) for kind in ("share", "pair_share"))
+    shares, pairs = (_largest(train, solved, rates, kind) for kind in ("share", "pair_share"))
     return Sensitivity(
         inputs=tuple(usable),
         positions=tuple(chosen),
@@ -110,15 +110,15 @@ def sensitivity(
         pair_omega=_each(pairs, "rate"),
         omega_error=_each(shares, "error"),
         pair_omega_error=_each(pairs, "error"),
-        kinks=tuple(Kink(c.position, elements) for c in corners if (elements := c.on_the_verge)),
+        kinks=tuple(Kink(c.position, elements) for c in solved if (elements := c.on_the_verge)),
         error={item.key: _error(rates, item.key, chosen) for item in usable},
-        remarks=tuple(r for c in corners for r in c.remarks),
+        remarks=tuple(r for c in solved for r in c.remarks),
         skipped=tuple(skipped),
     )
 
 
 def _each(
-    largest: dict[tuple[str, str], dict[str, Slope]], what: str
+    largest: dict[tuple[str, str], dict[str, LargestShare]], what: str
 ) -> dict[tuple[str, str], dict[str, float]]:
     """Return one field of the slopes by input and side, then by stage."""
     return {
@@ -135,33 +135,38 @@ def _error(rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequen
 
 
 def _largest(
-    train: Train, corners: list[Corner], rates: dict[tuple[int, str, str], Rates], kind: str
-) -> dict[tuple[str, str], dict[str, Slope]]:
+    train: Train,
+    at_positions: list[PositionSensitivity],
+    rates: dict[tuple[int, str, str], Rates],
+    kind: str,
+) -> dict[tuple[str, str], dict[str, LargestShare]]:
     """Return the derivatives of the largest Ω of each stage and the system, by input and side."""
-    found: dict[tuple[str, str], dict[str, Slope]] = {}
+    found: dict[tuple[str, str], dict[str, LargestShare]] = {}
     for key, side in dict.fromkeys((key, side) for _, key, side in rates):
         here = found[key, side] = {}
         for stage in train.stages:
-            near: list[Slope] = []
-            for corner in corners:
-                omega = shares(corner.torques, [stage], pairs=kind == "pair_share")[0].tolist()
-                own = rates[corner.position, key, side]
+            near: list[LargestShare] = []
+            for one in at_positions:
+                omega = shares(one.torques, [stage], pairs=kind == "pair_share")[0].tolist()
+                own = rates[one.position, key, side]
                 slopes, errors = getattr(own, kind), getattr(own.error, kind)
-                every = zip(corner.torques.meshes, omega, strict=True)
-                near += [Slope(s, slopes[m], errors[m]) for m, s in every if not math.isnan(s)]
+                every = zip(one.torques.meshes, omega, strict=True)
+                near += [
+                    LargestShare(s, slopes[m], errors[m]) for m, s in every if not math.isnan(s)
+                ]
             here[stage.name] = _steepest(near, side)
         here["system"] = _steepest(list(here.values()), side)
     return found
 
 
-def _steepest(near: list[Slope], side: str) -> Slope:
+def _steepest(near: list[LargestShare], side: str) -> LargestShare:
     """Return the largest share with derivative and error; of equal ones, the largest beyond."""
     # Where no load is carried there are no shares.
     near = [slope for slope in near if not np.isnan(slope.share)]
     if not near:
-        return Slope(np.nan, np.nan, np.nan)
+        return LargestShare(np.nan, np.nan, np.nan)
     top = max(share for share, _, _ in near)
     equal = [(slope, error) for share, slope, error in near if share >= top - SENSITIVITY.tie]
     slopes = [slope for slope, _ in equal]
     steepest = max(slopes) if side == "rising" else min(slopes)
-    return Slope(top, steepest, max(error for _, error in equal))
+    return LargestShare(top, steepest, max(error for _, error in equal))

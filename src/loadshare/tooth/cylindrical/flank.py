@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from loadshare.tooth.cylindrical.gear import HelicoidGear, Taken
+from loadshare.tooth.cylindrical.gear import HelicoidGear, Removal
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import Patch, patch
 
@@ -80,4 +80,4 @@ class HelicoidNumbers(NamedTuple):
     half_angle: float
     sine: float
     cosine: float
-    taken: Taken
+    taken: Removal

@@ -47,7 +47,7 @@ class Modification:
     end_relief_length: float = 0.0
 
 
-class Taken(NamedTuple):
+class Removal(NamedTuple):
     """A modification applied to a usable flank, in the form that compiled code reads.
 
     `root` and `tip` are lengths of roll at the ends of the profile [m], root > tip for an internal
@@ -174,11 +174,11 @@ class HelicoidGear(InvoluteTooth, Gear):
         return math.tan(self.transverse_angle) - past_pitch / self.base_radius
 
     @property
-    def taken(self) -> Taken:
+    def taken(self) -> Removal:
         """The modification applied to the usable flank."""
         # Floats, because code is compiled for them; other types of numbers would recompile it.
-        amounts = {name: float(getattr(self.modification, name)) for name in Taken._fields[4:]}
-        return Taken(
+        amounts = {name: float(getattr(self.modification, name)) for name in Removal._fields[4:]}
+        return Removal(
             self.modification.tip_relief_exponent,
             self.base_radius * self.form_roll,
             self.base_radius * self.tip_roll,

@@ -23,10 +23,10 @@ from loadshare.scene.structure import Structure
 from loadshare.solver.hot.contact_states import OPEN, PINNED, SLIP, STICK
 from loadshare.solver.hot.kernel.options import allocating
 from loadshare.solver.hot.kernel.redundants import eliminated, full, local
-from loadshare.solver.hot.products import Rows, rows_of
+from loadshare.solver.hot.products import SparseRows, rows_of
 
 
-class Samples(NamedTuple):
+class SampleArrays(NamedTuple):
     """Arrays of the samples, as in `Loading`."""
 
     follows: Flags
@@ -327,7 +327,7 @@ def _structure(
     return arrays, lists, [powers, turned, row_end, first, first_radial, flanks]
 
 
-def _every_set(structure: Structure) -> tuple[Flags, Rows, Rows]:
+def _every_set(structure: Structure) -> tuple[Flags, SparseRows, SparseRows]:
     """Return what is the same in every set.
 
     Returns

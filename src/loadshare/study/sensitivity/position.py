@@ -14,7 +14,7 @@ from loadshare.results.share import carries
 from loadshare.settings import SENSITIVITY
 from loadshare.study.sensitivity.branch import Setting
 from loadshare.study.sensitivity.differenced import NoDifference, differenced
-from loadshare.study.sensitivity.differences import Slope
+from loadshare.study.sensitivity.differences import SideSlope
 from loadshare.study.sensitivity.directional import Neighbourhood
 from loadshare.study.sensitivity.motion import Motion
 from loadshare.study.sensitivity.result import Input, Rates, Remark
@@ -44,7 +44,7 @@ class Motions:
     displacement_error: dict[str, Array]
 
 
-class Corner:
+class PositionSensitivity:
     """One certified position, ready to be differentiated.
 
     Parameters
@@ -104,7 +104,7 @@ class Corner:
             if isinstance(slope, CaseError):
                 self._remark(key, side, f"cannot be {_word(side)}: {slope.problems[0].message}")
                 return self._nothing(), False
-            if isinstance(slope, Slope) and self.neighbourhood.gives_way(slope, step):
+            if isinstance(slope, SideSlope) and self.neighbourhood.gives_way(slope, step):
                 try:
                     varied.answer(sign * SENSITIVITY.shorter[-1] * step)
                 except (CaseError, ValueError, Refused) as why:
