@@ -106,6 +106,33 @@ def test_an_arc_turns_its_face() -> None:
     assert y > 5e-4
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    "law", [PowerLaw(1e-3, 2e-3), TableLaw((0.0, 0.49, 1.0), (0.0, 5e-3, 6e-3))]
+)
+def test_an_arc_may_yield_by_any_law(law: PowerLaw | TableLaw, method: str) -> None:
+    arc = Arc(np.array([1.0, 0.0, 0.0]), np.zeros(3), 1e-2)
+    rolls = ArcRow("arc", arc, np.eye(3)[:, :2], law, 0.0)
+    problem = ContactProblem(("x", "y"), np.diag([1.0, 2.0]), [-0.5, 0.3], arcs=(rolls,))
+    found = solve_contact(problem, method=method)
+    place, force = np.array([found.place["x"], found.place["y"]]), found.force["arc"]
+    way = place + np.array([1.0, 0.0])
+    length = float(np.linalg.norm(way))
+    assert length == pytest.approx(0.99 - law.compression(force), rel=1e-12)
+    pushed = force * way / length + [-0.5, 0.3] - [1.0, 2.0] * place
+    assert pushed == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_a_contact_does_not_overlap_by_the_offset_of_its_tangent() -> None:
+    """The tangent at the load begins at an overlap of 1.1, more than there is."""
+    law = TableLaw((0.0, 1.0, 1.5, 2.5), (0.0, 0.1, 1.1, 1.101))
+    stop = Row("stop", "stop", np.array([0.26]), 0.0, law)
+    found = solve_contact(ContactProblem(("x",), np.array([[4.0]]), [2.0], (stop,)))
+    x = (2.0 - 0.26 * (1.0 - 0.05)) / (4.0 + 0.26**2 / 2.0)
+    assert found.place["x"] == pytest.approx(x, rel=1e-12)
+    assert found.force["stop"] == pytest.approx(1.0 + (0.26 * x - 0.1) / 2.0, rel=1e-12)
+
+
 def test_what_nothing_holds_is_named() -> None:
     stop = (Row("stop", "stop", np.array([1.0, 0.0]), 0.0, RIGID),)
     found = solve_contact(ContactProblem(("x", "y"), np.zeros((2, 2)), np.array([5.0, 0.0]), stop))
@@ -343,6 +370,28 @@ def test_of_two_pads_that_hold_one_body_at_two_places_one_slips(method: str) -> 
         x = np.array([found.place["x"], found.place["y"]])
         energy = 3.0 * (math.hypot(x[0], x[1] - 1.0) + math.hypot(*x)) - x @ load
         assert energy == pytest.approx(3.0 - load[1], abs=1e-9)
+
+
+def test_a_pad_holds_by_exactly_its_friction_what_others_could_move() -> None:
+    spring = RadialLaw((Piece(0.0, 5.0, math.inf, "spring"),))
+    law = RadialLaw((Piece(2.0, 5.0, 2.0, "slip"), Piece(12.0, 0.0, math.inf, "end")))
+    radials = (
+        Radial("spring", np.array([[-2.0, 2.0, -1.0], [0.0, -2.0, 1.0]]), np.zeros(2), spring),
+        Radial("pad", np.eye(3)[1:], np.zeros(2), law),
+    )
+    load = [0.0, 0.0, -2.0]
+    found = solve_contact(ContactProblem(("x", "y", "z"), np.zeros((3, 3)), load, radials=radials))
+    assert found.place == pytest.approx({"x": 0.0, "y": 0.0, "z": 0.0}, abs=1e-12)
+    assert found.pull["pad"] == pytest.approx([0.0, -2.0])
+
+
+def test_limits_without_any_room_that_contradict_one_another_are_named() -> None:
+    """A pin whose graph is all steps, and a stop that lets the body nowhere near it."""
+    steps = RadialLaw((Piece(1.0, 5.0, 0.0, "first"), Piece(2.0, 0.0, 0.0, "second")))
+    pin = Radial("pin", XY, np.array([1.0, 2.0]), steps)
+    stop = Row("stop", "stop", np.array([2.0, 1.0]), 1.0, RIGID)
+    with pytest.raises(Refused, match="rigid limits contradict one another: stop, pin"):
+        solve_contact(ContactProblem(("x", "y"), XY, [-2.0, -1.0], (stop,), (), (pin,)))
 
 
 def test_a_stop_that_just_touches_where_friction_is_used_up_is_no_hindrance() -> None:

@@ -102,3 +102,23 @@ def test_springs_that_strain_one_another_under_next_to_no_load(load: float, offs
     away = np.array([0.51 * offset, 0.0])
     pull = {"other": np.array([-0.49e9 * offset, 0.0])}
     assert residuals(strained, away, {}, pull).worst > 1e-3
+
+
+def test_a_body_squeezed_a_million_times_as_hard_as_it_is_loaded() -> None:
+    """A stiff pad presses it into the corner between a rigid stop and a rigid rim."""
+    law = RadialLaw((Piece(0.0, 0.0, 1.0, "inside"),))
+    matrix = np.array([[1.17, 1.39, -1.35], [-0.11, 0.41, -0.2]])
+    rim = Radial("rim", matrix, np.array([1.0, 2.0]), law)
+    rows = (
+        Row("stop", "stop", np.array([-2.0, -1.0, -1.0]), 1.0, RIGID),
+        Row("pad", "stop", np.array([-1.0, 1.0, 0.0]), 3.0, PowerLaw(1e-12)),
+    )
+    springs = np.outer([2e3, 0.0, 1e3], [2e3, 0.0, 1e3])
+    body = ContactProblem(("x", "y", "z"), springs, [-1e6, -1e6, -1e6], rows, radials=(rim,))
+    found = solve_contact(body)
+    place = np.array(list(found.place.values()))
+    pushed = matrix.T @ found.pull["rim"] + springs @ place + 1e6
+    pushed += found.force["stop"] * rows[0].vector + found.force["pad"] * rows[1].vector
+    assert np.linalg.norm(matrix @ place - rim.centre) == pytest.approx(1.0, rel=1e-12)
+    assert found.force["pad"] == pytest.approx((rows[1].vector @ place - 3.0) / 1e-12, rel=1e-9)
+    assert np.abs(pushed).max() < 1e-9 * found.force["pad"]

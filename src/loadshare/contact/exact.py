@@ -118,17 +118,18 @@ def solve_exact(
     held: list[ActiveSet] = []
     for _ in range(limit):
         solved = _solve_fixed(programme, active, start, work, stay, shared)
-        if solved is None:
-            held = [one for one in (*held, *_held_again(programme, active)) if one not in seen]
+        point, settled = solved or (start, False)
+        better = _exchange(programme, active, point, one_only) if solved else active
+        if better == active:
+            if settled and _balances(programme, point):
+                return point, active
+            sets = (*held, *_held_again(programme, active), *_held_again(programme, guess))
+            held = [one for one in dict.fromkeys(sets) if one not in seen]
             if not held:
                 return None
             active = held.pop(0)
             seen.add(active)
             continue
-        point, settled = solved
-        better = _exchange(programme, active, point, one_only)
-        if better == active:
-            return (point, active) if settled and _balances(programme, point) else None
         if better in seen and not one_only:
             one_only = True
             better = _exchange(programme, active, point, one_only)
@@ -205,15 +206,19 @@ def _solve_fixed(
         if solved is None:
             return None
         point = solved
-        step = float(np.abs(point.x - x).max(initial=0.0))
-        step = max(step, float(np.abs(point.forces - forces).max(initial=0.0)))
+        step = max(_relative(point.x, x), _relative(point.forces, forces))
         x, forces, cone_forces = point.x, point.forces, point.cone_forces
-        size = 1.0 + float(np.abs(x).max(initial=0.0))
-        slow = step <= CONTACT.settled * size and step >= 0.5 * previous
-        if not curved or step <= CONTACT.still * size or slow:
+        slow = step <= CONTACT.settled and step >= 0.5 * previous
+        if not curved or step <= CONTACT.still or slow:
             return point, True
         previous = step
     return point, previous <= CONTACT.near
+
+
+def _relative(after: Array, before: Array) -> float:
+    """Return the largest change of values, over the largest of them or 1."""
+    largest = 1.0 + float(np.abs(after).max(initial=0.0))
+    return float(np.abs(after - before).max(initial=0.0)) / largest
 
 
 def _newton_system(
@@ -327,7 +332,7 @@ def _cone_tangent(
     size = piece.force + piece.stiffness * (radius - begin)
     tangent = piece.stiffness * (along[:, None] * along)
     # Beyond the piece the true tangent across the radius is too soft for Newton's method to return.
-    near = min(radius, begin + piece.length)
+    near = max(min(radius, begin + piece.length), CONTACT.least_offset)
     tangent = tangent + max(size, 0.0) / near * (_BOTH - along[:, None] * along)
     return tangent, size * along, _NONE, np.zeros(0)
 

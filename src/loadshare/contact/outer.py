@@ -116,7 +116,7 @@ def settle(
         forces = _forces(written.names, warm.point, units)
         torques = {r.name: r.torque(forces) for r in problem.radials}
         law_misfit = max(
-            _law_misfit(problem, at, forces, method), _wall_misfit(problem, laws, x, state.x)
+            _law_misfit(problem, at, x, forces, method), _wall_misfit(problem, laws, x, state.x)
         )
         face_misfit = _face_misfit(problem, plan, at, x, forces)
         friction_misfit = _friction_misfit(problem, state.torques, torques)
@@ -197,17 +197,22 @@ def _forces(names: tuple[str, ...], point: Point, units: Units) -> dict[str, flo
 
 
 def _law_misfit(
-    problem: ContactProblem, at: Linearisation, forces: dict[str, float], method: str
+    problem: ContactProblem, at: Linearisation, x: Array, forces: dict[str, float], method: str
 ) -> float:
-    """Return the largest difference of laws from their replacements, at `forces` [deflections]."""
+    """Return the largest difference of laws from their replacements, at `forces` [deflections].
+
+    A contact that carries nothing may overlap by the offset of its tangent.
+    """
     worst = 0.0
-    for row in problem.rows:
-        force = abs(forces.get(row.name, 0.0))
+    for row in problem.rows_at(x):
         exact = method == "power" and isinstance(row.law, PowerLaw)
-        if force == 0.0 or row.law.is_linear or exact:
+        if row.name not in forces or row.law.is_linear or exact:
             continue
-        b, offset = at.compliance[row.name]
-        worst = max(worst, abs(row.law.compression(force) - b * force - offset))
+        force, (b, offset) = abs(forces[row.name]), at.compliance[row.name]
+        if force == 0.0:
+            worst = max(worst, float(row.vector @ x) - row.gap)
+        else:
+            worst = max(worst, abs(row.law.compression(force) - b * force - offset))
     return worst / problem.length_unit()
 
 
@@ -281,7 +286,7 @@ def _next_forces(
     """Return the forces at which the laws are linearised next."""
     unit = problem.force_unit()
     forces = dict(before)
-    for row in problem.rows:
+    for row in problem.rows_at(x):
         role = plan.rows[row.name]
         if role is Role.OPEN or row.law.is_linear:
             continue

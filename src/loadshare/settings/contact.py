@@ -83,7 +83,7 @@ class Contact(NamedTuple):
     condensed: float = 1e-12
     """Least eigenvalue of the scaled stiffness with which coordinates are condensed."""
     still: float = 1e-15
-    """Newton step on a set, over the largest coordinate, after which no other is made."""
+    """Newton step on a set, over the largest coordinate or force, after which no other is made."""
     settled: float = 1e-11
     """The same where steps no longer halve."""
     near: float = 1e-10
