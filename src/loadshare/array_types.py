@@ -18,6 +18,8 @@ States: TypeAlias = NDArray[np.int8]
 def floats(given: Any) -> Any:
     """Return numbers as an array of floats, and anything else unchanged, for a check to reject."""
     try:
-        return np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
+        # A text that looks like a number would be converted.
+        texts = np.asarray(given).dtype.kind in "SU"
+        return given if texts else np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
         return given

@@ -211,11 +211,59 @@ def test_a_load_that_is_refused_without_running_away_is_not_said_to() -> None:
             (Radial("drum", [[1.0]], [0.0, 0.0], None),),
             "source of drum: None is not a law",
         ),
+        ("coordinates", 1, "coordinates: 1 is no sequence of str"),
+        ("rows", ("stop",), "rows: 'stop' is no Row"),
+        ("radials", block(1.0).rows, "radials: Row.* is no Radial"),
+        ("rows", (Row(None, "stop", [1.0], 0.0, RIGID),), "rows: the name None is no str"),
+        ("rows", (Row("stop", "stop", [1.0], "1.0", RIGID),), "gap of stop: contains something"),
+        ("rows", (Row("stop", "stop", [1.0], 0.0, PowerLaw),), "PowerLaw'> is not a law"),
+        ("load", [10**400], "load: contains something other than numbers"),
+        ("arcs", (ArcRow("arc", None, [[1], [0], [0]], RIGID, 0),), "arc of arc: None is no Arc"),
+        (
+            "arcs",
+            (ArcRow("arc", Arc([0, 0, 0], [0, 0, 0], 0), [[1], [0], [0]], RIGID, 0),),
+            "nominal of arc: is zero",
+        ),
+        (
+            "radials",
+            (Radial("drum", [[1], [0]], [0, 0], RadialLaw((Piece(0, 1, 1, "a"),)), {"no": 1.0}),),
+            "levers of drum: 'no' is no row or arc",
+        ),
+        (
+            "radials",
+            (Radial("drum", [[1], [0]], [0, 0], RadialLaw((Piece(0, 1, 1, "a"),)), [1.0]),),
+            r"levers of drum: \[1.0\] is no mapping",
+        ),
     ],
 )
 def test_arrays_that_do_not_belong_together_are_named(part, value, message) -> None:
     with pytest.raises(ValueError, match=message):
         solve_contact(dataclasses.replace(block(1.0), **{part: value}))
+
+
+def test_claims_that_do_not_fit_the_problem_are_named() -> None:
+    stops = block(1.0)
+    with pytest.raises(TypeError, match="a ContactProblem is expected, not str"):
+        solve_contact("block")
+    with pytest.raises(TypeError, match="forces by name are expected"):
+        residuals(stops, [0.0], [1.0], {})
+    with pytest.raises(ValueError, match="no array of numbers") as caught:
+        residuals(stops, [0.0, 0.0], {"stop": "1 N"}, {"drum": 5.0})
+    for wrong in ("x: [0.0, 0.0] is", "stop: no row", "force of stop: '1 N' is", "drum: no radial"):
+        assert wrong in str(caught.value)
+
+
+def test_an_answer_cannot_be_changed() -> None:
+    found = solve_contact(block(1.0))
+    for mapping in (found.place, found.force, found.pull):
+        with pytest.raises(TypeError, match="cannot be changed"):
+            mapping["x"] = 1.0
+
+
+def test_a_load_far_beyond_its_spring_is_refused() -> None:
+    """The displacement would exceed the range of doubles."""
+    with pytest.raises(Refused), np.errstate(all="ignore"):
+        solve_contact(ContactProblem(["x"], [[1e-300]], [1e300]))
 
 
 def test_lists_and_whole_numbers_will_do() -> None:
@@ -312,6 +360,9 @@ def test_an_answer_has_the_least_energy(problem: ContactProblem, seed: int) -> N
         ),
         (TableLaw((0.0, 1.0), (1e-6, 2e-6)), "compressions are not finite numbers rising from 0"),
         (TableLaw((0.0,), (0.0,)), "has 1 forces and 1 compressions"),
+        (TableLaw(None, None), "its forces None are no sequence of numbers"),
+        (TableLaw("012", "012"), "its forces are not finite numbers rising from 0"),
+        (PowerLaw("1e-9"), "b = '1e-9' is not a finite number"),
     ],
 )
 def test_laws_under_which_a_stop_would_push_from_afar_are_refused(law, message) -> None:
@@ -325,6 +376,9 @@ def test_laws_under_which_a_stop_would_push_from_afar_are_refused(law, message) 
     ("pieces", "message"),
     [
         ((), "source of drum: has no piece"),
+        (Piece(0.0, 1.0, 1.0, "wall"), "are no sequence of Piece"),
+        ((0.0, 1.0, 1.0), "are no sequence of Piece"),
+        ((Piece("0", 1.0, 1.0, "wall"),), r"piece 1 \(wall\): force and stiffness"),
         ((Piece(5.0, 0.0, 1e-3, "slip"), Piece(1.0, 1e3, math.inf, "wall")), "force falls"),
         ((Piece(0.0, -1.0, math.inf, "wall"),), r"piece 1 \(wall\): force and stiffness"),
         ((Piece(0.0, 1.0, -1.0, "wall"),), "length -1.0"),

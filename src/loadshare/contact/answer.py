@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from loadshare.array_types import Array
+from loadshare.arguments import check_mapping
+from loadshare.array_types import Array, floats
+from loadshare.case.table import Table
 from loadshare.contact.backends.backend import backend
 from loadshare.contact.conflict import conflict
 from loadshare.contact.findings import Unsolved
@@ -15,6 +18,7 @@ from loadshare.contact.left_open import left_open
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan
 from loadshare.contact.problem import ContactProblem, Row
+from loadshare.contact.problem_checks import check_problem
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.contact.runaway import runaway
@@ -101,12 +105,14 @@ def solve_contact(
 
     Raises
     ------
+    TypeError
+        If it is no contact problem.
     ValueError
         If the arrays do not fit together; the message names them.
     Refused
         If no equilibrium was found.
     """
-    problem.check()
+    check_problem(problem)
     options = Options(solver=solver, method=method)
     plan, last = Plan.full(problem), "nothing was tried"
     for way in dict.fromkeys((method, "newton", "picard")):
@@ -143,8 +149,40 @@ def residuals(
     force : mapping of row or arc to float
     pull : mapping of radial element to ndarray, shape (2,)
         Force along its offset.
+
+    Raises
+    ------
+    TypeError
+        If it is no contact problem, or force and pull are no mappings.
+    ValueError
+        If the arrays do not fit together; the message names them.
     """
-    x = np.asarray(x, dtype=np.float64)
+    check_problem(problem)
+    _check_claim(problem, x, force, pull)
+    return _residuals(problem, np.asarray(x, dtype=np.float64), force, pull)
+
+
+def _check_claim(problem: ContactProblem, x: Any, force: Any, pull: Any) -> None:
+    check_mapping("forces by name", "{'stop': 100.0}", force)
+    check_mapping("forces by name", "{'drum': [300.0, 400.0]}", pull)
+    radials = [r.name for r in problem.radials]
+    wrong = [f"{name}: no row or arc has this name" for name in force if name not in problem.laws]
+    wrong += [f"{name}: no radial element has this name" for name in pull if name not in radials]
+    parts: list[tuple[str, Any, tuple[int, ...]]] = [("x", x, (problem.size,))]
+    parts += [(f"force of {name}", value, ()) for name, value in force.items()]
+    parts += [(f"pull of {name}", value, (2,)) for name, value in pull.items()]
+    for what, value, shape in parts:
+        array = floats(value)
+        if not isinstance(array, np.ndarray) or array.shape != shape:
+            wrong.append(f"{what}: {value!r} is no array of numbers of shape {shape}")
+    if wrong:
+        raise ValueError("\n".join(wrong))
+
+
+def _residuals(
+    problem: ContactProblem, x: Array, force: Mapping[str, float], pull: Mapping[str, Array]
+) -> Residuals:
+    """Judge a claim whose arrays fit the problem."""
     rows = problem.rows_at(x)
     forces = np.array([force.get(r.name, 0.0) for r in rows])
     pushed = [row.vector * f for row, f in zip(rows, forces, strict=True)]
@@ -225,5 +263,7 @@ def _answer(problem: ContactProblem, settled: Settled) -> ContactAnswer:
     pull = settled.pulls(problem)
     place = dict(zip(problem.coordinates, settled.x.tolist(), strict=True))
     loose = left_open(problem, settled.x, force, pull)
-    found = residuals(problem, settled.x, force, pull)
-    return ContactAnswer(problem, place, force, pull, loose, found)
+    found = _residuals(problem, settled.x, force, pull)
+    for array in pull.values():
+        array.flags.writeable = False
+    return ContactAnswer(problem, Table(place), Table(force), Table(pull), loose, found)

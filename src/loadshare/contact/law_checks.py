@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from typing import Any
 
+import numpy as np
+
+from loadshare.array_types import floats
 from loadshare.contact.law import PowerLaw, TableLaw
-from loadshare.contact.radial import RadialLaw
+from loadshare.contact.radial import Piece, RadialLaw
 from loadshare.settings import LAWS
 
 
@@ -24,38 +28,56 @@ def law_faults(law: object) -> Iterator[str]:
             yield from _powers(b, c)
         case TableLaw(forces, compressions):
             yield from _points(forces, compressions)
-        case RadialLaw(pieces) if not pieces:
-            yield "has no piece"
-        case RadialLaw():
-            yield from _pieces(law)
+        case RadialLaw(pieces):
+            yield from _pieces(pieces)
 
 
-def _powers(b: float, c: float) -> Iterator[str]:
+def _number(value: object) -> Any:
+    """Return a number, NaN if it is none."""
+    number = floats(value)
+    return number if np.shape(number) == () and isinstance(number, np.ndarray) else math.nan
+
+
+def _powers(b: object, c: object) -> Iterator[str]:
     for name, value in (("b", b), ("c", c)):
-        if not 0.0 <= value < math.inf:
+        if not 0.0 <= _number(value) < math.inf:
             yield f"{name} = {value!r} is not a finite number of at least 0"
 
 
-def _points(forces: Sequence[float], compressions: Sequence[float]) -> Iterator[str]:
+def _points(forces: Any, compressions: Any) -> Iterator[str]:
+    for name, values in (("forces", forces), ("compressions", compressions)):
+        if not isinstance(values, Sequence | np.ndarray):
+            yield f"its {name} {values!r} are no sequence of numbers"
+            return
     if len(forces) != len(compressions) or len(forces) < 2:
         counts = f"{len(forces)} forces and {len(compressions)} compressions"
         yield f"has {counts}, but as many of both are needed, at least 2"
         return
     for name, values in (("forces", forces), ("compressions", compressions)):
-        rises = all(low < high for low, high in pairwise(values))
-        if values[0] != 0.0 or not rises or not all(map(math.isfinite, values)):
+        numbers = [_number(value) for value in values]
+        rises = all(low < high for low, high in pairwise(numbers))
+        if numbers[0] != 0.0 or not rises or not all(map(math.isfinite, numbers)):
             yield f"its {name} are not finite numbers rising from 0"
 
 
-def _pieces(law: RadialLaw) -> Iterator[str]:
-    for number, piece in enumerate(law.pieces):
+def _pieces(pieces: Any) -> Iterator[str]:
+    if not isinstance(pieces, Sequence) or not all(isinstance(p, Piece) for p in pieces):
+        yield f"its pieces {pieces!r} are no sequence of Piece"
+        return
+    if not pieces:
+        yield "has no piece"
+    sound = bool(pieces)
+    for number, piece in enumerate(pieces):
         what = f"piece {number + 1} ({piece.name})"
-        if not (0.0 <= piece.force < math.inf and 0.0 <= piece.stiffness < math.inf):
+        force, stiffness, length = map(_number, (piece.force, piece.stiffness, piece.length))
+        if not (0.0 <= force < math.inf and 0.0 <= stiffness < math.inf):
+            sound = False
             yield f"{what}: force and stiffness must be finite and at least 0"
-        if not piece.length >= 0.0:
+        if not length >= 0.0:
+            sound = False
             yield f"{what}: its length {piece.length!r} is not a number of at least 0"
-        if math.isinf(piece.length) and piece is not law.pieces[-1]:
+        if math.isinf(length) and piece is not pieces[-1]:
             yield f"{what}: is endless but not the last one"
-    for number, (piece, following) in enumerate(pairwise(law.pieces)):
+    for number, (piece, following) in enumerate(pairwise(pieces if sound else ())):
         if following.force < piece.end_force * (1.0 - LAWS.written):
             yield f"the force falls from piece {number + 1} to the next"

@@ -12,7 +12,7 @@ in newtons. Source: formulation, sections 4 to 6.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol, runtime_checkable
@@ -23,7 +23,6 @@ from loadshare.array_types import Array, floats
 from loadshare.contact.arc import Arc
 from loadshare.contact.condense import Condensation, condense
 from loadshare.contact.law import Law
-from loadshare.contact.law_checks import law_faults
 from loadshare.contact.radial import RadialLaw, RollingLaw
 from loadshare.settings import CONTACT
 
@@ -213,76 +212,14 @@ class ContactProblem:
     def __post_init__(self) -> None:
         _as_floats(self, "stiffness", "load")
         for name in ("coordinates", "rows", "arcs", "radials"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
+            given = getattr(self, name)
+            object.__setattr__(self, name, tuple(given) if isinstance(given, Iterable) else given)
         object.__setattr__(self, "stiffness", _symmetric(self.stiffness))
 
     @property
     def size(self) -> int:
         """Number of coordinates."""
         return len(self.coordinates)
-
-    def check(self) -> None:
-        """Check that the arrays fit together.
-
-        Raises
-        ------
-        ValueError
-            If they do not; the message has all problems, one per line.
-        """
-        n = self.size
-        wrong = [] if n else ["coordinates: there are none"]
-        for what, array, shape in self._arrays():
-            if not isinstance(array, np.ndarray):
-                wrong.append(f"{what}: contains something other than numbers")
-            elif array.shape != shape:
-                wrong.append(f"{what}: has shape {array.shape}, but {shape} is needed")
-            elif not np.isfinite(array).all():
-                wrong.append(f"{what}: contains a number that is not finite")
-            elif what.startswith(("vector", "relative", "matrix")) and not array.any():
-                wrong.append(f"{what}: is zero, so it touches nothing")
-        laws: list[tuple[str, object, Any]]
-        laws = [(f"law of {row.name}", row.law, Law) for row in self.rows]
-        laws += [(f"law of {arc.name}", arc.law, Law) for arc in self.arcs]
-        radial = RadialLaw | RollingLaw | FollowingLaw
-        laws += [(f"source of {r.name}", r.source, radial) for r in self.radials]
-        for what, law, kind in laws:
-            faults = list(law_faults(law))
-            if not faults and not isinstance(law, kind):
-                faults = [f"{law!r} is not a law"]
-            wrong += [f"{what}: {fault}" for fault in faults]
-        if not wrong and not np.array_equal(self.stiffness, self.stiffness.T):
-            wrong.append("stiffness: is not symmetric")
-        elif (
-            not wrong
-            and n
-            and np.linalg.eigvalsh(self.stiffness)[0]
-            < -CONTACT.singular * np.abs(self.stiffness).max(initial=0.0)
-        ):
-            wrong.append("stiffness: has a negative eigenvalue, so springs would push")
-        names = [*self.coordinates, *(r.name for r in self.rows), *(a.name for a in self.arcs)]
-        names += [r.name for r in self.radials]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        wrong += [f"{name}: two elements or coordinates have this name" for name in twice]
-        if wrong:
-            raise ValueError("\n".join(wrong))
-
-    def _arrays(self) -> Iterator[tuple[str, Any, tuple[int, ...]]]:
-        """Yield every array of numbers: its name, the array, and the shape that it should have."""
-        n = self.size
-        yield "stiffness", self.stiffness, (n, n)
-        yield "load", self.load, (n,)
-        for row in self.rows:
-            yield f"vector of {row.name}", row.vector, (n,)
-            yield f"gap of {row.name}", floats(row.gap), ()
-        for arc in self.arcs:
-            yield f"relative of {arc.name}", arc.relative, (3, n)
-            yield f"nominal of {arc.name}", arc.arc.nominal, (3,)
-            yield f"shift of {arc.name}", arc.arc.shift, (3,)
-            yield f"clearance of {arc.name}", floats(arc.arc.clearance), ()
-            yield f"sagitta of {arc.name}", floats(arc.sagitta), ()
-        for radial in self.radials:
-            yield f"matrix of {radial.name}", radial.matrix, (2, n)
-            yield f"centre of {radial.name}", radial.centre, (2,)
 
     @cached_property
     def condensation(self) -> Condensation:

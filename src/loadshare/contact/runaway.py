@@ -73,7 +73,8 @@ def _resisted(stiffness: Array) -> Array:
         pivot = np.argmax(np.diag(left) / alone)
         row = left[pivot]
         rows.append(row / np.abs(row).max())
-        left = left - np.outer(row, row) / row[pivot]
+        # Divided first: a product of two entries may lie outside the range of doubles.
+        left = left - np.outer(row, row / row[pivot])
     return np.array(rows)
 
 
