@@ -23,3 +23,18 @@ def floats(given: Any) -> Any:
         return given if texts else np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
         return given
+
+
+def shaped(what: str, given: Any, shape: tuple[int, ...]) -> Array:
+    """Return numbers as an array of floats of a shape.
+
+    Raises
+    ------
+    ValueError
+        If they are no numbers or have another shape.
+    """
+    array = floats(given)
+    if not isinstance(array, np.ndarray) or array.shape != shape:
+        has = f"shape {np.shape(array)}" if isinstance(given, np.ndarray) else repr(given)
+        raise ValueError(f"{what}: an array of numbers of shape {shape} is needed, not {has}")
+    return array

@@ -11,6 +11,7 @@ from scipy.sparse import triu
 import loadshare as ls
 from loadshare.contact.backends.clarabel_ import cones_of
 from loadshare.contact.forms import ComplementarityForm
+from loadshare.contact.programme import Point
 
 SPLIT = "cases/branches/split_torque_2.toml"
 RING = "cases/fgfbstts/limit_ring.toml"
@@ -125,3 +126,17 @@ def test_what_is_left_out_is_named_with_its_reason() -> None:
 def test_no_qp_of_a_spline() -> None:
     with pytest.raises(ValueError, match=r"spline .* second-order cones"):
         ls.formulate(EVERY, reduce=False).qp()
+
+
+def test_answers_that_do_not_belong_to_the_programme_are_named() -> None:
+    formulation = ls.formulate(SPLIT, reduce=False)
+    with pytest.raises(TypeError, match=r"a point .* is needed, not int"):
+        formulation.read(5)
+    with pytest.raises(ValueError, match=r"x: an array .* of shape \(5,\) .*, not shape \(4,\)"):
+        formulation.read(Point(np.zeros(4), np.zeros(5), np.zeros((0, 2))))
+    with pytest.raises(ValueError, match=r"z: an array of numbers .* is needed, not None"):
+        formulation.qp().point(None, None)
+    with pytest.raises(ValueError, match=r"z: an array of numbers .* is needed, not 'a'"):
+        formulation.lcp().point("a")
+    with pytest.raises(ValueError, match="no answer to read: not solved yet"):
+        formulation.cvxpy().point()

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loadshare.array_types import Array
+from loadshare.array_types import Array, shaped
 from loadshare.contact.backends.conic import ConicForm, conic_form
 from loadshare.contact.programme import Point, Programme
 from loadshare.settings import CONTACT
@@ -60,7 +60,7 @@ class QuadraticForm:
 
     def point(self, z: Array, dual: Array) -> Point:
         """Read a primal-dual answer; a multiplier is positive where the upper bound acts."""
-        return self.form.point(np.asarray(z, dtype=float), np.asarray(dual, dtype=float))
+        return self.form.point(z, dual)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class ComplementarityForm:
 
     def point(self, z: Array) -> Point:
         """Read an answer z."""
-        z, programme = np.asarray(z, dtype=np.float64), self.programme
+        z, programme = shaped("z", z, self.vector.shape), self.programme
         n, m = programme.rows.shape[1], len(programme.gaps)
         forces = z[len(z) - m :]
         if len(z) == m:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from loadshare.array_types import shaped
 from loadshare.case import Case
 from loadshare.certify import certify
 from loadshare.contact.backends.conic import ConicForm, conic_form
@@ -108,11 +109,21 @@ class Formulation(Viewed):
 
         Raises
         ------
+        TypeError, ValueError
+            If it is no point of this programme.
         Refused
             If no consistent active set is found, or the certificate does not pass.
         """
+        if not isinstance(point, Point):
+            given = type(point).__name__
+            raise TypeError(f"a point as the `point` of a form gives it is needed, not {given}")
+        near = Point(
+            shaped("x", point.x, self.programme.load.shape),
+            shaped("forces", point.forces, self.programme.gaps.shape),
+            shaped("cone_forces", point.cone_forces, (len(self.programme.cones), 2)),
+        )
         try:
-            found, _ = solve_near(self.programme, point)
+            found, _ = solve_near(self.programme, near)
         except Unsolved as failure:
             raise Refused(f"position {self.answer.equilibrium.index}: {failure}") from failure
         units = self.units

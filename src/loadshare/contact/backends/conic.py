@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loadshare.array_types import Array, Numbers
+from loadshare.array_types import Array, Numbers, shaped
 from loadshare.contact.programme import Point, Programme
 
 if TYPE_CHECKING:
@@ -54,10 +54,12 @@ class ConicForm:
 
     def point(self, z: Array, dual: Array) -> Point:
         """Read coordinates, contact forces and radial forces from a primal-dual answer."""
-        forces = np.asarray(dual)[self.row_of]
+        z = shaped("z", z, self.linear.shape)
+        dual = shaped("dual", dual, self.bounds.shape)
+        forces = dual[self.row_of]
         # The offset equation Px − Σs = m has the multiplier that stationarity in x reads as Pᵀν.
         radial = np.array([dual[r : r + 2] for r in self.cone_rows]).reshape(-1, 2)
-        return Point(np.asarray(z[: self.size], dtype=float), forces, radial)
+        return Point(z[: self.size], forces, radial)
 
 
 def conic_form(programme: Programme) -> ConicForm:

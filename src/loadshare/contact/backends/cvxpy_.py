@@ -33,7 +33,16 @@ class CvxpyForm:
     radials: list[Any]
 
     def point(self) -> Point:
-        """Read the answer of the solved problem."""
+        """Read the answer of the solved problem.
+
+        Raises
+        ------
+        ValueError
+            If it has none.
+        """
+        if self.x.value is None:
+            status = self.problem.status or "not solved yet"
+            raise ValueError(f"the CVXPY problem has no answer to read: {status}")
         forces = np.array([float(c.dual_value) for c in self.contacts])
         cone_forces = np.array([r.dual_value for r in self.radials]).reshape(-1, 2)
         return Point(np.asarray(self.x.value), forces, cone_forces)
