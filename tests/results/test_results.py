@@ -187,6 +187,10 @@ def test_a_result_that_was_pickled_says_the_same_to_the_last_digit():
     found = ls.solve(shipped("planetary/four_planets").replace(turning))
     again = pickle.loads(pickle.dumps(found))
     assert again.to_json() == found.to_json()
+    first, second = found.positions[:2]
+    for name in ("loads", "elastic"):
+        assert getattr(again.positions[0], name) == getattr(first, name)
+        assert getattr(second, name) != getattr(first, name)
 
 
 def test_samples_have_the_names_and_units_of_results():

@@ -6,16 +6,17 @@ Also how a train yields: transmission error and stiffness of the train and of it
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
+from loadshare.equality import Comparable
 from loadshare.results.figures import Figures
 
 Pair = tuple[float, float]
 Value = TypeVar("Value")
 
 
-@dataclass(frozen=True)
-class _OfAnswer:
+@dataclass(frozen=True, eq=False)
+class _OfAnswer(Comparable):
     """Figures of one answer, by name.
 
     Attributes
@@ -28,6 +29,10 @@ class _OfAnswer:
 
     figures: Figures
     row: int
+
+    def _said(self) -> dict[str, Any]:
+        """Return what it says by name: the other answers of `figures` do not count."""
+        return {name: getattr(self, name) for name in vars(type(self)) if name[0] != "_"}
 
 
 class Loads(_OfAnswer):
