@@ -32,7 +32,7 @@ from loadshare.tooth.analysis.ltca import (
     pair_compliance,
 )
 from loadshare.tooth.compliance.slices import Slices
-from loadshare.tooth.contact.problem import ContactProblem
+from loadshare.tooth.contact.problem import ToothContact
 from loadshare.tooth.contact.programme import by_interface, exchange, solve_contact
 from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair
@@ -150,7 +150,7 @@ def compare_programmes(pair: HelicoidPair) -> None:
     table(("points", "method", "time [ms]", "worst residual"), rows)
 
 
-def programme_rows(problem: ContactProblem, pair: HelicoidPair) -> list[list[str]]:
+def programme_rows(problem: ToothContact, pair: HelicoidPair) -> list[list[str]]:
     """Return the rows of the table for one contact problem."""
     load, count = TORQUE / pair.arm, len(problem.gap)
     force = np.full(count, load / count)

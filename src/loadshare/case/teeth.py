@@ -17,7 +17,7 @@ deviates by more."""
 
 
 @dataclass(frozen=True, slots=True)
-class Misfit:
+class CountMisfit:
     """A given tooth count that another one contradicts.
 
     Attributes
@@ -35,7 +35,7 @@ class Misfit:
 
 def tooth_counts(
     gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]
-) -> tuple[dict[str, float], tuple[Misfit, ...]]:
+) -> tuple[dict[str, float], tuple[CountMisfit, ...]]:
     """Return the tooth counts of all gears that meshes connect to a gear whose count is given.
 
     Parameters
@@ -48,7 +48,7 @@ def tooth_counts(
     -------
     dict of gear to float
         Given counts are unchanged; computed ones need not be whole, as radii may be rounded [-].
-    tuple of Misfit
+    tuple of CountMisfit
     """
     given = {name: gear.teeth for name, gear in gears.items() if not gear.is_carrier}
     radii = {name: gears[name].acting_radius for name in given}
@@ -58,7 +58,7 @@ def tooth_counts(
             partners[a].append(b)
             partners[b].append(a)
     counts = {name: float(count) for name, count in given.items() if count is not None}
-    misfits: list[Misfit] = []
+    misfits: list[CountMisfit] = []
     settled: dict[str, tuple[str, float]] = {}
     for source in counts.copy():
         if source in settled:
@@ -74,7 +74,7 @@ def tooth_counts(
                 expected = density * radii[other]
                 count = counts.setdefault(other, expected)
                 if abs(count - expected) > TEETH_TOLERANCE * expected:
-                    misfits.append(Misfit(other, origin, expected))
+                    misfits.append(CountMisfit(other, origin, expected))
                 follows = given[other] is None
                 settled[other] = (origin, density) if follows else (other, count / radii[other])
                 queue.append(other)

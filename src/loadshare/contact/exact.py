@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loadshare.array_types import Array
-from loadshare.contact.findings import Work
+from loadshare.contact.findings import StepBudget
 from loadshare.contact.kkt import solve_symmetric
 from loadshare.contact.programme import Cone, Point, Programme
 from loadshare.contact.radial import nearest
@@ -80,7 +80,7 @@ def solve_exact(
     guess: ActiveSet,
     start: Point | None = None,
     rounds: int = 0,
-    work: Work | None = None,
+    work: StepBudget | None = None,
     stay: bool = False,
     shared: bool = False,
 ) -> tuple[Point, ActiveSet] | None:
@@ -98,7 +98,7 @@ def solve_exact(
         laws).
     rounds : int
         Exchanges allowed; 0 allows as many as the programme's size justifies.
-    work : Work, optional
+    work : StepBudget, optional
         Newton steps allowed; unlimited by default.
     stay : bool
         Leave coordinates that a set does not determine where they are; by default they take their
@@ -187,7 +187,7 @@ def _solve_fixed(
     programme: Programme,
     active: ActiveSet,
     start: Point,
-    work: Work | None,
+    work: StepBudget | None,
     stay: bool,
     shared: bool,
 ) -> tuple[Point, bool] | None:

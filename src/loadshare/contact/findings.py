@@ -11,15 +11,15 @@ class Unsolved(RuntimeError):  # noqa: N818 -- a finding, not a fault
 
 
 @dataclass(slots=True)
-class Work:
+class StepBudget:
     """Newton steps that exact solves may still take in the search for one answer."""
 
     left: float = math.inf
-    whole: Work | None = None
+    whole: StepBudget | None = None
 
-    def half(self) -> Work:
+    def half(self) -> StepBudget:
         """Return half of what is left, so that one who never arrives leaves some to the others."""
-        return Work(self.left / 2, self)
+        return StepBudget(self.left / 2, self)
 
     def step(self) -> None:
         """Count one step.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from loadshare.contact.backends.backend import Backend, BackendFailure
 from loadshare.contact.exact import ActiveSet, first_guess, identify, solve_exact
-from loadshare.contact.findings import Unsolved, Work
+from loadshare.contact.findings import StepBudget, Unsolved
 from loadshare.contact.programme import Point, Programme
 from loadshare.contact.proximal import solve_proximal
 
@@ -25,7 +25,7 @@ def solve_programme(
     backend: Backend,
     warm: Inner | None,
     polish: bool,
-    work: Work | None = None,
+    work: StepBudget | None = None,
 ) -> Inner:
     """Solve a programme.
 
@@ -37,7 +37,7 @@ def solve_programme(
         Answer of a neighbouring programme (the pass before); its active set is tried first.
     polish : bool
         Whether to solve exactly on the identified active set.
-    work : Work, optional
+    work : StepBudget, optional
         See `solve_exact`.
 
     Raises
@@ -82,7 +82,7 @@ def solve_near(programme: Programme, point: Point) -> tuple[Point, ActiveSet]:
 
 
 def _from_rough(
-    programme: Programme, rough: Point, work: Work | None
+    programme: Programme, rough: Point, work: StepBudget | None
 ) -> tuple[Point, ActiveSet, str]:
     """Solve exactly, given an answer of a few digits; also return how.
 

@@ -11,7 +11,7 @@ from loadshare.settings import CONTACT
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Solved:
+class LinearSolution:
     """Solution of a system, and what it leaves open.
 
     Attributes
@@ -28,7 +28,7 @@ class Solved:
     stresses: Array
 
 
-def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
+def solve_symmetric(matrix: Array, right: Array, size: int) -> LinearSolution | None:
     """Solve K z = r for a symmetric K, least-norm in the first `size` unknowns where K is singular.
 
     Parameters
@@ -65,9 +65,9 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
     return _least_norm(matrix, scaled, scale, right, size)
 
 
-def _determined(values: Array, size: int) -> Solved:
+def _determined(values: Array, size: int) -> LinearSolution:
     """Return a solution that leaves nothing free."""
-    return Solved(values, np.zeros((size, 0)), np.zeros((len(values) - size, 0)))
+    return LinearSolution(values, np.zeros((size, 0)), np.zeros((len(values) - size, 0)))
 
 
 def _equilibrate(matrix: Array) -> Array:
@@ -81,7 +81,7 @@ def _equilibrate(matrix: Array) -> Array:
 
 def _least_norm(
     matrix: Array, scaled: Array, scale: Array, right: Array, size: int
-) -> Solved | None:
+) -> LinearSolution | None:
     eigenvalues, vectors = np.linalg.eigh(scaled)
     kept = np.abs(eigenvalues) > CONTACT.rank * np.abs(eigenvalues).max()
     basis = vectors[:, kept]
@@ -104,4 +104,4 @@ def _least_norm(
     if forces_only.shape[1]:
         share = np.linalg.lstsq(forces_only[size:], values[size:], rcond=None)[0]
         values = values - forces_only @ share
-    return Solved(values, moves[:size], forces_only[size:])
+    return LinearSolution(values, moves[:size], forces_only[size:])

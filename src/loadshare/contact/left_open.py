@@ -28,7 +28,7 @@ class Round(NamedTuple):
     radius: float
 
 
-class Held(NamedTuple):
+class MoveLimits(NamedTuple):
     """Limits of contacts and radial elements on moves that leave all forces as they are.
 
     Attributes
@@ -61,7 +61,7 @@ def held_by(
     forces: Mapping[str, float],
     pulls: Mapping[str, Array],
     laws: Mapping[str, RadialLaw],
-) -> Held:
+) -> MoveLimits:
     """Return what limits moves that leave the forces of an answer as they are.
 
     Parameters
@@ -77,7 +77,7 @@ def held_by(
     """
     every = [*(abs(f) for f in forces.values()), *(math.hypot(*p) for p in pulls.values())]
     carries = PLACES.carries * max([problem.force_unit(), *every])
-    found = Held([], [], [], [])
+    found = MoveLimits([], [], [], [])
     for row in problem.rows:
         if forces.get(row.name, 0.0) > carries:
             found.ties.append(row.vector)

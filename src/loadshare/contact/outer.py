@@ -21,7 +21,7 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.contact.backends.backend import Backend
 from loadshare.contact.energy import potential
-from loadshare.contact.findings import Unsolved, Work
+from loadshare.contact.findings import StepBudget, Unsolved
 from loadshare.contact.inner import Inner, solve_programme
 from loadshare.contact.law import PowerLaw
 from loadshare.contact.plan import Linearisation, Plan, Role, Units, programme
@@ -79,7 +79,7 @@ def settle(
     backend: Backend,
     options: Options,
     method: str,
-    work: Work | None = None,
+    work: StepBudget | None = None,
 ) -> Settled:
     """Run the outer loop on a plan.
 
@@ -90,7 +90,7 @@ def settle(
     backend : Backend
     options : Options
     method : str
-    work : Work, optional
+    work : StepBudget, optional
         Newton steps allowed; unlimited by default.
 
     Raises

@@ -20,13 +20,13 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.contact.exact import ActiveSet, at_rest, first_guess, solve_exact
-from loadshare.contact.findings import Unsolved, Work
+from loadshare.contact.findings import StepBudget, Unsolved
 from loadshare.contact.programme import Point, Programme
 from loadshare.settings import CONTACT
 
 
 def solve_proximal(
-    programme: Programme, start: Point | None = None, work: Work | None = None
+    programme: Programme, start: Point | None = None, work: StepBudget | None = None
 ) -> tuple[Point, ActiveSet]:
     """Solve a programme without a guess of its active set.
 
@@ -35,7 +35,7 @@ def solve_proximal(
     programme : Programme
     start : Point, optional
         Where the passes begin; at rest by default.
-    work : Work, optional
+    work : StepBudget, optional
         See `solve_exact`.
 
     Raises

@@ -47,7 +47,7 @@ class Piece:
         return self.force if self.stiffness == 0.0 else self.force + self.stiffness * self.length
 
 
-class Part(NamedTuple):
+class GraphPart(NamedTuple):
     """A piece of a graph, or a step between two.
 
     Attributes
@@ -76,7 +76,7 @@ class Part(NamedTuple):
         return radius - inner, force - min(max(force, self.low + rise), self.high + rise)
 
 
-def nearest(parts: Iterable[Part], radius: float, force: float) -> Any:
+def nearest(parts: Iterable[GraphPart], radius: float, force: float) -> Any:
     """Return the state of the part of a graph nearest to a radius and a force without units."""
     return min(parts, key=lambda part: math.hypot(*part.off(radius, force))).state
 
@@ -111,16 +111,16 @@ class RadialLaw:
         high = self.pieces[corner].force if corner < len(self.pieces) else math.inf
         return low, high
 
-    def parts(self) -> Iterator[Part]:
+    def parts(self) -> Iterator[GraphPart]:
         """Yield the pieces, then the steps between and after them, by number and kind."""
         for k, piece in enumerate(self.pieces):
             begin = self.start(k)
             force, end = piece.force, begin + piece.length
-            yield Part((k, False), begin, end, force, force, piece.stiffness)
+            yield GraphPart((k, False), begin, end, force, force, piece.stiffness)
         for k in range(len(self.pieces) + 1):
             low, high = self.step(k)
             if high > low:
-                yield Part((k, True), self.start(k), self.start(k), low, high, 0.0)
+                yield GraphPart((k, True), self.start(k), self.start(k), low, high, 0.0)
 
     def level(self, force: float, band: float) -> tuple[float, float] | None:
         """Return radii [m] between which a force acts, within `band` [N]; None if at one only."""

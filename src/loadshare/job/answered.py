@@ -95,7 +95,7 @@ class MachineSamples:
 
 
 @dataclass(frozen=True, eq=False)
-class Answered:
+class SampleAnswers:
     """Answers to samples of a case.
 
     Attributes
@@ -156,7 +156,7 @@ def answer_samples(
     samples: Mapping[str, ArrayLike],
     positions: Iterable[int] | None = None,
     progress: Progress | None = None,
-) -> Answered:
+) -> SampleAnswers:
     """Solve and certify samples of a case, all together.
 
     Parameters
@@ -195,7 +195,7 @@ def answer_samples(
             done += len(rows[some])
             if progress is not None:
                 progress(done, total)
-    return Answered(every, tuple(parts), lacking)
+    return SampleAnswers(every, tuple(parts), lacking)
 
 
 def _part(

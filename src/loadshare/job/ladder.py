@@ -19,7 +19,7 @@ import numpy as np
 
 from loadshare.certify import Certificate, certify
 from loadshare.certify.validity import LABELS, Validity, refusal_text
-from loadshare.contact.findings import Work
+from loadshare.contact.findings import StepBudget
 from loadshare.contact.runaway import runaway
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
@@ -139,7 +139,7 @@ def climb(
     if math.isfinite(steps):
         _refuse_if_too_large(index, lighter())
     first: Refused | None = None
-    known = SceneResults(work=Work(steps))
+    known = SceneResults(work=StepBudget(steps))
     seen: list[tuple[Iteration, ...]] = []
     for rung, rung_options in rungs(options):
         try:

@@ -10,7 +10,7 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.contact.backends.backend import Backend, backend
-from loadshare.contact.findings import Unsolved, Work
+from loadshare.contact.findings import StepBudget, Unsolved
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan, Role
 from loadshare.contact.record import Options, Record
@@ -31,14 +31,14 @@ class SceneResults:
     Attributes
     ----------
     settled : dict of plan to Settled or Unsolved
-    work : Work
+    work : StepBudget
         Newton steps left to all plans together; each may take half of them.
     each : float
         Newton steps allowed to every plan, whatever the others took.
     """
 
     settled: dict[tuple[object, ...], Settled | Unsolved] = field(default_factory=dict)
-    work: Work = field(default_factory=Work)
+    work: StepBudget = field(default_factory=StepBudget)
     each: float = math.inf
 
 
@@ -126,7 +126,7 @@ def _once(
     key = (*plan.rows.values(), *plan.radials.values(), plan.condensed, method)
     if key not in known.settled:
         try:
-            work = known.work.half() if math.isinf(known.each) else Work(known.each)
+            work = known.work.half() if math.isinf(known.each) else StepBudget(known.each)
             known.settled[key] = settle(scene, plan, solver, options, method, work)
         except Unsolved as failure:
             known.settled[key] = failure

@@ -21,7 +21,7 @@ from loadshare.case.words import count
 from loadshare.equality import Comparable
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
-from loadshare.job.answered import Answered, answer_samples
+from loadshare.job.answered import SampleAnswers, answer_samples
 from loadshare.later import known
 from loadshare.libraries import pd, xr
 from loadshare.output import csv_of, netcdf_of, write_whole
@@ -93,7 +93,7 @@ class Sweep(Viewed):
         Number of positions.
     points : tuple of Point
         The last parameter varies fastest.
-    answered : Answered
+    answered : SampleAnswers
         The answers at all points that were solved.
     usable : tuple of int
         Numbers of the points that were solved.
@@ -105,7 +105,7 @@ class Sweep(Viewed):
     grids: tuple[tuple[float, ...], ...]
     count: int
     points: tuple[Point, ...]
-    answered: Answered = field(repr=False, compare=False)
+    answered: SampleAnswers = field(repr=False, compare=False)
     usable: tuple[int, ...] = field(repr=False)
 
     def _said(self) -> Any:
@@ -332,7 +332,7 @@ def _unusable(case: Case, chosen: Sequence[Parameter], values: Array) -> dict[in
     return found
 
 
-def _point(values: tuple[float, ...], answered: Answered, sample: int) -> Point:
+def _point(values: tuple[float, ...], answered: SampleAnswers, sample: int) -> Point:
     """Return the outcome at a point."""
     refused = answered.refused(sample)
     whole = len(refused) == len(answered.asked(sample))

@@ -13,7 +13,7 @@ from loadshare import case as spec
 from loadshare.case.power_flow import nearest_first
 from loadshare.errors import CaseError, Problem
 from loadshare.train.gear import Gear
-from loadshare.train.phases import MEETS, Meeting, Misfit, is_whole, phases
+from loadshare.train.phases import MEETS, Meeting, PhaseMisfit, is_whole, phases
 from loadshare.train.ring import transverse
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ def _phases_unknown(
         yield case.problem(path, f"does not follow: {message}", "0 to below 1", hint)
 
 
-def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:
+def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: PhaseMisfit) -> Problem:
     """Return the problem of teeth that miss each other, with a hint where planets would fit."""
     pair = pairs[misfit.mesh]
     message = (

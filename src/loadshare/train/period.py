@@ -19,7 +19,7 @@ from math import gcd, lcm
 
 from loadshare.train.gear import Gear
 from loadshare.train.seen import along, seen_from
-from loadshare.train.willis import Ends, Links
+from loadshare.train.willis import Ends, SpeedLinks
 
 Row = dict[str, Fraction]
 
@@ -74,7 +74,7 @@ def period_of(
         If tooth numbers contradict one another on two paths, or nothing turns.
     """
     counted = {n: replace(gear, base_radius=teeth.get(n, 0)) for n, gear in gears.items()}
-    links = Links.of(counted, meshes, shafts)
+    links = SpeedLinks.of(counted, meshes, shafts)
     rows = [
         ({n: Fraction(int(v)) for n, v in zip(counted, row, strict=True) if v}, Fraction(0))
         for row in links.matrix.tolist()

@@ -95,7 +95,7 @@ class Meeting:
 
 
 @dataclass(frozen=True, slots=True)
-class Misfit:
+class PhaseMisfit:
     """A mesh whose teeth do not meet.
 
     Attributes
@@ -111,7 +111,7 @@ class Misfit:
 
 def phases(
     meetings: Mapping[str, Meeting], walk: Sequence[str]
-) -> tuple[dict[str, Both], tuple[Misfit, ...]]:
+) -> tuple[dict[str, Both], tuple[PhaseMisfit, ...]]:
     """Return the phases of all meshes of gears with whole tooth numbers, and the misfits.
 
     In every group of gears that meshes connect, the mesh nearest to the input begins its cycle: the
@@ -138,11 +138,11 @@ def phases(
 
 def _walked(
     known: Mapping[str, Meeting], order: Mapping[str, int], *, drive: bool
-) -> tuple[dict[str, float], list[Misfit]]:
+) -> tuple[dict[str, float], list[PhaseMisfit]]:
     """Return the phases of all meshes if their flanks of one side touch, and the misfits."""
     teeth: dict[str, float] = {}
     found: dict[str, float] = {}
-    misfits: list[Misfit] = []
+    misfits: list[PhaseMisfit] = []
     for meeting in known.values():
         if meeting.driver.name in teeth or meeting.driven.name in teeth:
             continue
@@ -162,7 +162,7 @@ def _walked(
                     found[name] = phase
                     off = (there.passed(other, teeth[other], drive) - phase + 0.5) % 1.0 - 0.5
                     if abs(off) > MEETS:
-                        misfits.append(Misfit(name, off))
+                        misfits.append(PhaseMisfit(name, off))
     return found, misfits
 
 

@@ -11,7 +11,7 @@ from loadshare.case.power_flow import on_one_shaft
 from loadshare.train.gear import Gear, cross
 from loadshare.train.ring import transverse
 from loadshare.train.seen import seen_from, speed_on
-from loadshare.train.willis import Links
+from loadshare.train.willis import SpeedLinks
 
 
 def members(
@@ -46,7 +46,7 @@ def members(
     ValueError
         If nothing can turn.
     """
-    speeds, determined = Links.of(gears, meshes, shafts).speeds(first)
+    speeds, determined = SpeedLinks.of(gears, meshes, shafts).speeds(first)
     frames = _frames(gears, meshes)
     relative = dict(speeds)
     for name, frame in frames.items():

@@ -5,7 +5,7 @@ Loads may be arrays of samples, so that samples that press the same flanks can b
 Where several loads reach parallel branches, or power may circulate in a loop of sets and shafts,
 the statics of rigid gears cannot determine which flank carries. The flank that an even sharing
 presses is taken, and a mesh in which stiffness may press either flank is marked as unsure
-(`Links.pressed`). If it carries in the answer, the other flank would not touch whatever the
+(`SpeedLinks.pressed`). If it carries in the answer, the other flank would not touch whatever the
 backlash, and the choice was right; if it is open in the answer, the backlash decides, and the
 answer comes with a warning (`certify.validity`). Refusing all such meshes would refuse most of them
 needlessly.
@@ -30,7 +30,7 @@ from loadshare.train.gear import Gear
 from loadshare.train.operation import forces_of, operation_of
 from loadshare.train.period import Period
 from loadshare.train.turning import turning_of
-from loadshare.train.willis import NOISE, Links
+from loadshare.train.willis import NOISE, SpeedLinks
 
 
 class Pressed(NamedTuple):
@@ -113,7 +113,7 @@ def _against_the_names(case: spec.Case, torque: Array) -> Flags:
 def _pressed(
     case: spec.Case, gears: Mapping[str, Gear], torque: Array, period: Period | None
 ) -> dict[str, tuple[Numbers, Flags]]:
-    """Return the signs of mesh torques (positions, S) by statics (see `Links.pressed`)."""
+    """Return the signs of mesh torques (positions, S) by statics (see `SpeedLinks.pressed`)."""
     operating = case.operating
     torques: dict[str, Any] = {
         n: t.si * math.copysign(1.0, gears[n].ratio) for n, t in operating.external.items()
@@ -124,8 +124,8 @@ def _pressed(
     return _links(case, gears).pressed(torques, _turning(case, gears))
 
 
-def _links(case: spec.Case, gears: Mapping[str, Gear]) -> Links:
-    return Links.of(
+def _links(case: spec.Case, gears: Mapping[str, Gear]) -> SpeedLinks:
+    return SpeedLinks.of(
         gears,
         {name: mesh.ends for name, mesh in case.meshes.items()},
         {name: shaft.ends for name, shaft in case.shafts.items()},

@@ -36,7 +36,7 @@ roots are spread: wide enough that a link is almost rigid in some draws, almost 
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Links:
+class SpeedLinks:
     """The links of a train as rows over the speeds of its members.
 
     Attributes
@@ -55,7 +55,7 @@ class Links:
     @classmethod
     def of(
         cls, gears: Mapping[str, Gear], meshes: Mapping[str, Ends], shafts: Mapping[str, Ends]
-    ) -> Links:
+    ) -> SpeedLinks:
         """Write the links of a train whose senses are settled."""
         order = {name: k for k, name in enumerate(gears)}
         rows = []

@@ -12,7 +12,7 @@ from tests.tooth.compliance.plane import solve_plane
 from loadshare.tooth.analysis.ltca import ltca
 from loadshare.tooth.compliance.interface import Flank
 from loadshare.tooth.compliance.slices import Slices
-from loadshare.tooth.contact.problem import ContactProblem
+from loadshare.tooth.contact.problem import ToothContact
 from loadshare.tooth.contact.strips import StripLine, contact_modulus, half_width
 from loadshare.tooth.cylindrical.build import helicoid_pair
 from loadshare.tooth.cylindrical.gear import HelicoidGear
@@ -38,7 +38,7 @@ def local(width, depth):
     """Return the mean compression between flank and middle surface under an even load [m]."""
     strips = line(width, depth)
     zero = np.zeros((len(strips.length),) * 2)
-    problem = ContactProblem(zero, zero[0], (strips,))
+    problem = ToothContact(zero, zero[0], (strips,))
     return float((problem.alone.yielded(LOAD * strips.length[None])[0]).mean())
 
 
@@ -70,7 +70,7 @@ def test_a_face_as_wide_as_the_tooth_is_thick_is_left_alone():
 def test_the_tangent_is_the_slope():
     strips = line(2e-3, 3e-3, 6)
     zero = np.zeros((6, 6))
-    problem = ContactProblem(zero, zero[0], (strips,))
+    problem = ToothContact(zero, zero[0], (strips,))
     force = LOAD * strips.length * np.linspace(0.5, 1.5, 6)
     tangent = problem.compliance(force)[1]
     for k in range(6):

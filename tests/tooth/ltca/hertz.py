@@ -10,7 +10,7 @@ from math import pi
 import numpy as np
 
 from loadshare.tooth.contact.compiled import shape
-from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact.problem import ContactBatch, ToothContact
 from loadshare.tooth.contact.strips import axis_ratio, strip_table
 
 
@@ -124,5 +124,5 @@ def surfaces(*positions):
     problems = []
     for lines in positions:
         count = sum(len(line.length) for line in lines)
-        problems.append(ContactProblem(np.zeros((count, count)), np.zeros(count), tuple(lines)))
+        problems.append(ToothContact(np.zeros((count, count)), np.zeros(count), tuple(lines)))
     return ContactBatch(problems)

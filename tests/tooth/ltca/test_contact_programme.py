@@ -15,7 +15,7 @@ from loadshare.contact.backends.backend import SOLVERS, backend
 from loadshare.errors import Refused
 from loadshare.settings import TEETH
 from loadshare.tooth.contact import programme as contact_programme
-from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact.problem import ContactBatch, ToothContact
 from loadshare.tooth.contact.programme import by_interface, exchange, solve_contact, solve_contacts
 from loadshare.tooth.contact.strips import StripLine, contact_modulus, half_width
 
@@ -29,7 +29,7 @@ def crowned(points, length, across, along):
     part = np.full(points, length / points)
     place = np.cumsum(part) - 0.5 * part - 0.5 * length
     line = StripLine(part, np.full(points, across), np.full(points, along), *STEEL)
-    return ContactProblem(np.zeros((points, points)), 0.5 * along * place**2, (line,))
+    return ToothContact(np.zeros((points, points)), 0.5 * along * place**2, (line,))
 
 
 def uneven(seed, points=24, lines=2):
@@ -43,7 +43,7 @@ def uneven(seed, points=24, lines=2):
         for _ in range(lines)
     )
     gap = 1e-6 * rng.gamma(1.0, 4.0, size=count)
-    return ContactProblem(bulk, gap - gap.min(), strips)
+    return ToothContact(bulk, gap - gap.min(), strips)
 
 
 def test_two_spheres():
@@ -91,7 +91,7 @@ def test_line_contact_against_its_closed_form():
         *STEEL,
         depth=(np.full(points, depth),) * 2,
     )
-    problem = ContactProblem(np.zeros((points, points)), np.zeros(points), (line,))
+    problem = ToothContact(np.zeros((points, points)), np.zeros(points), (line,))
     found = solve_contact(problem, q * length)
     width = float(half_width(q, 100.0, E_STAR))
     closed = 2.0 * float(compression(q, width, depth, 206e9, 0.3))
@@ -218,7 +218,7 @@ def test_scaling_of_units():
     soft = tuple(
         replace(line, curvature=2.0 * line.curvature, modulus=(103e9, 103e9)) for line in one.lines
     )
-    other = ContactProblem(2.0 * one.bulk, 2.0 * one.gap, soft)
+    other = ToothContact(2.0 * one.bulk, 2.0 * one.gap, soft)
     a, b = solve_contact(one, 700.0), solve_contact(other, 700.0)
     np.testing.assert_allclose(b.force, a.force, atol=1e-10 * 700.0)
     assert b.approach == pytest.approx(2.0 * a.approach, rel=1e-11)

@@ -10,7 +10,7 @@ from loadshare.case.gears import Gear
 from loadshare.case.keys import Path
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating
-from loadshare.case.teeth import Misfit, tooth_counts
+from loadshare.case.teeth import CountMisfit, tooth_counts
 from loadshare.case.words import count
 from loadshare.errors import Problem
 
@@ -49,7 +49,7 @@ def check_teeth_fit(draft: Draft) -> Iterator[Problem]:
         yield draft.problem(("gears", found.gear, "teeth"), message, hint=hint)
 
 
-def _acting_radius(draft: Draft, found: Misfit) -> str:
+def _acting_radius(draft: Draft, found: CountMisfit) -> str:
     """Say which acting radius of a face gear would fit: it is not in the middle of its teeth."""
     for name, ratio in ((found.gear, 1.0), (found.other, -1.0)):
         gear, number = draft.gears[name], draft.gears[found.gear].teeth

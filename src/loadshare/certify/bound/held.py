@@ -20,7 +20,7 @@ from loadshare.settings import BOUND
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class HeldSlips:
     """Claims with their held slips.
 
     Attributes
@@ -44,7 +44,7 @@ class Held:
         return np.asarray((turned > self.turned).any(axis=1))
 
 
-def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> Held:
+def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> HeldSlips:
     """Hold the slips that friction and the end of the clearance hold at once.
 
     Parameters
@@ -59,7 +59,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
     train, columns = claim.columns.train, claim.columns
     turned = np.full((claim.count, len(train.splines)), np.inf)
     if train.slip is None:
-        return Held(claim, np.zeros(0, dtype=np.intp), turned)
+        return HeldSlips(claim, np.zeros(0, dtype=np.intp), turned)
     reactions = claim.answers.radial_reaction.copy()
     limits = claim.graphs[:, :, 2:4].copy()
     slack = np.zeros(len(columns.names))
@@ -108,7 +108,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
     if shared:
         answers = replace(claim.answers, radial_reaction=reactions)
         claim = replace(claim, answers=answers, limits=limits, slack=slack)
-    return Held(claim, np.array(shared, dtype=np.intp), turned)
+    return HeldSlips(claim, np.array(shared, dtype=np.intp), turned)
 
 
 def _rate(claim: Claim, spline: int) -> Array:

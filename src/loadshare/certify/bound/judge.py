@@ -13,7 +13,7 @@ from loadshare.certify.bound.acts import Act, Acts, first_acts
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.held import Held, with_held_slips
+from loadshare.certify.bound.held import HeldSlips, with_held_slips
 from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.open_slips import is_inside, open_slips, reaction_error
 from loadshare.certify.bound.quick import quick_boxes
@@ -183,7 +183,7 @@ def _improve(box: Box, relative: Array, rows: Numbers, other: tuple[Array, Array
 
 
 def _proved(
-    held: Held, scale: Array, largest: Array, rigorous: bool, enough: float
+    held: HeldSlips, scale: Array, largest: Array, rigorous: bool, enough: float
 ) -> tuple[Box, Array]:
     """Return the errors of S claims, and the largest of a torque over the largest torque, (S,)."""
     claim, columns, answers = held.claim, held.claim.columns, held.claim.answers

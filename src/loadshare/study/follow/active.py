@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.array_types import Array, States
-from loadshare.contact.radial import Part, nearest
+from loadshare.contact.radial import GraphPart, nearest
 from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
@@ -89,23 +89,25 @@ def read_states(structure: Structure, numbers: Numbers, found: Equilibrium, x: A
     return states
 
 
-def _parts(law: at.Graph) -> Iterator[Part]:
+def _parts(law: at.Graph) -> Iterator[GraphPart]:
     """Yield the pieces and steps of a radial law."""
     first, stick, bound, reach, last = (float(v[0]) for v in law[:5])
     if np.isinf(stick):
-        yield Part(at.STICK, 0.0, np.inf, 0.0, 0.0, first)
+        yield GraphPart(at.STICK, 0.0, np.inf, 0.0, 0.0, first)
         return
     if stick > 0.0:
-        yield Part(at.STICK, 0.0, stick, 0.0, 0.0, first)
+        yield GraphPart(at.STICK, 0.0, stick, 0.0, 0.0, first)
     if reach > stick:
         # Inside a ring nothing acts; a spline without friction may have some at nearby values.
-        yield Part(at.SLIP if first > 0.0 else at.OPEN, stick, reach, bound, bound, 0.0)
+        yield GraphPart(at.SLIP if first > 0.0 else at.OPEN, stick, reach, bound, bound, 0.0)
     if np.isfinite(last):
-        yield Part(at.STOP, reach, np.inf, bound, bound, last)
+        yield GraphPart(at.STOP, reach, np.inf, bound, bound, last)
     if bound > first * stick:
-        yield Part(at.CORNER if stick > 0.0 else at.PINNED, stick, stick, first * stick, bound, 0.0)
+        yield GraphPart(
+            at.CORNER if stick > 0.0 else at.PINNED, stick, stick, first * stick, bound, 0.0
+        )
     if np.isinf(last):
-        yield Part(at.WALL if reach > 0.0 else at.PINNED, reach, reach, bound, np.inf, 0.0)
+        yield GraphPart(at.WALL if reach > 0.0 else at.PINNED, reach, reach, bound, np.inf, 0.0)
 
 
 def set_of(

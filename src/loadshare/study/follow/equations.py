@@ -28,7 +28,7 @@ from loadshare.study.follow.numbers import Numbers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Polar:
+class PolarFrame:
     """An element whose force acts along its own offset, at S points.
 
     Attributes
@@ -98,7 +98,7 @@ class Evaluation:
     approach: Array
     force: Array
     slope: Array
-    polars: dict[int, Polar]
+    polars: dict[int, PolarFrame]
     margin: dict[int, Array]
     laws: dict[int, at.Graph]
     transmitted: Array
@@ -217,7 +217,7 @@ class Equations:
         parts = [part.reshape(shape) for part in found]
         return {k: at.Graph(*(p[:, j] for p in parts)) for j, k in enumerate(self.radials)}
 
-    def _arc(self, k: int, z: Array, numbers: Numbers) -> tuple[Polar, Array]:
+    def _arc(self, k: int, z: Array, numbers: Numbers) -> tuple[PolarFrame, Array]:
         a, matrix = k - self.arcs.start, self.matrix(k, numbers)
         nominal = numbers.nominal[:, a]
         moved = numbers.shift[:, a] + (matrix @ z[:, : self.n, None])[:, :, 0]
@@ -231,13 +231,13 @@ class Equations:
             slope = np.broadcast_to(1.0 / numbers.bending[:, self.scalars + a], radius.shape)
             size = margin * slope
         along = offset / radius[:, None]
-        return Polar(matrix, offset, radius, along, size, slope, beyond, sense=-1.0), margin
+        return PolarFrame(matrix, offset, radius, along, size, slope, beyond, sense=-1.0), margin
 
     def _offset(self, k: int, z: Array, numbers: Numbers) -> Array:
         moved = (self.matrix(k, numbers) @ z[:, : self.n, None])[:, :, 0]
         return np.asarray(moved - numbers.gap[:, self._columns(k)])
 
-    def _radial(self, k: int, law: at.Graph, z: Array, numbers: Numbers) -> Polar:
+    def _radial(self, k: int, law: at.Graph, z: Array, numbers: Numbers) -> PolarFrame:
         matrix, states, where = self.matrix(k, numbers), self.states[k], self.polar_at.get(k)
         offset = self._offset(k, z, numbers)
         radius = np.sqrt((offset * offset).sum(axis=1))
@@ -254,7 +254,7 @@ class Equations:
             assert where is not None
             size = z[:, where]
             beyond = radius - (law.stick if states == at.CORNER else law.reach)
-        return Polar(
+        return PolarFrame(
             matrix, offset, radius, along, size, slope, beyond, spring=bool(states == at.STICK)
         )
 

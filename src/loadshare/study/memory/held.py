@@ -17,7 +17,7 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.certify import certify
-from loadshare.contact.findings import Work
+from loadshare.contact.findings import StepBudget
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
 from loadshare.scene import assemble
@@ -48,7 +48,7 @@ def with_slips_held(
     if gears:
         scene = without_slips(whole, gears, slips_before(train))
     for (rung, options), few in product(tries, plans):
-        known = SceneResults(work=Work(steps), each=few)
+        known = SceneResults(work=StepBudget(steps), each=few)
         try:
             found, record = solve_scene(scene, options, known)
         except Refused:

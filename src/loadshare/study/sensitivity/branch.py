@@ -94,7 +94,7 @@ class Setting:
         return set_of(structure, numbers, states, x)
 
 
-class Gauge(NamedTuple):
+class BranchGauge(NamedTuple):
     """How far an element is from leaving its state [deflections or loads].
 
     Attributes
@@ -230,7 +230,9 @@ class Branch:
         levers = self.setting.levers[None]
         return np.asarray(self.equations.along_forces(levers, state, self.numbers)[0])
 
-    def gauges(self, z: Array, only: Collection[int] | None = None) -> dict[tuple[int, int], Gauge]:
+    def gauges(
+        self, z: Array, only: Collection[int] | None = None
+    ) -> dict[tuple[int, int], BranchGauge]:
         """Return the gauges of elements, by element and the state to which it would change.
 
         Parameters
@@ -255,7 +257,7 @@ class Branch:
                 gradient = here.vectors[0, e.structure.springs + k]
             # A contact that the coordinates cannot close has no gauge.
             if gradient is None or gradient.any():
-                gauges[k, gauge.to] = Gauge(k, float(gauge.first[0]), gradient)
+                gauges[k, gauge.to] = BranchGauge(k, float(gauge.first[0]), gradient)
         return gauges
 
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from loadshare.array_types import Array
 from loadshare.settings import EPS, SENSITIVITY
-from loadshare.study.sensitivity.branch import Branch, Gauge
+from loadshare.study.sensitivity.branch import Branch, BranchGauge
 from loadshare.study.sensitivity.differences import SideSlope
 
-Gauges = dict[tuple[int, int], Gauge]
+Gauges = dict[tuple[int, int], BranchGauge]
 """Gauges, by element and the state to which it would change."""
 
 

@@ -45,7 +45,7 @@ class WorstCase:
     solved: int
 
 
-class Box:
+class ToleranceBox:
     """The tolerance box: each input between its ends, scaled to [0, 1].
 
     A distribution without an end is cut at three standard deviations of a normal one (0.135 % lie
@@ -98,7 +98,7 @@ def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> 
     WorstCase or None
         None if no starting point has an answer, or no point found is certified on its own.
     """
-    box = Box(solver.inputs)
+    box = ToleranceBox(solver.inputs)
     search = _Search(solver, box, f"{kind}.{SYSTEM}")
     points = _starts(box, known, seed)
     best = search.omega(points)
@@ -119,7 +119,7 @@ def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> 
     return None
 
 
-def _starts(box: Box, known: Sequence[Array], seed: int) -> Array:
+def _starts(box: ToleranceBox, known: Sequence[Array], seed: int) -> Array:
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(0, 3)))
     inner = rng.random((TOLERANCE.inner, len(box)))
     corners = np.where(box.periodic, rng.random((TOLERANCE.corners, len(box))), 0.0)
@@ -130,7 +130,7 @@ def _starts(box: Box, known: Sequence[Array], seed: int) -> Array:
 @dataclass
 class _Search:
     solver: Solver
-    box: Box
+    box: ToleranceBox
     column: str
     solved: int = 0
 
@@ -173,7 +173,9 @@ class _Search:
         return scaled[rows, chosen], every[rows, chosen]
 
 
-def _confirmed(solver: Solver, box: Box, kind: str, place: Array, solved: int) -> WorstCase | None:
+def _confirmed(
+    solver: Solver, box: ToleranceBox, kind: str, place: Array, solved: int
+) -> WorstCase | None:
     """Solve a point of the box on its own, with a full certificate."""
     values = box.values(place).tolist()
     changes = solver.inputs.changes(values)

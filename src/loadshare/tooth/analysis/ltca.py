@@ -19,7 +19,7 @@ from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import Beside, LineLoad, Ltca
 from loadshare.tooth.analysis.sampling import cells
 from loadshare.tooth.compliance.interface import Compliance, Flank
-from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact.problem import ContactBatch, ToothContact
 from loadshare.tooth.contact.programme import Contact, solve_contacts
 from loadshare.tooth.contact.strips import StripLine, width_factor
 from loadshare.tooth.geometry.body import Array
@@ -186,7 +186,7 @@ def ltca(
 
 def contact_problems(
     pair: GearPair, positions: Sequence[MeshPosition], compliance: PairCompliance
-) -> tuple[ContactProblem, ...]:
+) -> tuple[ToothContact, ...]:
     """Return the contact problems of positions, with every point of every line that may close.
 
     Raises
@@ -208,7 +208,7 @@ def contact_problems(
     bulks = zip(compliance.driver.bulks(driver), compliance.driven.bulks(driven), strict=True)
     strips = _strips(pair, [line for position in positions for line in position.lines], compliance)
     return tuple(
-        ContactProblem(
+        ToothContact(
             bulk=one + other,
             gap=np.concatenate([line.gap for line in position.lines]),
             lines=tuple(islice(strips, len(position.lines))),
@@ -245,7 +245,7 @@ def _strips(
         )
 
 
-def _groups(problems: Sequence[ContactProblem], loads: int) -> Iterator[list[int]]:
+def _groups(problems: Sequence[ToothContact], loads: int) -> Iterator[list[int]]:
     """Yield the numbers of problems solved at once: of equally many points, and not too many."""
     sizes = [len(problem.gap) for problem in problems]
     for size in sorted(set(sizes)):
@@ -255,7 +255,7 @@ def _groups(problems: Sequence[ContactProblem], loads: int) -> Iterator[list[int
             yield alike[start : start + most]
 
 
-def _under_all(problems: Sequence[ContactProblem], loads: Array) -> Iterator[tuple[Contact, ...]]:
+def _under_all(problems: Sequence[ToothContact], loads: Array) -> Iterator[tuple[Contact, ...]]:
     """Yield the contacts of every problem under all loads, solved together.
 
     Starting from uniform forces takes no more passes than starting from those under another load.
@@ -268,7 +268,7 @@ def _under_all(problems: Sequence[ContactProblem], loads: Array) -> Iterator[tup
 
 
 def _refuse_falling(
-    problems: Sequence[ContactProblem], contacts: Sequence[tuple[Contact, ...]]
+    problems: Sequence[ToothContact], contacts: Sequence[tuple[Contact, ...]]
 ) -> None:
     """Refuse teeth that would yield less under more load.
 
@@ -285,7 +285,7 @@ def _refuse_falling(
 
 
 def _line_loads(
-    position: MeshPosition, problem: ContactProblem, contacts: Sequence[Contact]
+    position: MeshPosition, problem: ToothContact, contacts: Sequence[Contact]
 ) -> tuple[tuple[LineLoad, ...], ...]:
     """Return the contacts under every load, line by line."""
     force = np.stack([contact.force for contact in contacts])

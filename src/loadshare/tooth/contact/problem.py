@@ -36,7 +36,7 @@ from loadshare.tooth.geometry.body import Array
 
 
 @dataclass(frozen=True, eq=False)
-class ContactProblem:
+class ToothContact:
     """Compliance and gaps of the points of one position.
 
     Parameters
@@ -112,7 +112,7 @@ class ContactBatch:
 
     Parameters
     ----------
-    problems : sequence of ContactProblem
+    problems : sequence of ToothContact
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class ContactBatch:
         Local compliance of their surfaces.
     """
 
-    def __init__(self, problems: Sequence[ContactProblem]) -> None:
+    def __init__(self, problems: Sequence[ToothContact]) -> None:
         from loadshare.tooth.contact.compiled import expand
 
         self.count = np.array([len(problem.gap) for problem in problems])

@@ -32,7 +32,7 @@ from loadshare.contact.programme import Programme
 from loadshare.errors import Refused
 from loadshare.settings import TEETH
 from loadshare.tooth.contact.certificate import ContactCertificate, certify_contacts
-from loadshare.tooth.contact.problem import ContactBatch, ContactProblem, Strips
+from loadshare.tooth.contact.problem import ContactBatch, Strips, ToothContact
 from loadshare.tooth.geometry.body import Array
 
 Mask = NDArray[np.bool_]
@@ -65,7 +65,7 @@ class Contact:
 
 
 def solve_contact(
-    problem: ContactProblem,
+    problem: ToothContact,
     load: float,
     warm: Array | None = None,
     solver: str = "clarabel",
