@@ -18,7 +18,7 @@ from tests.reproducible import SAME
 from loadshare.job import engines, hot
 from loadshare.job.engines import engine_named
 from loadshare.outside import OUTSIDE
-from loadshare.report import beside
+from loadshare.report import converter
 
 # Mesh laws that tests compute must not go to the user's cache.
 os.environ["LOADSHARE_CACHE"] = str(Path(__file__).parent.parent / ".pytest_cache" / "laws")
@@ -95,7 +95,7 @@ def chrome(tmp_path_factory) -> Iterator[Any]:
 def drawn_once() -> Iterator[Any]:
     """Keep every picture that was drawn: the same specification gives the same text."""
     known: dict[str, Any] = {}
-    begin = beside.begin
+    begin = converter.begin
 
     def kept(conversion: str, what: object, **settings: Any) -> Any:
         name = json.dumps([conversion, what, settings])
@@ -105,14 +105,14 @@ def drawn_once() -> Iterator[Any]:
         return made
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(beside, "begin", kept)
+        patch.setattr(converter, "begin", kept)
         yield begin
 
 
 @pytest.fixture
 def drawn_anew(drawn_once: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw each picture again, for tests of drawing."""
-    monkeypatch.setattr(beside, "begin", drawn_once)
+    monkeypatch.setattr(converter, "begin", drawn_once)
 
 
 @pytest.fixture(autouse=True)

@@ -138,8 +138,8 @@ class Balance:
                     Column("flank_force", mesh.flank_name(drive), 0, 1.0, soft, force > 0.0),
                     {mesh.driver: -push, mesh.driven: push},
                     {
-                        mesh.driver: -along * mesh.counted[0] * mesh.radii[0],
-                        mesh.driven: along * mesh.counted[1] * mesh.radii[1],
+                        mesh.driver: -along * mesh.senses[0] * mesh.radii[0],
+                        mesh.driven: along * mesh.senses[1] * mesh.radii[1],
                     },
                 )
 

@@ -162,7 +162,7 @@ class _Writer:
                 parts |= self._shift(body.carrier, push)
                 if body.carrier in self.turns:
                     radius = self.of(self.train.gears[body.carrier].base_radius)
-                    parts[self.turns[body.carrier]] = self._dot(body.seat, push) / radius
+                    parts[self.turns[body.carrier]] = self._dot(body.pin_motion, push) / radius
             for at, part in parts.items():
                 load[at] = load.get(at, self.of(0)) + part / self.of(self.force)
         return load

@@ -130,7 +130,7 @@ def _imbalance(train: Train, situation: Situations) -> tuple[float, tuple[str, .
             arm = train.gears[gear.carrier].base_radius
             entries += [
                 *push(gear.carrier, force),
-                (gear.carrier, 2, float(force @ gear.seat) / arm),
+                (gear.carrier, 2, float(force @ gear.pin_motion) / arm),
             ]
         for body, axis, value in entries:
             if (body, axis) in rows:

@@ -76,8 +76,8 @@ def side_by_side(
         )
         raise LoadshareError(message) from None
     waiting = deque((item, False) for item in items)
-    crew = [Worker() for _ in range(min(workers, len(waiting)))]
-    free = list(crew)
+    pool = [Worker() for _ in range(min(workers, len(waiting)))]
+    free = list(pool)
     busy: dict[Future[Result], tuple[Worker, Item, bool]] = {}
     try:
         while busy or (waiting and not stopped()):
@@ -101,7 +101,7 @@ def side_by_side(
                     yield item, result
     finally:
         with _signals_held():
-            for worker in crew:
+            for worker in pool:
                 worker.end()
 
 

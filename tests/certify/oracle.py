@@ -323,8 +323,8 @@ class ClaimedState:
             for drive in mesh.flanks:
                 force = answer.flank_force[mesh.flank_name(drive)]
                 along = 1.0 if drive else -1.0
-                moment[mesh.driver] -= along * mesh.counted[0] * mesh.radii[0] * force
-                moment[mesh.driven] += along * mesh.counted[1] * mesh.radii[1] * force
+                moment[mesh.driver] -= along * mesh.senses[0] * mesh.radii[0] * force
+                moment[mesh.driven] += along * mesh.senses[1] * mesh.radii[1] * force
                 push = force * mesh.direction(drive)[2]
                 for end, on_it in ((mesh.driver, -push), (mesh.driven, push)):
                     if (carrier := train.gears[end].carrier) is not None:

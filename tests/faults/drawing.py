@@ -7,10 +7,10 @@ import sys
 
 
 def _draw() -> None:
-    from loadshare.report import beside
+    from loadshare.report import converter
 
     conversion, what, how = json.load(sys.stdin)
-    drawn = beside.begin(conversion, what, **how).result()
+    drawn = converter.begin(conversion, what, **how).result()
     sys.stdout.buffer.write(drawn.encode() if isinstance(drawn, str) else drawn)
 
 

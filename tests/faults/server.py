@@ -149,7 +149,7 @@ def _run(words: Sequence[str], folder: Path) -> int:
 def _keep_answers() -> None:
     """Cache solved answers for later commands."""
     import loadshare.job
-    from loadshare.report import beside
+    from loadshare.report import converter
     from loadshare.results import document, files, result
     from loadshare.study.tolerance import design, figures, statistics, study, worst
 
@@ -161,8 +161,8 @@ def _keep_answers() -> None:
     loadshare.job.solve = worst.solve = kept  # type: ignore[attr-defined]
 
     # A solved result is one object, which always writes the same document.
-    beside.start = lambda: None
-    beside.begin = _keeping(_drawn, lambda *given, **how: json.dumps([*given, how]))
+    converter.start = lambda: None
+    converter.begin = _keeping(_drawn, lambda *given, **how: json.dumps([*given, how]))
     document.to_document = result.to_document = _keeping(document.to_document, id)
     files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
 

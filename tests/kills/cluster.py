@@ -76,13 +76,13 @@ def cluster(
             *("--scheduler-file", str(known)),
         )
         address = _address(known)
-        crew = [
+        workers = [
             start(
                 "worker", address, "--nthreads", "1", "--no-dashboard", *more, **(variables or {})
             )
             for _ in range(workers)
         ]
-        yield Cluster(address, scheduler, crew)
+        yield Cluster(address, scheduler, workers)
     finally:
         for process in reversed(started):
             with suppress(ProcessLookupError):

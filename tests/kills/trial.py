@@ -161,8 +161,8 @@ def trial(bench: Bench, seed: int, number: int, kinds: tuple[str, ...] = KINDS) 
     with _running(bench.words(kind, out)) as (process, mark):
         with suppress(subprocess.TimeoutExpired):
             process.wait(after)
-        crew = partial(_crew, process.pid, bench.cluster if kind == "cluster" else None)
-        met, victim = _kill(process, target, crew, random)
+        workers = partial(_crew, process.pid, bench.cluster if kind == "cluster" else None)
+        met, victim = _kill(process, target, workers, random)
         if target == "worker":
             # When a worker dies, the command must continue and give the complete result.
             victims = [victim] if victim is not None else []
@@ -247,9 +247,9 @@ def _kill(
     """Kill the target; return whether it existed, and which worker it was."""
     if target == "worker":
         while process.poll() is None:
-            crew = workers()
-            if crew:
-                victim = crew[int(random.integers(len(crew)))]
+            workers = workers()
+            if workers:
+                victim = workers[int(random.integers(len(workers)))]
                 with suppress(psutil.NoSuchProcess):
                     victim.kill()
                     return True, victim

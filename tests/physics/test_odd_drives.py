@@ -190,7 +190,7 @@ def test_a_loop_over_sets_is_that_of_rigid_bodies(
         carrier = carrier or drive.gears[drive.meshes[mesh.name][1]].get("carrier")
         relative = speeds[first] - (speeds[carrier] if carrier else 0.0)
         ways[mesh.name] = 1 if relative > 0.0 else -1
-        if mesh.turned:
+        if mesh.named_backwards:
             ways[mesh.name] *= -1
     x, expected = drive.machine(ways).solve({driving: torque}, held | {output})
     most = max(expected.values())

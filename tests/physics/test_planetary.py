@@ -196,7 +196,9 @@ def test_natural_frequencies_are_those_of_lin_and_parker() -> None:
     for gear in ("p0", "p1", "p2"):
         moved = structure.coordinates.moved(gear)
         pin = structure.coordinates.moved("carrier")
-        pin = pin + np.outer(train.gears[gear].seat, structure.coordinates.turned(("carrier", 1.0)))
+        pin = pin + np.outer(
+            train.gears[gear].pin_motion, structure.coordinates.turned(("carrier", 1.0))
+        )
         whole = moved + pin
         inert += mass["p"] * (whole.T @ whole - moved.T @ moved)
     found = np.sqrt(np.maximum(eigh(stiffness, inert, eigvals_only=True), 0.0)) / (2.0 * math.pi)
@@ -272,7 +274,7 @@ def drawn(seed: int) -> tuple[ls.Case, Set, str, float, set[str]]:
     # The sun pushes the planets in the sense of its torque, or against that of the other driven
     # member.
     pressed = train.meshes["sun-p0"]
-    driven = train.gears["sun"].sense * (1 if not pressed.turned else -1)
+    driven = train.gears["sun"].sense * (1 if not pressed.named_backwards else -1)
     second = Set(
         sun,
         planet,

@@ -118,20 +118,22 @@ def test_an_altair_chart_keeps_its_rows_and_its_selection_beside_a_picture(pictu
         assert "<svg" in (figure | drawn).to_svg()
 
 
-@pytest.mark.parametrize("more", ["", "print(type(beside.begin('', None).exception()).__name__)"])
+@pytest.mark.parametrize(
+    "more", ["", "print(type(converter.begin('', None).exception()).__name__)"]
+)
 def test_what_is_interrupted_as_the_thread_of_pictures_starts_comes_to_its_end(more):
     # Ctrl-C arrives while the main thread waits for the new one to start. The pool does not have
     # that thread yet, and the interpreter would wait for it. Later drawings get another one.
     script = f"""
 import threading
-from loadshare.report import beside
+from loadshare.report import converter
 begun = threading.Thread.start
 def start(thread):
     begun(thread)
     raise KeyboardInterrupt
 threading.Thread.start = start
 try:
-    beside.begin("", None)
+    converter.begin("", None)
 except KeyboardInterrupt:
     threading.Thread.start = begun
     {more}

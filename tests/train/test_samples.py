@@ -181,7 +181,9 @@ def test_a_batch_after_another_is_what_it_would_be_alone(torque):
     for name in ARRAYS:
         one, other = (getattr(group.situations(2), name) for group in (after, alone))
         assert np.array_equal(one, other, equal_nan=True), name
-    turned = [[mesh.turned for mesh in g.train.meshes.values()] for g in (before, after, alone)]
+    turned = [
+        [mesh.named_backwards for mesh in g.train.meshes.values()] for g in (before, after, alone)
+    ]
     assert turned[1] == turned[2]
     assert (turned[0] == turned[1]) == (torque > 0.0)
 

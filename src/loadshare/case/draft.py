@@ -43,7 +43,7 @@ class Draft(Sections):
         """Problems of single elements."""
         return self._problems
 
-    def tell(self, path: Path, message: str, allowed: str = "", hint: str = "") -> None:
+    def add_problem(self, path: Path, message: str, allowed: str = "", hint: str = "") -> None:
         """Add a problem with a key.
 
         Raises
@@ -55,7 +55,7 @@ class Draft(Sections):
         if len(self._problems) >= ALLOWED.problems:
             raise CaseError([*self._problems, self.problem((), MORE, "", "")])
 
-    def once(self, name: str, find: Callable[[], Found]) -> Found:
+    def cached(self, name: str, find: Callable[[], Found]) -> Found:
         """Return a value that several checks need, computed once, after all elements were read."""
         if name not in self._known:
             self._known[name] = find()
@@ -64,7 +64,7 @@ class Draft(Sections):
 
     def centres(self) -> dict[str, Vector]:
         """Return the centres [m] of all gears for which they are given or can be derived."""
-        return self.once("centres", super().centres)
+        return self.cached("centres", super().centres)
 
     def names(self, section: str) -> list[str]:
         """Return the names of all elements of a section, the invalid ones as well."""
@@ -105,15 +105,15 @@ def read_draft(
         # With other gears, a name a-b may stand for another pair.
         before = None
     if data and not any(key in fields for key in data):
-        draft.tell((), "contains none of the sections of a case", choices(fields))
+        draft.add_problem((), "contains none of the sections of a case", choices(fields))
         return draft
     for key in data:
         if key not in fields:
-            draft.tell((key,), "unknown key", choices(fields), hint_at(key, None, fields))
+            draft.add_problem((key,), "unknown key", choices(fields), hint_at(key, None, fields))
     for name, about in fields.items():
         if about.is_required() and data.get(name, {}) == {}:
             missing = "is empty" if name in data else "is missing"
-            draft.tell((name,), missing, hint=description(Content, name))
+            draft.add_problem((name,), missing, hint=description(Content, name))
         elif name in data:
             _read_section(draft, name, about, before)
     return draft
@@ -187,10 +187,10 @@ def _read_section(
     model = next(elements_in(about.annotation), None)
     most = ALLOWED.elements if isinstance(value, Mapping) else ALLOWED.entries
     if isinstance(value, Mapping | list) and len(value) > most:
-        draft.tell((name,), f"has {len(value)} entries", f"at most {most}")
+        draft.add_problem((name,), f"has {len(value)} entries", f"at most {most}")
         return
     if model is not None and not isinstance(value, Mapping):
-        draft.tell((name,), "is not valid here", "a table")
+        draft.add_problem((name,), "is not valid here", "a table")
     elif model is None or get_origin(about.annotation) is not dict:
         element = _read(draft, (name,), value, model or about.rebuild_annotation())
         if element is not None:
@@ -204,7 +204,7 @@ def _read_section(
                 continue
             if not 0 < len(key) <= ALLOWED.name or not key.isprintable() or key != key.strip():
                 allowed = f"1 to {ALLOWED.name} printable characters, no space at either end"
-                draft.tell(path, "cannot be a name", allowed)
+                draft.add_problem(path, "cannot be a name", allowed)
             element = _read(draft, path, _with_ends(draft, path, item), model)
             if element is not None:
                 getattr(draft, name)[key] = element
@@ -216,7 +216,7 @@ def _read(draft: Draft, path: Path, value: Any, kind: Any) -> Any:
     except ValidationError as error:
         model = kind if isinstance(kind, type) and issubclass(kind, Element) else Content
         for found in translate(error, model):
-            draft.tell((*path, *found.path), found.message, found.allowed, found.hint)
+            draft.add_problem((*path, *found.path), found.message, found.allowed, found.hint)
     return None
 
 
@@ -228,7 +228,9 @@ def _with_ends(draft: Draft, path: Path, item: Any) -> Any:
     ends = ends_of(str(path[1]), draft.names("gears"))
     if ends is None:
         own = " and ".join(keys)
-        draft.tell(path, "the name does not give two gears", f"a name a-b, or {own} in the table")
+        draft.add_problem(
+            path, "the name does not give two gears", f"a name a-b, or {own} in the table"
+        )
         # The rest of the element is still worth reading.
         ends = ("", "")
     named = dict(zip(keys, ends if len(keys) == 2 else (ends,), strict=True))

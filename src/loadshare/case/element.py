@@ -63,7 +63,7 @@ class Element(BaseModel):
         protected_namespaces=(),
     )
 
-    WAYS: ClassVar[tuple[tuple[tuple[str, ...], ...], ...]] = ()
+    ALTERNATIVES: ClassVar[tuple[tuple[tuple[str, ...], ...], ...]] = ()
     """For each property that can be given in several ways, the keys of each way."""
 
     def rules(self) -> Iterator[Rule]:
@@ -165,7 +165,7 @@ def without_alternatives(model: type[Element], low: Any, high: Any) -> Any:
         Plain data of an element, and those that take precedence.
     """
     gone: set[str] = set()
-    for ways in model.WAYS:
+    for ways in model.ALTERNATIVES:
         if any(key in high for way in ways for key in way):
             gone.update(key for way in ways if not any(k in high for k in way) for key in way)
     return {key: value for key, value in low.items() if key not in gone}

@@ -73,7 +73,7 @@ class Shaft(Element):
     shear_modulus: Modulus = Quantity("79.3 GPa", 79.3e9)
     """Shear modulus, that of steel when left out [force/area]."""
 
-    WAYS = ((("stiffness",), ("diameter", "length", "bore", "shear_modulus")),)
+    ALTERNATIVES = ((("stiffness",), ("diameter", "length", "bore", "shear_modulus")),)
 
     clocking: Angle = Quantity("0 rad", 0.0)
     """Angle by which the second end lags the first when unloaded [angle]."""
@@ -149,7 +149,7 @@ class Spline(Element):
     radius: Radius | None = None
     """Radius at which the torque acts on the spline [length]: F_N = torque / radius."""
 
-    WAYS = ((("friction_force",), ("friction", "normal_force", "radius")),)
+    ALTERNATIVES = ((("friction_force",), ("friction", "normal_force", "radius")),)
 
     def rules(self) -> Iterator[Rule]:
         """Yield the broken rules on how the friction is given."""
@@ -235,7 +235,7 @@ class Ring(Element):
     measured: Literal["assembled", "nominal"] = "assembled"
     """Whether the clearance is that of the gears with their installation errors, or without."""
 
-    WAYS = ((("neighbours", "float", "clearance"), ("radius", "offset")),)
+    ALTERNATIVES = ((("neighbours", "float", "clearance"), ("radius", "offset")),)
 
     def rules(self) -> Iterator[Rule]:
         """Yield the broken rules on the two forms, drum and circle."""
@@ -324,7 +324,7 @@ class Bearing(Element):
     diameter: Radius | None = None
     """Mean diameter, with which its clearance changes as shaft and housing expand [length]."""
 
-    WAYS = (tuple((law,) for law in BEARING_LAWS),)
+    ALTERNATIVES = (tuple((law,) for law in BEARING_LAWS),)
 
     def rules(self) -> Iterator[Rule]:
         """Yield the broken rules on the laws."""

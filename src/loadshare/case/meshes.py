@@ -207,7 +207,7 @@ class Mesh(Element):
     normal_backlash: Distance | None = None
     """Backlash at right angles to the flanks, j_bn [length], in place of `backlash`."""
 
-    WAYS = (
+    ALTERNATIVES = (
         (("stiffness",), ("law", "rated_torque"), ("table",), ("law_file",), ("geometry",)),
         (("backlash",), ("normal_backlash",)),
     )

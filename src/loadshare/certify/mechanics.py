@@ -108,8 +108,8 @@ class Mechanics:
             pushing[e, driver] += normal
             pushing[e, driven] -= normal
             along = 1.0 if drive else -1.0
-            self.moment[driver, e] -= along * mesh.counted[0] * mesh.radii[0]
-            self.moment[driven, e] += along * mesh.counted[1] * mesh.radii[1]
+            self.moment[driver, e] -= along * mesh.senses[0] * mesh.radii[0]
+            self.moment[driven, e] += along * mesh.senses[1] * mesh.radii[1]
             for end, push in ((mesh.driver, -normal), (mesh.driven, normal)):
                 # A pin passes the flank's force on to the carrier, with its arm about the axis.
                 if (carrier := train.gears[end].carrier) is not None:

@@ -12,7 +12,7 @@ import typer
 from typer._click.exceptions import NoSuchOption, UsageError
 from typer.core import TyperCommand, TyperGroup
 
-from loadshare.cli.console import begin, tell_note, under_way
+from loadshare.cli.console import begin, print_note, under_way
 from loadshare.cli.exits import fail
 from loadshare.cli.files import ask_for, kept
 from loadshare.cli.forms import Output
@@ -63,7 +63,7 @@ class Command(TyperCommand):
             _add_json(ctx)
         hush(machine or bool(ctx.params.get("quiet")))
         for note in notes:
-            tell_note(note)
+            print_note(note)
         outputs = [
             (p.opts[-1], file)
             for p in self.params

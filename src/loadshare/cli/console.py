@@ -93,7 +93,7 @@ def say_all(lines: Iterable[str], *, whole: bool = False) -> None:
         say(line, whole=whole)
 
 
-def tell_note(note: str) -> None:
+def print_note(note: str) -> None:
     """Print a note on stderr."""
     if not is_hushed():
         echo(f"Note: {note}", err=True)

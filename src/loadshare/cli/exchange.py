@@ -11,7 +11,7 @@ import typer
 from loadshare.cli.cases import open_case
 from loadshare.cli.console import say
 from loadshare.cli.exits import REFUSED, fail, fail_of, reporting_problems, writing
-from loadshare.cli.files import keep_inputs, save_text, tell_written
+from loadshare.cli.files import keep_inputs, print_written, save_text
 from loadshare.cli.forms import check_case_file
 from loadshare.cli.options import CaseFile, Changes, Force, output
 from loadshare.input import real
@@ -52,9 +52,9 @@ def import_machine(
     try:
         imported.case(str(target))
     except CaseError as error:
-        tell_written(target, ". It is not a valid case yet:", err=True)
+        print_written(target, ". It is not a valid case yet:", err=True)
         fail_of(error.problems, ".")
-    tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")
+    print_written(target, f". Solve it with: loadshare run {quote(str(target))}")
 
 
 def export(
@@ -84,4 +84,4 @@ def export(
             fail([str(refusal)], REFUSED)
     with writing(to):
         write_whole(to, copy)
-    tell_written(to)
+    print_written(to)

@@ -21,7 +21,7 @@ def save_text(path: Path, text: str) -> None:
         write_whole(path, text)
 
 
-def tell_written(file: Path, more: str = "", *, err: bool = False) -> None:
+def print_written(file: Path, more: str = "", *, err: bool = False) -> None:
     """Report which file was written, and more; nothing if it was stdout."""
     if file == STANDARD:
         return

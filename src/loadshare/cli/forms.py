@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from loadshare.cli.exits import UNUSABLE, fail, writing
-from loadshare.cli.files import tell_written
+from loadshare.cli.files import print_written
 from loadshare.cli.options import OUTPUT
 from loadshare.cli.waiting import erase_line
 from loadshare.errors import LoadshareError
@@ -180,7 +180,7 @@ def write_all(wanted: Iterable[Output] | None, makers: Makers, *, err: bool = Tr
                 raise
             hint = "Install it with: pip install 'loadshare[spreadsheet]'."
             fail([f"{output.file}: a workbook needs openpyxl to be written. {hint}"], UNUSABLE)
-        tell_written(output.file, "" if err else ".", err=err)
+        print_written(output.file, "" if err else ".", err=err)
 
 
 def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:

@@ -10,7 +10,7 @@ import typer
 
 from loadshare.cli.completion import kind_names
 from loadshare.cli.exits import UNUSABLE, fail
-from loadshare.cli.files import save_text, tell_written
+from loadshare.cli.files import print_written, save_text
 from loadshare.cli.forms import check_case_file
 from loadshare.cli.options import Force, output
 from loadshare.cli.waiting import echo
@@ -55,7 +55,7 @@ def new(
     except CaseError as error:
         fail(map(str, error.problems), UNUSABLE)
     save_text(target, text)
-    tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")
+    print_written(target, f". Solve it with: loadshare run {quote(str(target))}")
 
 
 def schema(
@@ -71,4 +71,4 @@ def schema(
         echo(text)
         return
     save_text(file, text + "\n")
-    tell_written(file, err=True)
+    print_written(file, err=True)

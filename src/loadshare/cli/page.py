@@ -14,7 +14,7 @@ from loadshare.cli.console import progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail
 from loadshare.cli.forms import Output, outputs, write_all
 from loadshare.cli.options import CasePaths, Changes
-from loadshare.report import beside
+from loadshare.report import converter
 
 if TYPE_CHECKING:
     from loadshare.report.page import Chapter
@@ -50,7 +50,7 @@ def report(
     named = dict(_named(text) for text in study or ())
     changes = read_changes(change or ())
     found = find_cases(cases)
-    beside.start()
+    converter.start()
     from loadshare.report.page import chapter_of_file, report_page
     from loadshare.report.page.chapter import CERTIFIED
     from loadshare.report.page.chapter import UNUSABLE as NOT_USABLE

@@ -11,7 +11,7 @@ import typer
 from loadshare.cli.cases import open_case
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, reporting_problems, writing
-from loadshare.cli.files import tell_written
+from loadshare.cli.files import print_written
 from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
 from loadshare.cli.refusal import refusal_lines, refused_document
@@ -178,7 +178,7 @@ def _write(
         if output.form == FOLDER:
             with writing(output.file):
                 write_tables(output.file, made())
-            tell_written(output.file, err=True)
+            print_written(output.file, err=True)
     frame = tables_of("run", result.to_frame)
     drawn = figure_of(lambda: getattr(result.plot, picture)())
     makers = {**frame, **drawn, "json": result.to_json, "nc": lambda: netcdf_content(result)}

@@ -332,7 +332,7 @@ def _cone_tangent(
     size = piece.force + piece.stiffness * (radius - begin)
     tangent = piece.stiffness * (along[:, None] * along)
     # Beyond the piece the true tangent across the radius is too soft for Newton's method to return.
-    near = max(min(radius, begin + piece.length), CONTACT.least_offset)
+    near = min(radius, begin + piece.length) or CONTACT.least_offset
     tangent = tangent + max(size, 0.0) / near * (_BOTH - along[:, None] * along)
     return tangent, size * along, _NONE, np.zeros(0)
 

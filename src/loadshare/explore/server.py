@@ -22,7 +22,6 @@ from starlette.routing import Route
 from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.explore.answer import answer_of, case_of, invalid, whole_of
-from loadshare.explore.crew import Crew
 from loadshare.explore.files import case_file
 from loadshare.explore.guard import Guard
 from loadshare.explore.inputs import Inputs
@@ -30,6 +29,7 @@ from loadshare.explore.questions import along, finite, place, slopes
 from loadshare.explore.request import RequestError, body_of, setting, text
 from loadshare.explore.samples import Growing, SampleRange, samples, scatter, start_study
 from loadshare.explore.studies import criticals, rates, trace
+from loadshare.explore.workers import Workers
 
 log = logging.getLogger("loadshare")
 
@@ -74,7 +74,7 @@ class Explorer:
         self.inputs, self.file = Inputs(case), file
         # One after another: each answer is ready sooner than if they ran at the same time.
         self.solver = ThreadPoolExecutor(1, "solver")
-        self.crew = Crew(max(1, (os.cpu_count() or 2) - 1))
+        self.workers = Workers(max(1, (os.cpu_count() or 2) - 1))
         self.studies: Mapping[str, Callable[[Request, Body], Parts]] = {
             "critical": self.critical,
             "sweep": self.sweep,
@@ -135,7 +135,7 @@ class Explorer:
         question = await self.solved(partial(along, self.inputs, body))
         stretches = question.stretches(finite(body, "at", question.low))
         for done, stretch in enumerate(stretches, start=1):
-            found = await self.crew.done(request, criticals, stretch)
+            found = await self.workers.done(request, criticals, stretch)
             if "events" not in found:
                 gap = [stretch.low, stretch.high, " ".join(found["messages"])]
                 found = {"events": [], "gaps": [gap], "confirmed": True}
@@ -144,21 +144,21 @@ class Explorer:
     async def sweep(self, request: Request, body: Body) -> Parts:
         """Yield Ω and the places of floats along an input."""
         question = await self.solved(partial(along, self.inputs, body))
-        yield await self.crew.done(request, trace, question)
+        yield await self.workers.done(request, trace, question)
 
     async def slopes(self, request: Request, body: Body) -> Parts:
         """Yield how Ω changes with inputs."""
         question = await self.solved(partial(slopes, self.inputs, body))
         done = 0
         for batch in question.batches():
-            found = await self.crew.done(request, rates, batch)
+            found = await self.workers.done(request, rates, batch)
             done += len(batch.keys)
             yield found | {"done": done, "of": len(question.keys)}
 
     async def tolerance(self, request: Request, body: Body) -> Parts:
         """Yield what a tolerance study is, then its statistics after every part."""
         question = await self.solved(partial(scatter, self.inputs, body))
-        study = await self.crew.done(request, start_study, question)
+        study = await self.workers.done(request, start_study, question)
         if "job" not in study:
             yield study
             return
@@ -166,7 +166,7 @@ class Explorer:
         growing = Growing(study)
         while growing.done < study["samples"]:
             part = SampleRange(study["job"], growing.done, study["rows"])
-            found = await self.crew.done(request, samples, part)
+            found = await self.workers.done(request, samples, part)
             growing.take(found)
             yield await asyncio.to_thread(growing.statistics)
 
@@ -228,7 +228,7 @@ def application(case: Case, hosts: Iterable[str], file: Path | None = None) -> G
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
         yield
-        explorer.crew.end()
+        explorer.workers.end()
         explorer.solver.shutdown(wait=False, cancel_futures=True)
 
     got = {"/": explorer.index, "/case": explorer.case, "/page/{name}": explorer.asset}

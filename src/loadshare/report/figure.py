@@ -15,7 +15,7 @@ from loadshare.arguments import one_of
 from loadshare.equality import Comparable
 from loadshare.errors import LoadshareError
 from loadshare.output import write_whole
-from loadshare.report import beside
+from loadshare.report import converter
 from loadshare.report.palette import FAINT, INK, SOFT
 from loadshare.report.vega_lite import (
     OWN_LEGENDS,
@@ -228,7 +228,7 @@ class Figure(Comparable):
             return json.dumps(self.spec, indent=1, ensure_ascii=False) + "\n"
         # Every picture is drawn once, as SVG, from which PNG and PDF are converted.
         settings = {"scale": scale} if form == "png" else {}
-        return bytes(beside.begin(f"svg_to_{form}", self.to_svg(), **settings).result())
+        return bytes(converter.begin(f"svg_to_{form}", self.to_svg(), **settings).result())
 
     def to_svg(self, prefix: str = "") -> str:
         """Return the picture as SVG text, the same text for the same picture.
@@ -252,7 +252,7 @@ class Figure(Comparable):
 
     @cached_property
     def _as_svg(self) -> Future[str]:
-        return beside.begin("vegalite_to_svg", self.spec, vl_version=version())
+        return converter.begin("vegalite_to_svg", self.spec, vl_version=version())
 
     def _repr_mimebundle_(self, *_: object, **__: object) -> dict[str, Any]:
         """Show the picture in a notebook, which draws SVG without any extension."""

@@ -20,24 +20,26 @@ class Flank(NamedTuple):
         Whether it is the drive flank of the train's mesh, not the coast flank.
     force : float
         Force along its own line of action [N].
-    turned : bool
+    named_backwards : bool
         Whether the train's mesh has its gears in the reverse order of its name.
     """
 
     mesh: str
     drive: bool
     force: float
-    turned: bool = False
+    named_backwards: bool = False
 
     @property
     def side(self) -> str:
         """Which flank it is, in words."""
-        return "drive flank" if self.drive != self.turned else "coast flank"
+        return "drive flank" if self.drive != self.named_backwards else "coast flank"
 
     @property
     def where(self) -> str:
         """Its mesh, and the flank unless it is the drive flank."""
-        return f"mesh {self.mesh}" + ("" if self.drive != self.turned else f", {self.side}")
+        return f"mesh {self.mesh}" + (
+            "" if self.drive != self.named_backwards else f", {self.side}"
+        )
 
 
 def least_force(position: Position) -> float:
@@ -62,4 +64,4 @@ def carrying(position: Position) -> Iterator[Flank]:
         for drive in mesh.flanks:
             force = forces[mesh.flank_name(drive)]
             if force > least:
-                yield Flank(name, drive, force, mesh.turned)
+                yield Flank(name, drive, force, mesh.named_backwards)

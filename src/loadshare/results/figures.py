@@ -212,7 +212,7 @@ class Figures:
         for m, mesh in enumerate(self.train.meshes.values()):
             turning = self.train.approaches[mesh.flank_name(True)].turning
             for gear, arm in turning.items():
-                arms[self.train.order[gear], m] = -arm if mesh.turned else arm
+                arms[self.train.order[gear], m] = -arm if mesh.named_backwards else arm
         return np.asarray((self.answers.rotation[:, :, None] * arms).sum(axis=1))
 
     @cached_property

@@ -299,7 +299,7 @@ class Structure:
             moved = at.moved(name)
             if gear.carrier is not None:
                 moved = moved + at.moved(gear.carrier)
-                moved += np.outer(gear.seat, at.turned((gear.carrier, 1.0)))
+                moved += np.outer(gear.pin_motion, at.turned((gear.carrier, 1.0)))
             found.append(moved)
         return np.concatenate(found)
 
@@ -330,7 +330,7 @@ class Structure:
         """Quantities that engines keep for active sets."""
         return {}
 
-    def kept(self, key: tuple[Any, ...], make: Callable[[], Any]) -> Any:
+    def cached(self, key: tuple[Any, ...], make: Callable[[], Any]) -> Any:
         """Return a quantity that an engine needs for an active set, computed on first use."""
         found = self.cache.get(key)
         if found is None:

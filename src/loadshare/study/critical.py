@@ -199,7 +199,10 @@ def critical(
         search = ChangeSearch(here, group[0], low, high)
         search.run()
         found = [e for change in search.changes for e in events_of(here, group[0], change)]
-        if any(here.first.meshes[n].turned != m.turned for n, m in here.last.meshes.items()):
+        if any(
+            here.first.meshes[n].named_backwards != m.named_backwards
+            for n, m in here.last.meshes.items()
+        ):
             found += [e for gap in search.gaps for e in flanks_changed(here, group[0], gap)]
         for position in group:
             events += [replace(event, position=position) for event in found]

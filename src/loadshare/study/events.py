@@ -162,7 +162,9 @@ def flanks_changed(line: Line, position: int, gap: Gap) -> list[Event]:
         if all(state != at.OPEN for state in states)
     }
     before, after = (line.train(point.value).meshes for point in (first, last))
-    changed = sorted(n for n in carrying & before.keys() if before[n].turned != after[n].turned)
+    changed = sorted(
+        n for n in carrying & before.keys() if before[n].named_backwards != after[n].named_backwards
+    )
     value = 0.0 if first.value <= 0.0 <= last.value else last.value
     event = _events(line, position, change_between(first, last, value), len(changed))
     found = []

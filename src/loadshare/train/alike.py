@@ -55,7 +55,8 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
         found = pressed_flanks(case, base[1].gears, base[1].period)
         pairs = base[1].pairs.items()
         if any(
-            [bool(f) for f in found[n]] != [pair.turned, pair.flank_uncertain] for n, pair in pairs
+            [bool(f) for f in found[n]] != [pair.named_backwards, pair.flank_uncertain]
+            for n, pair in pairs
         ):
             return None
     changed = {path[:2] for path, _, _ in differences}

@@ -200,7 +200,7 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
     else:
         backlash = pair.backlash
     radii = pair.driver.base_radius, pair.driven.base_radius
-    r = radii[1] if pair.turned else radii[0]
+    r = radii[1] if pair.named_backwards else radii[0]
     law = mesh.power_law
     # A gap of the law belongs to the teeth, thus to both flanks; any other is the drive flank's.
     of_teeth = (0.0,) if law is None else tuple(r * a.si for a in _each(law.a))
@@ -217,13 +217,13 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
         laws=_laws(mesh, r),
         gaps=of_teeth if mesh.gap is None else tuple(r * g.si for g in _each(mesh.gap)),
         backlash=backlash,
-        turned=pair.turned,
+        named_backwards=pair.named_backwards,
         flank_uncertain=pair.flank_uncertain,
         phase=phase,
-        counted=pair.counted,
+        senses=pair.senses,
         coast_phase=coast_phase,
         coast_gaps=of_teeth,
-        means=law is not None and law.sampling == "means",
+        averaged=law is not None and law.sampling == "means",
     )
 
 

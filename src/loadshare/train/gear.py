@@ -82,7 +82,7 @@ class Gear:
         Whether the housing keeps it from turning; the output is held by the load instead.
     carrier : str or None
         Carrier on whose pin it rides.
-    seat : ndarray, shape (3,)
+    pin_motion : ndarray, shape (3,)
         How far its pin moves per rotation of the carrier [m].
     frame_of : str or None
         Carrier in whose frame it is described: that of the planets with which it meshes, its own,
@@ -110,7 +110,7 @@ class Gear:
     relative: float = 1.0
     held: bool = False
     carrier: str | None = None
-    seat: Vector = field(default_factory=lambda: ORIGIN)
+    pin_motion: Vector = field(default_factory=lambda: ORIGIN)
     frame_of: str | None = None
     rim_of: str | None = None
     harmonic: int = 0

@@ -37,7 +37,7 @@ class Pair:
     driver, driven : Gear
     normals : (ndarray, ndarray)
         n and n'.
-    turned : bool
+    named_backwards : bool
         See `Mesh`.
     line : LineOfAction
     phases : (float, float)
@@ -45,7 +45,7 @@ class Pair:
         they follow from the teeth [-].
     backlash : float
         Along the line of action, if the case derives it from the teeth [m].
-    counted : (int, int)
+    senses : (int, int)
         See `Mesh`.
     flank_uncertain : bool
         See `Mesh`.
@@ -54,11 +54,11 @@ class Pair:
     driver: Gear
     driven: Gear
     normals: tuple[Vector, Vector]
-    turned: bool
+    named_backwards: bool
     line: LineOfAction
     phases: tuple[float, float] = (0.0, 0.0)
     backlash: float = math.inf
-    counted: tuple[int, int] = (1, 1)
+    senses: tuple[int, int] = (1, 1)
     flank_uncertain: bool = False
 
 
@@ -198,20 +198,20 @@ def _pairs(case: spec.Case, gears: Mapping[str, Gear], period: Period | None) ->
         if line is None:
             raise ValueError(f"no line of action: {name}")
         driver, driven = gears[mesh.driver], gears[mesh.driven]
-        turned, flank_uncertain = (bool(flag) for flag in every[name])
-        contact, counted = running_contact(gears, mesh.driver, mesh.driven)
-        if turned:
+        named_backwards, flank_uncertain = (bool(flag) for flag in every[name])
+        contact, senses = running_contact(gears, mesh.driver, mesh.driven)
+        if named_backwards:
             # The other flank of the same two gears, whichever senses they are counted in.
             driver, driven = driven, driver
-            contact, counted = running_contact(gears, mesh.driven, mesh.driver, counted[1])
+            contact, senses = running_contact(gears, mesh.driven, mesh.driver, senses[1])
         normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
         pair = Pair(
             driver,
             driven,
             (normals[0], normals[1]),
-            turned,
+            named_backwards,
             line,
-            counted=counted,
+            senses=senses,
             flank_uncertain=flank_uncertain,
         )
         if mesh.backlash == "teeth":

@@ -138,7 +138,7 @@ def _as_shafts_turn(
     """Return the gears with one sense for all that share a shaft, reversed on opposed axes.
 
     In a loop over several sets the walk may come back with the opposite sense. Rotations may be
-    counted in either sense: meshes keep account of it (see `Mesh.counted`), so that shafts need
+    counted in either sense: meshes keep account of it (see `Mesh.senses`), so that shafts need
     not.
     """
     found = dict(gears)

@@ -35,7 +35,7 @@ def in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
             p.driver,
             p.driven,
             _halves(case, p, pairs),
-            p.counted,
+            p.senses,
             _twists(case, p.driver, p.driven),
         )
         for name, p in pairs.items()

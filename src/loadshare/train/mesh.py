@@ -65,7 +65,7 @@ class Mesh:
         Unloaded gap of the drive flank along the line of action [m], one or one per position.
     backlash : float
         Along the line of action [m]; infinite if the coast flank cannot touch.
-    turned : bool
+    named_backwards : bool
         Whether the case names the driven gear first. Only in a mesh with a single flank: the torque
         runs against the order of its name and presses that flank.
     flank_uncertain : bool
@@ -76,10 +76,10 @@ class Mesh:
         The same for the coast flank.
     coast_gaps : tuple of float
         Gap of the coast flank in excess of the backlash [m], one or one per position.
-    means : bool
+    averaged : bool
         Whether laws and gaps are means over the part of the cycle around their position, or hold
         from their position on.
-    counted : (int, int)
+    senses : (int, int)
         For driver and driven gear, 1 if their rotation is counted in the sense in which the drive
         flank moves with the driver and pushes the driven gear, −1 if against it: rotations of suns
         and rings are counted as they turn in the housing, while meshes follow how these turn on the
@@ -95,22 +95,22 @@ class Mesh:
     laws: tuple[Law, ...]
     gaps: tuple[float, ...]
     backlash: float
-    turned: bool = False
+    named_backwards: bool = False
     flank_uncertain: bool = False
     phase: float = 0.0
-    counted: tuple[int, int] = (1, 1)
+    senses: tuple[int, int] = (1, 1)
     coast_phase: float = 0.0
     coast_gaps: tuple[float, ...] = (0.0,)
-    means: bool = False
+    averaged: bool = False
 
     @property
     def first_radius(self) -> float:
         """Base radius [m] of the gear that the name puts first, on which torques are given."""
-        return self.radii[1] if self.turned else self.radii[0]
+        return self.radii[1] if self.named_backwards else self.radii[0]
 
     def is_drive(self, drive: bool) -> bool:
         """Return whether a flank is the one with which the gear named first drives."""
-        return drive != self.turned
+        return drive != self.named_backwards
 
     def lever(self, drive: bool) -> float:
         """Return the torque per flank force [m] on the gear named first, positive if it drives."""
@@ -159,13 +159,13 @@ class Mesh:
             Positions of a mesh cycle.
         """
         # A position just reached must not be missed by round-off.
-        reached = np.floor(passed + (0.5 if self.means else 0.0) + 1e-9)
+        reached = np.floor(passed + (0.5 if self.averaged else 0.0) + 1e-9)
         # If the gear named second drives, contact passes through the positions backwards.
-        return (-reached if drive == self.turned else reached) % count
+        return (-reached if drive == self.named_backwards else reached) % count
 
     def direction(self, drive: bool) -> tuple[float, float, Vector]:
         """Return the coefficients of φ_driver [m], φ_driven [m], relative offset (3,) in δ."""
-        driver, driven = (s * r for s, r in zip(self.counted, self.radii, strict=True))
+        driver, driven = (s * r for s, r in zip(self.senses, self.radii, strict=True))
         if drive:
             return driver, -driven, self.drive_normal
         return -driver, driven, self.coast_normal
@@ -181,7 +181,7 @@ class Approach:
         Approach per rotation [m].
     shifting : mapping of str to ndarray, shape (3,)
         Approach per displacement or centre offset. A planet's displacement is counted from its pin,
-        which moves with the carrier by p_c + φ_c times `Gear.seat` (formulation, section 12).
+        which moves with the carrier by p_c + φ_c times `Gear.pin_motion` (formulation, section 12).
     """
 
     turning: Mapping[str, float]
@@ -200,7 +200,7 @@ def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
     for end, push in ((mesh.driver, normal), (mesh.driven, -normal)):
         carrier = gears[end].carrier
         if carrier is not None:
-            turning[carrier] = turning.get(carrier, 0.0) + float(push @ gears[end].seat)
+            turning[carrier] = turning.get(carrier, 0.0) + float(push @ gears[end].pin_motion)
             shifting[carrier] = shifting.get(carrier, 0.0) + push
         other = gears[mesh.driven if end == mesh.driver else mesh.driver]
         shifting |= bent(end, other, push, gears)
@@ -210,7 +210,7 @@ def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
 def running_contact(
     gears: Mapping[str, Gear], driver: str, driven: str, way: int | None = None
 ) -> tuple[Contact, tuple[int, int]]:
-    """Return the contact of two gears as they run, seen from their carrier, and `Mesh.counted`.
+    """Return the contact of two gears as they run, seen from their carrier, and `Mesh.senses`.
 
     Parameters
     ----------

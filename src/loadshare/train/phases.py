@@ -43,7 +43,7 @@ class Meeting:
     driver, driven : Gear
     halves : (float, float)
         Half the angle of a tooth of each at the pitch circle [rad].
-    counted : (int, int)
+    senses : (int, int)
         See `Mesh`: the phase counts in the sense in which the drive flank moves.
     twists : (float, float)
         Angle about its axis by which a tooth of each is further on in the middle of the common face
@@ -53,7 +53,7 @@ class Meeting:
     driver: Gear
     driven: Gear
     halves: tuple[float, float]
-    counted: tuple[int, int] = (1, 1)
+    senses: tuple[int, int] = (1, 1)
     twists: tuple[float, float] = (0.0, 0.0)
 
     @property
@@ -78,8 +78,8 @@ class Meeting:
     def _counted(self, gear: str) -> tuple[Gear, int]:
         """Return one of the two gears, and the sense in which its angles count in the phase."""
         if gear == self.driver.name:
-            return self.driver, self.counted[0] * self.driver.sense
-        return self.driven, self.counted[1] * self.driven.sense
+            return self.driver, self.senses[0] * self.driver.sense
+        return self.driven, self.senses[1] * self.driven.sense
 
     def _towards(self, gear: str) -> float:
         """Return the direction of the pitch point from a gear's centre [rad], in its frame."""

@@ -71,7 +71,7 @@ def _gear(gear: Gear, gears: Mapping[str, Gear], angle: float) -> Gear:
         gear,
         seen_at=angle,
         centre=hub + turned_about(gear, gear.centre - hub, angle),
-        seat=turned_about(gear, gear.seat, angle),
+        pin_motion=turned_about(gear, gear.pin_motion, angle),
     )
     same = not gear.is_tilted
     frame = placed.plane if same else turned_about(gear, gear.frame, angle)

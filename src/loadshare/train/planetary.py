@@ -71,7 +71,9 @@ def members(
     radii = [gear.base_radius for gear in gears.values() if gear.kind != "carrier"]
     for name, gear in found.items():
         if gear.kind == "carrier":
-            pins = [float(np.linalg.norm(g.seat)) for g in found.values() if g.carrier == name]
+            pins = [
+                float(np.linalg.norm(g.pin_motion)) for g in found.values() if g.carrier == name
+            ]
             found[name] = replace(gear, base_radius=max(pins or radii))
     return found, determined
 
@@ -80,7 +82,7 @@ def _on_pin(planet: Gear, gears: Mapping[str, Gear]) -> Gear:
     """Return a planet with the displacement of its pin per rotation of its carrier."""
     carrier = gears[planet.carrier or ""]
     arm = transverse(planet.centre - carrier.centre, carrier.axis)
-    return replace(planet, seat=carrier.sense * cross(carrier.axis, arm))
+    return replace(planet, pin_motion=carrier.sense * cross(carrier.axis, arm))
 
 
 def _frames(gears: Mapping[str, Gear], meshes: Mapping[str, tuple[str, str]]) -> dict[str, str]:

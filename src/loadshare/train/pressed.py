@@ -38,13 +38,13 @@ class Pressed(NamedTuple):
 
     Attributes
     ----------
-    turned : ndarray of bool
+    named_backwards : ndarray of bool
         Whether the one flank of the mesh is the opposite of the one that its name implies.
     flank_uncertain : ndarray of bool
         Whether it may be the other flank, depending on how stiffness shares the loads.
     """
 
-    turned: Flags
+    named_backwards: Flags
     flank_uncertain: Flags
 
 
@@ -95,9 +95,9 @@ def pressed_flanks(
             hint = "The backlash determines when the other flank of the mesh carries load."
             problems.append(case.problem(("meshes", name, "backlash"), message, "a length", hint))
         # If the load presses neither flank, the name decides here too.
-        turned = np.where(coast | drive, coast, against) & (name in names)
+        named_backwards = np.where(coast | drive, coast, against) & (name in names)
         flank_uncertain = either.any(axis=0) | (name in pushed)
-        found[name] = Pressed(turned, np.asarray(flank_uncertain & (name in names)))
+        found[name] = Pressed(named_backwards, np.asarray(flank_uncertain & (name in names)))
     if problems:
         raise CaseError(problems)
     return found

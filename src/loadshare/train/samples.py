@@ -178,7 +178,7 @@ def _pressed_alike(
     if loads and count > 1:
         found = pressed_flanks(_with(case, loads), geometry.gears, geometry.period)
         for name, pair in geometry.pairs.items():
-            alike &= found[name].turned == pair.turned
+            alike &= found[name].named_backwards == pair.named_backwards
             alike &= found[name].flank_uncertain == pair.flank_uncertain
     return alike
 

@@ -54,7 +54,7 @@ def _gear(gear: Gear) -> tuple[Any, ...]:
     kept = (gear.name, gear.kind, gear.base_radius, gear.sense, gear.teeth, gear.ratio)
     seen = (gear.relative, gear.held, gear.carrier, gear.frame_of, gear.seen_at)
     rim = (gear.rim_of, gear.harmonic)
-    places = (gear.centre, gear.axis, gear.frame, gear.seat)
+    places = (gear.centre, gear.axis, gear.frame, gear.pin_motion)
     return (*kept, *seen, *rim, *map(_bytes, places), _pattern(gear.support))
 
 
@@ -65,11 +65,11 @@ def _mesh(mesh: Mesh) -> tuple[Any, ...]:
         mesh.driver,
         mesh.driven,
         mesh.radii,
-        mesh.turned,
+        mesh.named_backwards,
         mesh.flank_uncertain,
-        mesh.counted,
+        mesh.senses,
     )
-    places = (mesh.phase, mesh.coast_phase, mesh.means, len(mesh.gaps), len(mesh.coast_gaps))
+    places = (mesh.phase, mesh.coast_phase, mesh.averaged, len(mesh.gaps), len(mesh.coast_gaps))
     flanks = (_bytes(mesh.drive_normal), _bytes(mesh.coast_normal), math.isinf(mesh.backlash))
     laws = tuple(
         (law.b > 0.0, law.c > 0.0) if isinstance(law, PowerLaw) else law for law in mesh.laws

@@ -296,7 +296,7 @@ class Train:
         for mesh in self.meshes.values():
             for drive in mesh.flanks:
                 name, phase = mesh.flank_name(drive), mesh.phase if drive else mesh.coast_phase
-                key = together or mesh.name, phase, mesh.means, drive == mesh.turned
+                key = together or mesh.name, phase, mesh.averaged, drive == mesh.named_backwards
                 if key not in known:
                     passed = self._passed(mesh, index - 1, rotation)
                     known[key] = mesh.position(drive, (passed + phase) * count, count)

@@ -6,7 +6,7 @@ rest, and shafts join equal speeds:
 
 .. math:: \pm r_i (\omega_i - \omega_c) = \pm r_j (\omega_j - \omega_c), \qquad \omega_a = \omega_b,
 
-each along the sense in which the member's rotation is counted, with the signs of `Mesh.counted`.
+each along the sense in which the member's rotation is counted, with the signs of `Mesh.senses`.
 Written as :math:`C \omega = 0`, the forces and torques f that links transmit balance the load by
 the transpose, :math:`C^T f = T`. Source: formulation, section 12.
 """
@@ -61,8 +61,8 @@ class SpeedLinks:
         rows = []
         for driver, driven in meshes.values():
             row = np.zeros(len(order))
-            _, counted = running_contact(gears, driver, driven)
-            for name, sign in ((driver, counted[0]), (driven, -counted[1])):
+            _, senses = running_contact(gears, driver, driven)
+            for name, sign in ((driver, senses[0]), (driven, -senses[1])):
                 row[order[name]] += sign * gears[name].base_radius
             carrier = seen_from(gears, driver, driven)
             if carrier is not None:

@@ -104,11 +104,11 @@ def test_the_commands_of_the_documentation(tmp_path):
     start = [sys.executable, "-c", "from loadshare.cli.main import main; main()", *study[1:-2]]
     command = [*start, "--samples", "64", "--no-worst", "--with", "study.errors.indices=0", "-o"]
     study_in = {"env": environment(), "cwd": ROOT, "capture_output": True, "text": True}
-    crew = []
+    workers = []
     try:
         for words in (scheduler, worker):
             with (tmp_path / f"{words[1]}.txt").open("wb") as log:
-                crew.append(
+                workers.append(
                     subprocess.Popen(
                         [sys.executable, "-m", *words],
                         env=environment(),
@@ -121,11 +121,11 @@ def test_the_commands_of_the_documentation(tmp_path):
         await_workers(f"tcp://127.0.0.1:{port}", 2)
         done = subprocess.run([*command, str(tmp_path / "study")], check=False, **study_in)
         assert done.returncode == 0, done.stderr
-        crew[0].kill()
-        crew[0].wait()
+        workers[0].kill()
+        workers[0].wait()
         gone = subprocess.run([*command, str(tmp_path / "other")], check=False, **study_in)
     finally:
-        for process in reversed(crew):
+        for process in reversed(workers):
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()

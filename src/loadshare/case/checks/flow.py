@@ -144,10 +144,10 @@ def _known(draft: Draft) -> bool:
 
 def _steps(draft: Draft) -> Steps:
     """Return the torque's steps from the input on, along the names of the meshes or against."""
-    taken = draft.once("steps", lambda: steps(draft))
+    taken = draft.cached("steps", lambda: steps(draft))
     return backwards(taken) if _turned(draft) else taken
 
 
 def _turned(draft: Draft) -> bool:
     """Return whether the input is where the meshes' names put the output."""
-    return draft.once("turned", lambda: from_the_other_end(draft))
+    return draft.cached("turned", lambda: from_the_other_end(draft))

@@ -153,7 +153,7 @@ class Columns:
                     part[k, :, at : at + 2] += gears[body].frame.T
             turn = self.turns[carrier] if carrier is not None else None
             if turn is not None and turn.coordinate is not None:
-                part[k, :, turn.coordinate] += gears[name].seat / turn.radius
+                part[k, :, turn.coordinate] += gears[name].pin_motion / turn.radius
         return part.reshape(-1, len(self.coordinates))
 
     @cached_property

@@ -11,9 +11,9 @@ import typer
 
 from loadshare.cli.cases import open_case
 from loadshare.cli.completion import study_names
-from loadshare.cli.console import Tick, progress, stand, tell_note
+from loadshare.cli.console import Tick, print_note, progress, stand
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
-from loadshare.cli.files import tell_written
+from loadshare.cli.files import print_written
 from loadshare.cli.forms import FIGURES, FOLDER, TABLES, Output, outputs, write_all
 from loadshare.cli.options import (
     OVER,
@@ -88,7 +88,7 @@ def conclude(kind: str, found: Any, files: list[Output] | None) -> None:
     KINDS[kind].show(found)
     for output in files or ():
         if output.form == FOLDER:
-            tell_written(output.file, err=True)
+            print_written(output.file, err=True)
     write_all([o for o in files or () if o.form != FOLDER], KINDS[kind].makers(found))
     if lines := found._left_open():
         fail(lines, REFUSED)
@@ -167,7 +167,7 @@ def _range(
         return list(keys), *ends
     if not key or start is None or stop is None:
         raise typer.BadParameter(f"is missing: {FORM}", param_hint=OVER)
-    tell_note(f"KEY --from FROM --to TO is now {OVER} KEY=FROM:TO.")
+    print_note(f"KEY --from FROM --to TO is now {OVER} KEY=FROM:TO.")
     return key, start, stop
 
 

@@ -21,7 +21,7 @@ SIZE = 10
 """Size of the letters [px]."""
 BROAD = 0.56
 """Mean width of a letter over its height."""
-WAYS = np.array([(math.cos(k * math.pi / 8), math.sin(k * math.pi / 8)) for k in range(16)])
+DIRECTIONS = np.array([(math.cos(k * math.pi / 8), math.sin(k * math.pi / 8)) for k in range(16)])
 """Directions that are tried around a point."""
 FURTHER = np.array([1.0, 2.5, 4.0])
 """Gaps that are tried, over the one wanted; beyond the first, a line joins label and point."""
@@ -108,7 +108,7 @@ class Labels:
             nearest = np.clip(anchor, boxes[..., 0, :], boxes[..., 1, :])
             cost = self._cost(boxes)
             cost += 30.0 * self._misread(boxes, anchor, nearest, others, gap)
-            cost += 1.5 * (1.0 - WAYS @ towards) + 0.5 * order + FURTHER[:, None]
+            cost += 1.5 * (1.0 - DIRECTIONS @ towards) + 0.5 * order + FURTHER[:, None]
             away, way = np.unravel_index(np.argmin(cost), cost.shape)
             if best is None or cost[away, way] < best[0]:
                 leader = [tuple(map(float, p)) for p in (anchor, nearest[away, way])]
@@ -136,8 +136,8 @@ class Labels:
     def _around(self, anchor: Vector, half: Vector, gap: float) -> Vector:
         """Return boxes around a point: corners (further, ways, 2, 2), with half the size `half`."""
         # The side of a box faces the point or, in oblique directions, its corner does.
-        aside = half * np.clip(1.5 * WAYS, -1.0, 1.0)
-        middle = anchor + FURTHER[:, None, None] * gap / self.pixels * WAYS + aside
+        aside = half * np.clip(1.5 * DIRECTIONS, -1.0, 1.0)
+        middle = anchor + FURTHER[:, None, None] * gap / self.pixels * DIRECTIONS + aside
         return np.stack([middle - half, middle + half], axis=-2)
 
     def _cost(self, boxes: Vector) -> Vector:

@@ -68,7 +68,7 @@ def _working(result: Result, train: Train) -> Iterator[Row]:
         flanks = list(carrying(p))
         idle = train.meshes.keys() - {flank.mesh for flank in flanks}
         ends = [
-            Flank(name, True, 0.0, mesh.turned)
+            Flank(name, True, 0.0, mesh.named_backwards)
             for name, mesh in train.meshes.items()
             if name in idle
         ]

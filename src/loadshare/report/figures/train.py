@@ -93,7 +93,7 @@ def _train_of(case: Sections) -> Train | None:
 
 
 def _pushes_text(first: Position | None, train: Train | None) -> str:
-    turned = train is not None and any(mesh.turned for mesh in train.meshes.values())
+    turned = train is not None and any(mesh.named_backwards for mesh in train.meshes.values())
     which = "drive flanks (without backlash: loaded flanks)" if turned else "drive flanks"
     which = which if first is None else "flanks that carry"
     where = f" at position {first.position}" if first and first.train.count > 1 else ""

@@ -29,7 +29,7 @@ def equilibria(
     With `compiled`, for many samples, products skip zeros; the result is the same up to round-off.
     """
     names = Names(structure.train)
-    to: _Map = structure.kept(("map",), partial(_map, structure, names))
+    to: _Map = structure.cached(("map",), partial(_map, structure, names))
     force, tables = iterate.force, (*[iterate.x] * 2, *[iterate.force] * 3)
     if compiled:
         from loadshare.solver.hot.products import products

@@ -145,7 +145,7 @@ class _Batch(NamedTuple):
     def moves(self, some: States) -> _Moves:
         """Return the moves that a set of carrying elements leaves open; computed once per set."""
         key = "moves", some.tobytes()
-        return cast(_Moves, self.structure.kept(key, partial(self._moves_of, some)))
+        return cast(_Moves, self.structure.cached(key, partial(self._moves_of, some)))
 
     def _moves_of(self, some: States) -> _Moves:
         structure, loading, _ = self

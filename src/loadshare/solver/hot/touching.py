@@ -74,7 +74,7 @@ class Touching:
         held: Flags,
         least: Array,
     ) -> None:
-        self._of = structure.kept(
+        self._of = structure.cached(
             ("touching",),
             lambda: SharedArrays(
                 rows_of(structure.vectors),

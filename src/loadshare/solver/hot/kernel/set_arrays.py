@@ -135,7 +135,7 @@ def packed_sets(
         Where each set begins in both.
     """
     found = [
-        structure.kept(
+        structure.cached(
             ("compiled", states.tobytes(), loading.laws), partial(_pack, structure, loading, states)
         )
         for states in sets
@@ -259,7 +259,7 @@ def _structure(
     borders = int(slips.sum())
     if n.shape[1] and not len(inverse):
         key = "local", basis.columns.tobytes()
-        particular, n = (table[order] for table in structure.kept(key, partial(local, basis)))
+        particular, n = (table[order] for table in structure.cached(key, partial(local, basis)))
         n, factor = eliminated(n, n[springs : springs + turned], borders)
     else:
         factor = full(n.shape[1], borders)
@@ -268,7 +268,7 @@ def _structure(
     acting = np.flatnonzero((arcs >= 0) & (contacts < first_radial))
     open_rows = np.flatnonzero(states[:flanks] == OPEN)
     open_arcs = np.flatnonzero(states[flanks : structure.rows] == OPEN)
-    every_set = structure.kept(("every set",), partial(_every_set, structure))
+    every_set = structure.cached(("every set",), partial(_every_set, structure))
     known, (arc_starts, arc_coordinates, _), (starts, coordinates, entries) = every_set
     turning = np.flatnonzero(known[arcs[acting]].any(axis=0))
     compliances = np.array(loading.bending[0, columns[:springs]])

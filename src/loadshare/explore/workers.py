@@ -16,7 +16,7 @@ Item = TypeVar("Item")
 Found = TypeVar("Found")
 
 
-class Crew:
+class Workers:
     """Some worker processes, started when they are first needed.
 
     Parameters
