@@ -29,7 +29,7 @@ BAND = 1e-8
 BLOCK = 8192
 """Samples solved together."""
 CLIMBING = 20
-"""Most samples of a block that go through the slower methods when the hot path has no answer."""
+"""Most samples of a block that go through the slower methods when the fast method has no answer."""
 
 
 def states_by_name(
@@ -135,7 +135,7 @@ def scanned(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
 
 
 def _climbed(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
-    """Return states from the whole sequence of methods, from the hot path to the slowest."""
+    """Return states from the whole sequence of methods, from the fast method to the slowest."""
     states: StatesByName = {}
     table = _table(path, values)
     for block in solve_blocks(path.case, table, positions=[1], engine=engine, workers=1):

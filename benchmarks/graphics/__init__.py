@@ -1,1 +1,1 @@
-"""The hot path on a graphics processor: one thread owns one sample."""
+"""The fast method on a graphics processor: one thread owns one sample."""

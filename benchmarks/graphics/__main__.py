@@ -1,4 +1,4 @@
-"""The hot path on a graphics processor beside a core: ``python -m benchmarks.graphics``."""
+"""The fast method on a graphics processor beside a core: ``python -m benchmarks.graphics``."""
 
 from __future__ import annotations
 

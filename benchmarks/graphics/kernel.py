@@ -1,4 +1,4 @@
-"""The compiled kernel of the hot path for CUDA: the same functions, one sample to a thread.
+"""The compiled kernel of the fast method for CUDA: the same functions, one sample to a thread.
 
 `loadshare.solver.hot.kernel` works on samples side by side along the last axis; a thread does so
 for a width of one, in local memory. It exchanges its active set alone, as `exchange` does for all

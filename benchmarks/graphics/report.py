@@ -10,7 +10,7 @@ from benchmarks import drawing
 
 CORE, DEVICE, MOVED = "a core", "the device", "moving to the device and back"
 COLOURS = {CORE: "#b30000", DEVICE: "#3182bd", MOVED: "#9ecae1"}
-TEXT = """# The hot path on a graphics processor
+TEXT = """# The fast method on a graphics processor
 
 One thread of the device owns one sample: it visits a set, judges the signs, looks the next set up
 among those that are prepared and goes on there, until every sign is right. The code is that of

@@ -75,7 +75,7 @@ def test_bound_holds_against_fifty_digits(family: str, number: int) -> None:
     found = machine.answer(machine.situations([1]), 1e-9, engine_named("vectorised", 1))
     answer = found.equilibria.one(0, 1)
     if not found.passed[0]:
-        pytest.skip("left by the hot path")
+        pytest.skip("left by the fast method")
     try:
         truth = reference(train, 1, answer)
     except NoReference:

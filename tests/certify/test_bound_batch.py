@@ -209,7 +209,7 @@ IDLING = (212, 278, 555, 721)
 
 
 def idling(number: int) -> tuple[Train, Situations, Equilibria, int]:
-    """Return one of them as the hot path answers it, and the flank."""
+    """Return one of them as the fast method answers it, and the flank."""
     (law,) = (w for w in workloads(Path("cases"), False) if w.name == "law")
     train = build_train(next(islice(law.cases(number + 1), number, None)))
     machine = Machine(train)

@@ -189,7 +189,7 @@ def test_explain_tells_how_the_first_position_was_solved(command, cases):
 def test_explain_tells_what_acts_on_the_hot_path(command, cases):
     result = command("run", cases / "fgfbstts/limit_ring.toml", "--explain")
     for line in (
-        *("hot path", "force method, 2 redundants, 15 coordinates", "sets tried"),
+        *("fast method", "force method, 2 redundants, 15 coordinates", "sets tried"),
         *("Acting", "ring 4: arc 6", "open by", "its bearing is rigid"),
     ):
         assert line in result.stdout

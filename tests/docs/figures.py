@@ -429,7 +429,7 @@ def ring_rules(rule: Callable[..., Rule]) -> Iterator[Rule]:
 
 
 ROUTES: dict[str, dict[str, object]] = {
-    "Clarabel in place of the hot path": {"solver": "clarabel"},
+    "Clarabel in place of the fast method": {"solver": "clarabel"},
     "the same without reduction": {"solver": "clarabel", "reduce": False},
     "Picard": {"method": "picard", "solver": "clarabel"},
     "power cone": {"method": "power", "solver": "clarabel"},

@@ -1,4 +1,4 @@
-"""The ladder: the hot path first, then the back-ends, then a refusal with its reason.
+"""The ladder: the fast method first, then the back-ends, then a refusal with its reason.
 
 Source: formulation, sections 6, 7 and 11.
 """
@@ -173,10 +173,10 @@ def test_a_wrong_set_is_not_handed_out(monkeypatch):
 
 @pytest.mark.parametrize("solver", ["clarabel", "cvxpy"])
 def test_a_back_end_that_is_named_comes_first(solver, monkeypatch):
-    """The hot path is not even tried."""
+    """The fast method is not even tried."""
 
     def forbidden(*_args):
-        raise AssertionError("the hot path was taken")
+        raise AssertionError("the fast method was taken")
 
     monkeypatch.setattr(ladder, "hot_answers", forbidden)
     found = ls.solve(shipped("fgfbstts/limit_ring"), solver=solver, positions=[1])
@@ -202,7 +202,7 @@ def test_the_rungs_in_order():
 
 
 def test_only_what_is_left_climbs(monkeypatch):
-    """One position of five fails on the hot path; only that one climbs, and the order is kept."""
+    """The fast method fails at one position of five; only that one climbs; the order is kept."""
     train = build_train(shipped("fgfbstts/both_errors"))
     quick = hot_answers(Machine(train), range(1, 6), CERTIFY.tolerance)
     monkeypatch.setattr(

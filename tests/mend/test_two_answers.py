@@ -1,8 +1,8 @@
 """A case in which the exclusion arc's inequality holds on both sides of a neighbour.
 
-The hot path once moved past the neighbour and found no load on the branch; the whole scene did not.
-Both answers passed. All methods must now find the place on the pinion's own side, and refuse it
-because of its displacement.
+The fast method once moved past the neighbour and found no load on the branch; the whole scene did
+not. Both answers passed. All methods must now find the place on the pinion's own side, and refuse
+it because of its displacement.
 """
 
 from pathlib import Path

@@ -16,7 +16,7 @@ FILES = ("undetermined_float", "undetermined_float_2", "undetermined_float_full"
 PLAY = 50e-6
 """Clearance of the pinion's spline, or radius of its ring [m], in all three cases."""
 WAYS = {
-    "hot path": {},
+    "fast method": {},
     "compiled": {"engine": "compiled"},
     "clarabel": {"solver": "clarabel"},
     "cvxpy": {"solver": "cvxpy"},

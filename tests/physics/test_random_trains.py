@@ -298,7 +298,7 @@ def test_what_carries_next_to_nothing(name):
     """
     case = LIGHT[name]()
     is_solved_and_agreed(case)
-    assert ls.solve(case).positions[0].effort.rung == "hot path"
+    assert ls.solve(case).positions[0].effort.rung == "fast method"
 
 
 @pytest.mark.slow

@@ -265,7 +265,7 @@ def test_engines_agree_on_random_trains_with_lost_branches():
                 seen["compared"] += 1
         torque = {"operating.torque": [case.to_dict()["operating"]["torque"]]}
         many = ls.solve_many(case, torque, positions=[1])
-        if RUNGS[many.rung.item()] == "hot path":
+        if RUNGS[many.rung.item()] == "fast method":
             assert bool(many.determined.item()) == (not mine.undetermined)
 
     run()

@@ -1,7 +1,7 @@
 """Deformation laws of flanks (formulation, section 3), for many samples.
 
-A certificate shares no code with a solver: the roots and tables here are not those of the hot path,
-so that a mistake in one of them shows in the other.
+A certificate shares no code with a solver: the roots and tables here are not those of the fast
+method, so that a mistake in one of them shows in the other.
 """
 
 from __future__ import annotations

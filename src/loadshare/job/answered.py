@@ -201,7 +201,7 @@ def answer_samples(
 def _part(
     machine: Machine, rows: Numbers, samples: Samples, positions: tuple[int, ...]
 ) -> MachineSamples:
-    """Solve samples at some positions; those that the hot path does not solve climb the ladder."""
+    """Solve samples at some positions; those that the fast method leaves climb the ladder."""
     here = machine.at(positions[0])
     situations = samples.abreast(positions)
     engine = available_engine("auto", situations.count)

@@ -1,4 +1,4 @@
-"""Solve one block of samples: all on the hot path, and those that it leaves on the ladder."""
+"""Solve one block of samples: all by the fast method, and those that it leaves on the ladder."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations
 
 RUNGS = ("none", HOT, SEARCHED, *(name for name, _ in rungs(Options())))
-"""Rungs that answer samples, by number: none, the hot path without and with the proximal search,
+"""Rungs that answer samples, by number: none, the fast method without and with the proximal search,
 the rungs of the ladder below."""
 
 
@@ -158,7 +158,7 @@ class _Open:
         return values.reshape(-1, self.count).T
 
     def put(self, chunk: _Chunk, found: Answers) -> None:
-        """Write the answers of the hot path."""
+        """Write the answers of the fast method."""
         verdicts, count, block = found.verdicts, self.count, self.block
         for there, values in (
             (block.certified, found.passed),
@@ -202,7 +202,7 @@ def solve_block(
     engine: Engine,
     least_norm: bool,
 ) -> Block:
-    """Solve one block; samples that the hot path leaves climb the ladder.
+    """Solve one block; samples that the fast method leaves climb the ladder.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The first rung of the ladder: positions of a case on the hot path, all of them at once."""
+"""The first rung of the ladder: positions of a case by the fast method, all of them at once."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
-HOT, SEARCHED = "hot path", "proximal search"
+HOT, SEARCHED = "fast method", "proximal search"
 
 
 @dataclass(eq=False, repr=False)
 class HotAnswers:
-    """Answers of the hot path to situations of one machine, handed out one by one.
+    """Answers of the fast method to situations of one machine, handed out one by one.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def hot_answers(
     tolerance: float,
     engine: str = "auto",
 ) -> dict[int, Answer]:
-    """Return the answers that the hot path finds, by position."""
+    """Return the answers that the fast method finds, by position."""
     situations = machine.situations(indices)
     found = machine.answer(situations, tolerance, available_engine(engine, len(indices)))
     solved = HotAnswers(machine, situations, found, tolerance)
@@ -144,7 +144,7 @@ def hot_answers(
 
 
 def _record(machine: Machine, found: Answers, row: int) -> Record:
-    """Return the record of an answer of the hot path."""
+    """Return the record of an answer of the fast method."""
     structure, states = machine.structure, found.states[row]
     basis = structure.basis(states)
     acting = states[: structure.rows] != 0
@@ -170,7 +170,7 @@ def _record(machine: Machine, found: Answers, row: int) -> Record:
 
 
 def left_out(answer: Answer) -> tuple[tuple[str, str], ...]:
-    """Return the elements that did not act in an answer of the hot path, and figures to show it."""
+    """Return what did not act in an answer of the fast method, and figures to show it."""
     scene, found = answer.scene, answer.equilibrium
     plan = answer.record.plan
     x = coordinates_of(scene, found)

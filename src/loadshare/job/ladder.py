@@ -1,6 +1,6 @@
 """The ladder: the methods that are tried, in order, until an answer is certified.
 
-The hot path comes first. A position that it does not solve, or whose certificate does not pass, is
+The fast method comes first. A position that it does not solve, or whose certificate fails, is
 refused if a part of the load already displaces gears too far for the geometry. Otherwise it goes to
 a back-end with an exact pass on the identified active set, then to the whole scene and the other
 forms of the loop, down to the exact power-cone programme. If all of these fail, it is refused with
@@ -43,7 +43,7 @@ from loadshare.train.train import Train
 _NAMED = 5
 """How many gears of a free motion are named."""
 AUTO = "auto"
-"""Instead of a back-end's name: the hot path, and Clarabel for positions that it leaves."""
+"""Instead of a back-end's name: the fast method, and Clarabel for positions that it leaves."""
 
 
 class _Part(NamedTuple):
@@ -70,7 +70,7 @@ def climb_all(
     tolerance: float,
     engine: str | None = "auto",
 ) -> Iterator[Answer | Refused]:
-    """Answer positions, all of them on the hot path first.
+    """Answer positions, all of them by the fast method first.
 
     Parameters
     ----------
@@ -78,10 +78,10 @@ def climb_all(
     indices : sequence of int
         1-based positions.
     options : Options
-        Options for positions that the hot path leaves.
+        Options for positions that the fast method leaves.
     tolerance : float
     engine : str or None
-        Engine of the hot path, by name (`available_engine`); None leaves the hot path out.
+        Engine of the fast method, by name (`available_engine`); None leaves the fast method out.
 
     Yields
     ------

@@ -1,4 +1,4 @@
-"""Move answers of the hot path to least norm where forces leave displacements open."""
+"""Move answers of the fast method to least norm where forces leave displacements open."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def _compiling(engine: Engine, act: Callable[[Engine], Outcome]) -> Outcome:
 
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """Answers of the hot path to many samples.
+    """Answers of the fast method to many samples.
 
     Attributes
     ----------

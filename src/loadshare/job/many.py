@@ -1,8 +1,8 @@
 """Solve one case again and again with other inputs: `loadshare.solve_many`.
 
 Samples are taken in blocks of a fixed size, so that an answer does not depend on the number of
-workers. Every block is solved on the hot path at once, all positions together, and certified at
-once; single samples that the hot path leaves climb the ladder.
+workers. Every block is solved by the fast method at once, all positions together, and certified at
+once; single samples that the fast method leaves climb the ladder.
 """
 
 from __future__ import annotations

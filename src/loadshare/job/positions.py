@@ -62,7 +62,7 @@ def solve(
     case : Case or path
         A case, or the path of a case file.
     solver : {"auto", "clarabel", "osqp", "cvxpy"}
-        "auto" tries the hot path first and then Clarabel; otherwise the back-end of the first rung.
+        "auto" tries the fast method and then Clarabel; otherwise the back-end of the first rung.
     method : {"newton", "picard", "power"}
         Form of the outer loop for nonlinear mesh laws.
     reduce : bool
@@ -72,7 +72,7 @@ def solve(
     positions : iterable of int, optional
         1-based positions to solve; all by default.
     engine : {"auto", "vectorised", "compiled"}
-        Engine of the hot path: NumPy, or Numba, which takes a minute to compile the first time.
+        Engine of the fast method: NumPy, or Numba, which takes a minute to compile the first time.
         "auto" is Numba once it was used in this process, or once 300 positions were solved and it
         is kept on disk. Answers are the same except for round-off.
     progress : Progress, optional
@@ -182,10 +182,10 @@ def explain(
 def _options(
     solver: str, method: str, reduce: bool, engine: str = "auto"
 ) -> tuple[Options, str | None]:
-    """Return the options of the rungs and the engine of the hot path; None to leave that out.
+    """Return the options of the rungs and the engine of the fast method; None to leave that out.
 
-    The hot path is left out if another form of the loop or the whole scene is requested, which only
-    a back-end can do.
+    The fast method is left out if another form of the loop or the whole scene is requested, which
+    only a back-end can do.
     """
     one_of("solver", solver, (AUTO, *SOLVERS))
     one_of("engine", engine, ENGINES)

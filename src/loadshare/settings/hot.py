@@ -1,4 +1,4 @@
-"""The hot path: Newton's passes on a set, the way from set to set, the proximal search."""
+"""The fast method: Newton's passes on a set, the way from set to set, the proximal search."""
 
 from __future__ import annotations
 

@@ -13,8 +13,8 @@ class Job(NamedTuple):
     plainly: float = 1e-6
     """Overlap of rigid limits, over the largest length, above which nothing else need be tried."""
     steps: int = 20_000
-    """Newton steps in which the rungs after the hot path answer or give up: some ten seconds, and
-    twice what ever led to an answer that neither exchange nor search had found."""
+    """Newton steps in which the rungs after the fast method answer or give up: some ten seconds,
+    and twice what ever led to an answer that neither exchange nor search had found."""
     few: int = 300
     """Equilibria up to which loading compiled code costs more than it saves: between 150, for
     trains with all elements, and 4000, for the seed's rings and splines."""

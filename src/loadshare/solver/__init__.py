@@ -1,4 +1,4 @@
-"""From a scene to an equilibrium: the hot path, plans and back-ends, what forces leave open."""
+"""From a scene to an equilibrium: the fast method, plans and back-ends, what forces leave open."""
 
 from loadshare.contact.record import METHODS, Iteration, Options, Record
 from loadshare.solver.position import solve_scene

@@ -1,4 +1,4 @@
-"""The hot path gives the equilibrium of Clarabel with the exact solve, or none.
+"""The fast method gives the equilibrium of Clarabel with the exact solve, or none.
 
 Source: formulation, sections 7 and 11. Both end in a dense solve on an identified active set, by
 different formulas (forces here, displacements there); they differ by round-off times the condition
@@ -49,7 +49,7 @@ def test_every_position_of_a_shipped_case(case):
 
 
 def agrees(case: ls.Case) -> bool:
-    """Return whether the hot path answers a train; its answer must then be right."""
+    """Return whether the fast method answers a train; its answer must then be right."""
     note(case.to_toml())
     train = build_train(case)
     found = hot_answers(Machine(train), [1], CERTIFY.tolerance).get(1)

@@ -113,7 +113,7 @@ def test_a_round_ring_is_the_chain_that_the_train_writes(radius, stiffness):
 @settings(TRAINS, max_examples=examples(30, 60))
 @given(stiffnesses, lengths, lengths, st.floats(0.0, 3.0))
 def test_a_law_without_meaning_is_reported(stiffness, stick, clearance, share):
-    """If the chain would drop, or S2 is inside S1, the train raises and the hot path refuses."""
+    """If the chain would drop, or S2 is inside S1, the train raises and the fast method refuses."""
     friction = stiffness * stick * share
     assume(abs(share - 1.0) > 1e-5)
     law = graph(stiffness, stick, clearance, friction)

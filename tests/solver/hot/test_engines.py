@@ -123,7 +123,7 @@ def test_every_position_of_a_shipped_case(name):
 @pytest.mark.parametrize("name", VARIED)
 @pytest.mark.quick(3)
 def test_random_samples(name):
-    """Samples of every position; nearly all of them are solved on the hot path."""
+    """Samples of every position; nearly all of them are solved by the fast method."""
     case, samples = varied(name, 40)
     ((_, group),) = samples_of(case, samples)
     machine = Machine(group.train)

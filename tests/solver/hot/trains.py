@@ -1,4 +1,4 @@
-"""Machines, and samples of them that open and close contacts, for the tests of the hot path."""
+"""Machines, and samples of them that open and close contacts, for the tests of the fast method."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""The hot path: the force method on an identified set of acting elements, for many samples at once.
+"""The fast method: the force method on an identified set of acting elements, for many samples.
 
 One sample is solved like this. A set of acting elements is assumed. On it the redundant forces
 follow from compatibility by Newton's method in displacement form: every nonlinear law is replaced

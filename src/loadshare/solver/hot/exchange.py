@@ -31,7 +31,7 @@ _KEYS = np.random.default_rng(11).integers(1 << 62, size=1 << 12) | 1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExchangeResult:
-    """Result of the hot path.
+    """Result of the fast method.
 
     Attributes
     ----------
