@@ -432,6 +432,15 @@ def test_in_a_march_meshes_of_a_set_pass_by_the_relative_speed() -> None:
             assert train.mesh_positions(index)[name] == place
 
 
+def test_a_phase_that_follows_is_reported_without_its_round_off():
+    """That of planets at equal phases is 0, of which round-off makes 1e-15, or almost 1."""
+    case = planetary(18, 36, 90, ["0 deg", "120 deg", "240 deg"])
+    wrong = {f"meshes.sun-p{k}.phase": 0.4 for k in (1, 2, 3)}
+    with pytest.raises(CaseError) as caught:
+        build_train(case.replace(wrong))
+    assert {p.allowed for p in caught.value.problems} == {"0, or left out"}
+
+
 def test_a_phase_that_contradicts_the_teeth_is_reported_with_the_one_that_follows():
     case = shipped("planetary/four_planets").replace({"operating.positions": 4})
     laid = {"operating.phases": "layout"}

@@ -125,7 +125,7 @@ def _phases_against(case: spec.Case, found: Mapping[str, tuple[float, float]]) -
     for name, (layout, _) in found.items():
         given = case.meshes[name].phase
         if given is not None and abs((given - layout + 0.5) % 1.0 - 0.5) > MEETS:
-            path, allowed = ("meshes", name, "phase"), f"{layout:.4g}, or left out"
+            path, allowed = ("meshes", name, "phase"), f"{round(layout, 4) % 1.0:g}, or left out"
             hint = 'With operating.phases = "together" any phases may be given.'
             yield case.problem(path, "contradicts the teeth and their positions", allowed, hint)
 
