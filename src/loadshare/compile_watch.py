@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from typing import Any
 
 log = logging.getLogger("loadshare")
+progress = logging.getLogger("loadshare.compiling")
+"""For what is no fault: a command with ``--quiet`` leaves it out."""
 
 PATIENCE = 1.0
 """Seconds after which compiling is announced; small functions are done by then."""
@@ -119,12 +121,12 @@ class Watch:
                 following = AGAIN if not announced else following + AGAIN
                 text = f"{elapsed:.0f} s so far" if announced else _FIRST
                 announced = True
-                log.warning("%s: %s", PREFIX, text)
+                progress.warning("%s: %s", PREFIX, text)
         with self._lock:
             self._teller = None
             elapsed, self._spent = self._spent, 0.0
         if announced:
-            log.warning("%s: done after %.0f s", PREFIX, elapsed)
+            progress.warning("%s: done after %.0f s", PREFIX, elapsed)
 
 
 watch = Watch()

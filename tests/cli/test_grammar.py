@@ -243,9 +243,12 @@ def test_old_words_go_on_working_with_a_note(command, tmp_path):
     assert one.read_bytes() == other.read_bytes()
 
 
-def test_quiet_says_what_went_wrong(command, half_held):
+def test_quiet_says_what_went_wrong(command, half_held, monkeypatch):
     assert command("run", RING, "-q").output == ""
     assert command("check", RING, "-q").output == ""
+    monkeypatch.setattr("loadshare.job.warm.warm", lambda: None)
+    assert command("warm", "-q").output == ""
+    assert command("warm").stdout == "The compiled code is on disk.\n"
     refused = command("run", half_held, "-q")
     assert (refused.exit_code, refused.stdout) == (1, "")
     assert refused.stderr.startswith("REFUSED  position 2: ")

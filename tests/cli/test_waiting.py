@@ -8,6 +8,7 @@ from contextlib import contextmanager, redirect_stderr
 
 import pytest
 
+from loadshare import compile_watch
 from loadshare.cli import waiting
 from loadshare.cli.waiting import hush
 
@@ -73,3 +74,29 @@ def test_nothing_is_printed_without_a_terminal(monkeypatch, capsys):
     with waiting.waiting():
         time.sleep(0.05)
     assert capsys.readouterr().err == ""
+
+
+def test_a_quiet_command_does_not_tell_that_it_compiles(monkeypatch, caplog):
+    compile_watch.watch.wait(60.0)
+    monkeypatch.setattr(compile_watch, "PATIENCE", 0.02)
+
+    def compiled():
+        watch = compile_watch.Watch()
+        with waiting.waiting():
+            watch.started()
+            time.sleep(0.1)
+            watch.not_kept("the folder is read-only")
+            watch.ended()
+            watch.wait(10.0)
+        messages = [record.message for record in caplog.records]
+        caplog.clear()
+        return messages
+
+    hush(True)
+    try:
+        assert compiled() == [
+            "Compiling: what was compiled could not be kept (the folder is read-only)."
+        ]
+    finally:
+        hush(False)
+    assert len(compiled()) == 3

@@ -6,6 +6,7 @@ which takes seconds.
 
 from __future__ import annotations
 
+import logging
 import sys
 import threading
 from collections.abc import Iterator
@@ -14,6 +15,7 @@ from contextvars import ContextVar
 
 import typer
 
+from loadshare.compile_watch import progress
 from loadshare.readable import readable
 
 LINE = "Loading libraries …"
@@ -54,13 +56,20 @@ _line: list[_Line] = []
 
 @contextmanager
 def waiting() -> Iterator[None]:
-    """Show on a terminal that libraries are being loaded, until something is printed or done."""
-    if sys.stderr.isatty() and not is_hushed():
+    """Show on a terminal that libraries are being loaded, until something is printed or done.
+
+    If only errors are printed, neither this nor that something is being compiled is reported.
+    """
+    before = progress.level
+    if is_hushed():
+        progress.setLevel(logging.ERROR)
+    elif sys.stderr.isatty():
         _line[:] = [_Line()]
     try:
         yield
     finally:
         erase_line()
+        progress.setLevel(before)
 
 
 def erase_line() -> None:

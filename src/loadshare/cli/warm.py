@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from loadshare.cli.console import say
 from loadshare.cli.exits import UNUSABLE, fail
-from loadshare.cli.waiting import echo, erase_line
+from loadshare.cli.waiting import erase_line
 
 
 def warm() -> None:
-    """Compile the code for many samples ahead of time, once per version: for images.
+    """Compile the code for many samples ahead of time, once per version: for container images.
 
     Without this, small jobs use NumPy, and the first large one compiles. The code for teeth is not
     part of it: the first ltca compiles that, in half a minute.
@@ -19,4 +20,4 @@ def warm() -> None:
     why = compiled()
     if why is not None:
         fail([f"Nothing is kept: {why}"], UNUSABLE)
-    echo("The compiled kernels are on disk.")
+    say("The compiled code is on disk.")

@@ -1,4 +1,4 @@
-"""Compile the code for many samples ahead of time, for images and shared installations."""
+"""Compile the code for many samples ahead of time, for container images and shared machines."""
 
 from __future__ import annotations
 
