@@ -66,7 +66,7 @@ def test_a_case_survives_its_tables(name, tmp_path) -> None:
 def test_a_few_lines_make_a_case(box) -> None:
     found = import_tables(box())
     case = found.case()
-    assert found.taken == ("2 gears", "1 meshes")
+    assert found.taken == ("gears (2)", "meshes (1)")
     assert case.gears["b"].centre[0].si == pytest.approx(0.06)
     assert case.gears["a"].face_width.si == pytest.approx(0.01), "a space stands for _"
     assert case.gears["a"].teeth == 20

@@ -118,7 +118,7 @@ class _Importer:
         data = balanced(self.of, data, flow, self.assumed, self.left_out)
         self._count_left_out()
         taken = tuple(
-            f"{len(part)} {what}"
+            f"{what} ({len(part)})"
             for what, part in (
                 ("gears", self.of.gears),
                 ("carriers", self.of.carriers),

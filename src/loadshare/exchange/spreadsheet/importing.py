@@ -66,7 +66,7 @@ def import_tables(path: str | FilePath) -> Imported:
     sections = [name for name in Content.model_fields if name in reader.data]
     data: Data = {name: reader.data[name] for name in sections}
     counts = tuple(
-        f"{len(data[name])} {name}"
+        f"{name} ({len(data[name])})"
         for name in sections
         if isinstance(data[name], Mapping) and name not in ALONE
     )
