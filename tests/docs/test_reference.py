@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import json
 import pkgutil
 import re
 from pathlib import Path
 
 import pytest
+from tests.support import shipped
 
+import loadshare as ls
 from loadshare.case.schema import case_schema
+from loadshare.settings import ALLOWED, TOLERANCE
 
 ROOT = Path(__file__).parents[2]
 _spec = importlib.util.spec_from_file_location("docs_hooks", ROOT / "docs" / "hooks.py")
@@ -80,6 +84,31 @@ def test_every_number_states_its_unit():
     kinds = page.partition("## Physical values")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| ([\w' ]+) \| `.*` \| (\S+) \|$", kinds, re.MULTILINE)
     assert len(rows) == len(hooks._kinds()) > 10
+
+
+def test_every_limit_of_a_case_is_in_the_reference():
+    told = {name for _, text in hooks.ALLOWED for name in re.findall(r"\{(\w+)", text)}
+    elsewhere = {"options", "file_name", "shape", "line_points"}
+    assert told | elsewhere == set(ALLOWED._fields)
+
+
+def test_defaults_of_a_tolerance_study_are_those_of_the_settings():
+    keys = case_schema()["$defs"]["Study"]["properties"]
+    assert f"; {TOLERANCE.samples} when left out" in keys["samples"]["description"]
+    assert f"; {TOLERANCE.rows} when left out" in keys["indices"]["description"]
+    levels = ", ".join(map(str, TOLERANCE.levels))
+    assert f"; {levels} when left out" in keys["quantiles"]["description"]
+
+
+def test_every_key_of_a_result_is_in_its_reference():
+    page = (ROOT / "docs" / "results.md").read_text("utf-8")
+    page = page.partition("## The JSON form")[2].partition("\n## ")[0]
+    document = json.loads(ls.solve(shipped("fgfbstts/limit_ring")).to_json())
+    position = document["positions"][0]
+    keys = {*document, *document["stamp"], *position, *position["floats"]["4"]}
+    for key in ("scales", "validity", "uniqueness", "loads", "elastic", "effort", "claim"):
+        keys |= set(position[key])
+    assert {key for key in keys if f"`{key}`" not in page} == set()
 
 
 def test_a_new_definition_is_not_forgotten():

@@ -141,7 +141,7 @@ class Study(Element):
     """Tolerance: inputs that are correlated."""
 
     samples: Count | None = None
-    """Tolerance: number of samples [-]."""
+    """Tolerance: number of samples [-]; 16384 when left out."""
 
     sampling: Literal["random", "sobol"] | None = None
     """Tolerance: independent draws, or 16 scrambled Sobol sequences; random when left out."""
@@ -150,10 +150,11 @@ class Study(Element):
     """Tolerance: Ω that should not be exceeded [-]."""
 
     indices: Annotated[int, Strict(), Field(ge=0, le=ALLOWED.samples)] | None = None
-    """Tolerance: rows of the design for the shares of variance [-]; 0 leaves them out."""
+    """Tolerance: rows of the design for the shares of variance [-]; 1024 when left out. 0 leaves
+    the shares out."""
 
     quantiles: Annotated[tuple[Level, ...], Field(min_length=1)] | None = None
-    """Tolerance: levels of the quantiles [-]."""
+    """Tolerance: levels of the quantiles [-]; 0.5, 0.9, 0.95, 0.99, 0.999 when left out."""
 
     positions: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
     """Positions to solve, from 1 [-]; all when left out."""

@@ -49,7 +49,7 @@ def ltca(
         list[Output] | None,
         outputs(
             *FORMS,
-            what="Folder for tables, pictures and law file, by default a new one named after the "
+            what="Folder for tables, pictures and law file, by default one named after the "
             "pair; or the law file or the table alone",
         ),
     ] = None,
