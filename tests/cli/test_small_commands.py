@@ -129,4 +129,7 @@ def test_new_writes_a_shipped_case_that_stands_alone(command, tmp_path, monkeypa
     bound = command("new", "other", "--example", "fgfbstts/from_geometry")
     assert bound.exit_code == 2
     assert "cannot be copied alone" in bound.stderr
+    both = command("new", "other", "--kind", "star", "--example", "star/floating_sun_4")
+    assert both.exit_code == 2
+    assert "--example: contradicts --kind" in both.stderr
     assert not (tmp_path / "other.toml").exists()

@@ -126,6 +126,16 @@ def test_critical(command, tmp_path):
     assert "none" in none.stdout
 
 
+def test_inputs_that_are_not_shown_are_counted(command, monkeypatch):
+    monkeypatch.setattr("loadshare.cli.tables.sensitivity.SHOWN", 1)
+    monkeypatch.setattr("loadshare.report.figures.sensitivity.MOST", 1)
+    keys = ("rings.5.float", "rings.4.float")
+    printed = command("sensitivity", RING, *keys, "--position", 1).stdout
+    assert "Not shown: 1 input of less effect." in printed
+    picture = command("sensitivity", RING, *keys, "--position", 1, "-o", "svg:-").stdout
+    assert "not shown: 1 input of less effect, or none" in picture
+
+
 def test_sensitivity(command, tmp_path):
     file = tmp_path / "rates.nc"
     result = command("sensitivity", RING, "errors.*", "--position", 1, "-o", file)

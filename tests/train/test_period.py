@@ -15,6 +15,7 @@ from tests.train.test_phases import planetary
 
 import loadshare as ls
 from loadshare.errors import CaseError
+from loadshare.report.words import period_text
 from loadshare.train import build_train
 from loadshare.train.period import period_of
 
@@ -211,3 +212,10 @@ def test_the_command_tells_the_period(tmp_path) -> None:
     path.write_text(chain(20, 40, 20, 60).to_toml(), encoding="utf-8")
     done = on_a_screen_of(200)("run", path)
     assert "2 cycles of mesh 1-2, 0.1 revolutions of gear 1" in done.stdout
+
+
+def test_a_period_of_one_cycle_is_told_in_the_singular() -> None:
+    case = shipped("planetary/four_planets").replace({"operating.cycle": "common"})
+    period = build_train(case).period
+    assert period is not None
+    assert ": 1 cycle of mesh" in period_text(period, "sun")

@@ -21,13 +21,13 @@ def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the case.")],
     file: Annotated[Path | None, output(what="File to write; NAME.toml by default.")] = None,
     kind: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="KIND",
-            help="split-path, four-branch, star, planetary or two-stage-planetary.",
+            help="split-path (by default), four-branch, star, planetary or two-stage-planetary.",
             autocompletion=kind_names,
         ),
-    ] = "split-path",
+    ] = None,
     example: Annotated[
         str | None,
         typer.Option(
@@ -42,6 +42,9 @@ def new(
     from loadshare.case.starter import KINDS, starter_case
     from loadshare.case.words import did_you_mean
 
+    if kind is not None and example is not None:
+        raise typer.BadParameter("contradicts --kind", param_hint="--example")
+    kind = kind or KINDS[0]
     if kind not in KINDS:
         message = f"{kind!r} is not one of {', '.join(KINDS)}. {did_you_mean(kind, KINDS)}"
         raise typer.BadParameter(message.strip(), param_hint="--kind")

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from loadshare.certify import FloatState
 from loadshare.certify.validity import APART, LABELS, NEITHER
-from loadshare.report.numbers import engineering, read_best, runs, significant
+from loadshare.report.numbers import counted, engineering, read_best, runs, significant
 from loadshare.results import Position, Result
 from loadshare.results.differences import ROUND_OFF
 from loadshare.train.period import Period
@@ -28,7 +28,7 @@ def period_text(period: Period, driving: str) -> str:
     """
     mesh = period.fastest
     return (
-        f"Common period of all meshes: {period.cycles[mesh]} cycles of mesh {mesh}, "
+        f"Common period of all meshes: {counted(period.cycles[mesh], 'cycle')} of mesh {mesh}, "
         f"{significant(float(period.revolutions), 6)} revolutions of gear {driving}"
     )
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from loadshare.cli.console import say, say_all
 from loadshare.cli.tables.table import show, table
+from loadshare.report.numbers import counted
 
 if TYPE_CHECKING:
     from loadshare.study.sensitivity import Input, Sensitivity
@@ -45,7 +46,7 @@ def show_sensitivity(found: Sensitivity) -> None:
     show("Sensitivity of the system's Ω, by group mean", table(heads, rows, words=heads[:2]))
     say("Every figure is accurate to one unit of its last digit.")
     if len(found.inputs) > SHOWN:
-        say(f"{len(found.inputs) - SHOWN} inputs that matter less are not shown.")
+        say(f"Not shown: {counted(len(found.inputs) - SHOWN, 'input')} of less effect.")
     if one_sided:
         say("A value under falling means that the derivative to that side differs.")
     say_all(

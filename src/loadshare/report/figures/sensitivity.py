@@ -9,6 +9,7 @@ from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import hover
+from loadshare.report.numbers import counted
 from loadshare.report.palette import COLOURS
 from loadshare.report.vega_lite import Row, channel, layer
 from loadshare.study.sensitivity import Sensitivity
@@ -96,6 +97,6 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
     name = "the system" if stage == "system" else f"stage {stage}"
     subtitle = [
         f"first order, by the mean of the {over}",
-        f"{left} inputs of less effect, or 0, are not shown" if left else "",
+        f"not shown: {counted(left, 'input')} of less effect, or none" if left else "",
     ]
     return marks.figure("sensitivity", drawing, f"Inputs that affect Ω of {name}", subtitle)
