@@ -143,6 +143,19 @@ def test_a_gear_with_the_name_of_a_copy_is_told_apart_from_what_is_said_of_the_c
     assert gears["planet2"].centre.angle.text == "131 deg"
 
 
+def test_no_two_copies_are_in_one_place() -> None:
+    data = changed()
+    planet = data["gears"]["planet"]
+    planet["copies"], planet["base_radius"] = ["0 deg", "120 deg", "360 deg"], "84.5723 mm"
+    del planet["module"], planet["teeth"]
+    with pytest.raises(CaseError) as caught:
+        Case(data)
+    message = "copies 1 and 3 are in the same place"
+    assert [(p.key, p.message) for p in caught.value.problems] == [("gears.planet.copies", message)]
+    data["gears"]["planet3"] = {"centre": {"angle": "240 deg"}}
+    assert Case(data).gears["planet3"].centre.angle.text == "240 deg"
+
+
 def test_what_is_wrong_with_copies_is_reported_once() -> None:
     for given, key in ((1, "copies"), ("three", "copies"), (["0 mm", "5 mm"], "copies")):
         data = changed()

@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sized
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import combinations
 from typing import Any
 
 from loadshare.case.content import ENDS, FLOATS, Sections
@@ -24,6 +25,8 @@ from loadshare.case.quantity import ANGLE, Quantity
 from loadshare.errors import CaseError, Problem
 
 Data = dict[str, Any]
+SAME = 1e-9
+"""Largest angle between two copies that is put down to rounding [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,14 +53,14 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
     Raises
     ------
     CaseError
-        If a copy would have the name of another gear.
+        If a copy would have the name of another gear, or the place of another copy.
     """
     gears = data.get("gears")
     turns = dict(_turns(gears)) if isinstance(gears, Mapping) else {}
     if not turns:
         return data, origin
-    if taken := list(_taken(data, origin, turns)):
-        raise CaseError(taken)
+    if wrong := [*_taken(data, origin, turns), *_together(data, origin, turns)]:
+        raise CaseError(wrong)
     pattern, names = _Pattern(turns), list(data["gears"])
     made = {**data, "gears": {}}
     moved: list[tuple[Path, Path]] = []
@@ -130,6 +133,27 @@ def _taken(data: Data, origin: Origin, turns: Mapping[str, Sized]) -> Iterator[P
                 message = f"is a separate gear with the name of copy {k} of {dotted((name,))}"
                 hint = "Rename one of them; to change a copy, give only the keys that differ."
                 yield origin.problem(data, ("gears", f"{name}{k}"), message, "", hint)
+
+
+def _together(
+    data: Data, origin: Origin, turns: Mapping[str, tuple[float, ...]]
+) -> Iterator[Problem]:
+    """Yield a problem for each gear with two copies in one place, unless one has its own centre.
+
+    Gears that give their teeth are left to the check of all neighbours, which knows their widths.
+    """
+    for name, copies in turns.items():
+        if "module" in data["gears"][name]:
+            continue
+        single = [data["gears"].get(f"{name}{k}") for k in range(1, len(copies) + 1)]
+        moved = [isinstance(own, Mapping) and "centre" in own for own in single]
+        places = [number for number, own in enumerate(moved) if not own]
+        for one, two in combinations(places, 2):
+            if abs(math.remainder(copies[two] - copies[one], math.tau)) < SAME:
+                message = f"copies {one + 1} and {two + 1} are in the same place"
+                allowed = "angles that differ by more than whole turns"
+                yield origin.problem(data, ("gears", name, "copies"), message, allowed, "")
+                break
 
 
 def _angle(given: object) -> float | None:
