@@ -255,6 +255,7 @@ def test_a_tip_that_cuts_counts_its_alteration(case):
     assert problem.key == "gears.b.addendum"
     assert problem.given == "1.33333 with its tip_alteration"
     assert problem.allowed == "at most 1.26971"
+    assert problem.message == "the tip of this gear cuts into the root fillet of gear a"
 
 
 def test_a_result_says_what_its_laws_are_from(case, tmp_path):

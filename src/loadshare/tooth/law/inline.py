@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 MODELS = {"ltca": "slices", "ltca elements": "finite elements"}
 """Model of the teeth by the keyword for the law."""
+ROLE = re.compile(r"\bthe (driver|driven)\b(?: gear)?")
+"""What a message on a pair calls one of its gears."""
 LOAD = 50e6
 """Tooth force per face width and module for the rated torque if none is given [Pa]."""
 
@@ -131,6 +134,12 @@ def _in_case(case: Case, name: str, problem: Problem) -> Problem:
     which, _, key = problem.key.partition(".")
     mesh = case.meshes[name]
     ends = {"driver": mesh.driver, "driven": mesh.driven}
+
+    def named(text: str) -> str:
+        return ROLE.sub(lambda role: f"gear {ends[role[1]]}", text)
+
+    said = {key: named(getattr(problem, key)) for key in ("message", "allowed", "hint")}
+    problem = replace(problem, **said)
     if which not in ends:
         message = (
             f"{problem.key} = {problem.given}: {problem.message}" if which else problem.message
