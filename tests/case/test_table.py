@@ -11,7 +11,7 @@ import loadshare as ls
 
 @pytest.fixture
 def case() -> ls.Case:
-    external = {"operating.external.10": "1 N*m"}
+    external = {"operating.external.6": "1 N*m"}
     return ls.load_case(CASES / "fgfbstts" / "limit_ring.toml").replace(external)
 
 

@@ -32,13 +32,14 @@ def squeezed_case(force: float) -> ls.Case:
               "support": ["1e3 N/m", f"{SPRING} N/m"]},
         "1": {"base_radius": "0.1 m", "centre": [f"{-A1} m", "0 m"]},
         "2": {"base_radius": "0.18 m", "centre": [f"{A2} m", "0 m"]},
+        "3": {"base_radius": "0.1 m", "centre": [f"{-A1} m", "0.22 m"]},
     }  # fmt: skip
     return ls.Case(
         {
             "gears": gears,
             "meshes": {
                 m: {"pressure_angle": f"{math.acos(r / a)!r} rad", "stiffness": "1e6 N*m/rad"}
-                for m, r, a in (("p-1", 0.15, A1), ("2-p", 0.23, A2))
+                for m, r, a in (("p-1", 0.15, A1), ("2-p", 0.23, A2), ("3-1", 0.2, 0.22))
             },
             "rings": {
                 "p": {
@@ -55,8 +56,8 @@ def squeezed_case(force: float) -> ls.Case:
             },
             "operating": {
                 "input": "2", "output": "1", "running": "counter-clockwise", "torque": "0 N*m",
-                # The held output carries it: it only sets the scale of forces.
-                "external": {"1": "1e5 N*m"},
+                # The output takes it from its pinion 3: it only sets the scale of forces.
+                "external": {"3": "1e5 N*m"},
             },
         }
     )  # fmt: skip
@@ -71,7 +72,7 @@ def squeezed(force: float) -> tuple[Train, Equilibrium]:
         index=1,
         rotation=dict.fromkeys(train.gears, 0.0),
         displacement={g: np.zeros(3) for g in train.gears},
-        flank_force=dict.fromkeys(("p-1", "2-p"), 0.0),
+        flank_force=dict.fromkeys(train.meshes, 0.0),
         ring_force=forces,
         radial_reaction={},
     )

@@ -233,7 +233,7 @@ class Ring(Element):
     """Stiffness of the ring [force/length], or rigid."""
 
     measured: Literal["assembled", "nominal"] = "assembled"
-    """Whether the clearance is that of the gears with their installation errors, or without."""
+    """Whether the clearance is that of the gears with their errors, or without."""
 
     ALTERNATIVES = ((("neighbours", "float", "clearance"), ("radius", "offset")),)
 

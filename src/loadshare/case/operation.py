@@ -75,7 +75,8 @@ class Operating(Element):
     """
 
     external: dict[str, Torque] = Field(default_factory=dict)
-    """Additional torques on gears [torque], positive in the gear's sense of rotation."""
+    """Additional torques on gears [torque], positive in the gear's sense of rotation; none on the
+    output or on a held gear."""
 
     forces: dict[str, Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]] = Field(
         default_factory=dict

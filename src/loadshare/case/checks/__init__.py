@@ -36,6 +36,7 @@ CHECKS: Mapping[Rule, tuple[str, ...]] = {
     fit.check_fit: ("gears", "meshes"),
     fit.check_formula_laws: ("gears",),
     law_origin.check_law_origins: ("gears",),
+    loads.check_external: (),
     loads.check_masses: ("gears",),
     loads.check_temperatures: ("gears",),
     fit.check_backlash_of_teeth: ("gears",),

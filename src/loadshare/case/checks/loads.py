@@ -1,4 +1,4 @@
-"""Checks on gravity, which needs masses, and on temperatures, for cylindrical gears only."""
+"""Checks on loads: torques that nothing feels, masses for gravity, temperatures of face gears."""
 
 from __future__ import annotations
 
@@ -9,6 +9,18 @@ from loadshare.case.keys import Path
 from loadshare.case.mass import mass_of
 from loadshare.case.quantity import MASS
 from loadshare.errors import Problem
+
+
+def check_external(draft: Draft) -> Iterator[Problem]:
+    """Yield torques on the output and on held gears, which whatever holds the gear takes."""
+    operating = draft.operating
+    held = {name: "the housing" for name, gear in draft.gears.items() if gear.held}
+    if operating is None:
+        return
+    held[operating.output] = "the driven machine"
+    for name in (name for name in operating.external if name in held):
+        what = f"has no effect: {held[name]} takes any torque on gear {name}"
+        yield draft.problem(("operating", "external", name), what, hint="Leave it out.")
 
 
 def check_masses(draft: Draft) -> Iterator[Problem]:
