@@ -355,3 +355,13 @@ def test_a_start_in_a_flat_place_does_not_blame_the_data():
     assert "more starting points are needed" in far
     assert better.unknowns[0].value == pytest.approx(4.0, abs=1e-6)
     assert better.warnings == ()
+
+
+def test_an_input_that_the_data_bound_to_one_side_only_is_not_determined():
+    """Beyond 8.35 µm float 4 touches nothing; 8.35 µm used to be found, to within 0.25 µm."""
+    base, key = shipped("fgfbstts/limit_ring"), "rings.4.float"
+    case = base.replace({key: "4 um", "measured.bench": measured(base, 0.001, **{key: "10 um"})})
+    found = ls.fit(case, {key: ("0 um", "12 um")})
+    assert found.unknowns[0].value == pytest.approx(8.34992, abs=1e-4)
+    assert found.unknowns[0].deviation == math.inf
+    assert found.warnings == (f"The data do not determine {key} to one side of its value.",)

@@ -35,7 +35,8 @@ class Unknown:
     low, high, start, value : float
         In the parameter's unit.
     deviation : float
-        Standard deviation; infinite where the data do not determine it.
+        Standard deviation, at a kink that to the side to which the figures change less; infinite
+        where the data do not determine it.
     at_bound : bool
     """
 
@@ -209,7 +210,12 @@ def _fitted(problem: LeastSquares, u: Array, chis: tuple[float, ...]) -> Fit:
     _, result = problem.solved(u)
     values = computed(problem.case, problem.targets, result)
     comparison = Comparison(tuple(map(Deviation, problem.targets, values)), result)
-    sizes, covariance, groups = _determined(problem.jacobian(u))
+    slopes = problem.slopes(u)
+    change = np.linalg.norm(slopes, axis=1)
+    # At a kink, such as where a mesh begins to carry, the data determine an input to one side only.
+    less = np.argmin(change, axis=0)
+    sizes, covariance, groups = _determined(np.where(less, slopes[1], slopes[0]))
+    one_sided = set(np.flatnonzero(change.max(axis=0) > FIT.felt))
     scale = problem.high - problem.low
     covariance = covariance * np.outer(scale, scale)
     spread = np.sqrt(np.diag(covariance))
@@ -220,7 +226,10 @@ def _fitted(problem: LeastSquares, u: Array, chis: tuple[float, ...]) -> Fit:
     figures = zip(*(column.tolist() for column in columns), at_bound, strict=True)
     unknowns = [Unknown(p, *of) for p, of in zip(problem.parameters, figures, strict=True)]
     names, too_far = [p.name for p in problem.parameters], _too_far(comparison, len(unknowns))
-    warnings = [_left_open([names[k] for k in group], bool(too_far)) for group in groups]
+    warnings = [
+        _left_open([names[k] for k in group], bool(too_far), one_sided.issuperset(group))
+        for group in groups
+    ]
     warnings += [f"{u.parameter.name} is at its bound." for u in unknowns if u.at_bound]
     return Fit(
         case=applied(problem.written, problem.parameters, problem.numbers(u)),
@@ -258,13 +267,18 @@ def _determined(jacobian: Array) -> tuple[Array, Array, list[list[int]]]:
     return np.asarray(sizes), covariance, groups
 
 
-def _left_open(names: list[str], elsewhere: bool) -> str:
-    """Say that the data do not determine some inputs; with `elsewhere`, at the point found only."""
+def _left_open(names: list[str], elsewhere: bool, one_sided: bool) -> str:
+    """Say that the data do not determine some inputs.
+
+    With `elsewhere`, this is known of the point found only; with `one_sided`, they determine that
+    an input does not change one way, but not that it does not change the other way.
+    """
     if len(names) > 1:
         return f"The data cannot tell {', '.join(names)} apart."
     # From a start where the figures are flat the search does not move.
     who = "Where the search ended, the figures do not depend on" if elsewhere else ""
-    return f"{who or 'The data do not determine'} {names[0]}."
+    to = " to one side of its value" if one_sided else ""
+    return f"{who or 'The data do not determine'} {names[0]}{to}."
 
 
 def _too_far(comparison: Comparison, unknowns: int) -> list[str]:

@@ -37,6 +37,9 @@ from loadshare.study.sensitivity import Sensitivity, sensitivity
 from loadshare.study.sensitivity.inputs import twin_of
 from loadshare.tooth import with_own_laws
 
+SIDES = ("falling", "rising")
+"""Ways in which an unknown may change from where it is."""
+
 
 class LeastSquares:
     """The least-squares problem of a fit, with unknowns scaled to [0, 1] between their bounds."""
@@ -120,7 +123,17 @@ class LeastSquares:
         return np.asarray((found - self.measured) / self.spread)
 
     def jacobian(self, u: Array) -> Array:
-        """Return the derivative of the residual with respect to the scaled unknowns."""
+        """Return the derivative of the residual with respect to the scaled unknowns.
+
+        At a kink it is the mean of both sides.
+        """
+        return np.asarray(self.slopes(u).mean(axis=0))
+
+    def slopes(self, u: Array) -> Array:
+        """Return the derivatives for falling and for rising unknowns, which differ at a kink.
+
+        Where the derivative to one side does not exist, that to the other stands in its place.
+        """
         case, result = self.solved(u)
         # An entry of a support varies with its twin, so one of the two is enough.
         keys = [
@@ -128,14 +141,17 @@ class LeastSquares:
             for p in self.parameters
         ]
         rates = sensitivity(case, [k for some in keys for k in some], positions=self.positions)
-        columns = [sum(self._column(rates, result, key) for key in some) for some in keys]
+        sides = [
+            [sum(self._column(rates, result, key, side) for key in some) for some in keys]
+            for side in SIDES
+        ]
         scale = self.high - self.low
-        return np.asarray(np.array(columns).T / self.spread[:, None] * scale)
+        return np.asarray(np.array(sides).swapaxes(1, 2) / self.spread[:, None] * scale)
 
-    def _column(self, rates: Sensitivity, result: Result, key: str) -> Array:
+    def _column(self, rates: Sensitivity, result: Result, key: str, side: str) -> Array:
         """Return the derivatives of the figures with respect to one key, per unit of its value."""
         factor = next(item.value.factor for item in rates.inputs if item.key == key)
-        rate = partial(_mean, rates, key)
+        rate = partial(_rates, rates, key, side)
         return factor * np.array([slope(t, result, rate) for t in self.targets])
 
     def descend(self, start: Array) -> tuple[float, Array]:
@@ -165,11 +181,13 @@ def _ends(bounds: object) -> list[object]:
     return list(bounds) if isinstance(bounds, Iterable) else [bounds]
 
 
-def _mean(rates: Sensitivity, key: str, position: int, kind: str) -> dict[str, float]:
-    """Return derivatives by mesh; at a kink the mean of both sides, or the side that exists."""
-    sides = [getattr(rates.rates[position, key, side], kind) for side in ("falling", "rising")]
+def _rates(rates: Sensitivity, key: str, side: str, position: int, kind: str) -> dict[str, float]:
+    """Return derivatives by mesh to one side, or to the other where that does not exist, or 0."""
+    own, other = (
+        getattr(rates.rates[position, key, s], kind) for s in (side, *(set(SIDES) - {side}))
+    )
     found = {}
-    for mesh in sides[0]:
-        known = [s[mesh] for s in sides if not math.isnan(s[mesh])]
-        found[mesh] = sum(known) / len(known) if known else 0.0
+    for mesh, here in own.items():
+        known = other[mesh] if math.isnan(here) else here
+        found[mesh] = 0.0 if math.isnan(known) else known
     return found
