@@ -33,12 +33,9 @@ from loadshare.study.parameter import (
     read_value,
 )
 from loadshare.study.positions import loaded, paths_of
-from loadshare.study.sensitivity import Sensitivity, sensitivity
+from loadshare.study.sensitivity import SIDES, Sensitivity, sensitivity
 from loadshare.study.sensitivity.inputs import twin_of
 from loadshare.tooth import with_own_laws
-
-SIDES = ("falling", "rising")
-"""Ways in which an unknown may change from where it is."""
 
 
 class LeastSquares:
