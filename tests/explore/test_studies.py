@@ -7,11 +7,12 @@ import json
 import re
 import time
 import tomllib
+from contextlib import suppress
 from itertools import pairwise
 from urllib.parse import urlsplit
 
 import pytest
-from selenium.common.exceptions import TimeoutException
+from selenium.common.exceptions import ElementNotInteractableException, TimeoutException
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from tests.chromium import badly_set, steady, waiting
@@ -280,6 +281,13 @@ def test_ticks_trace_and_a_study_on_the_page(browser, seed):
     buttons = browser.find_elements(By.CSS_SELECTOR, ".control[data-name] .row button")
     buttons[0].click()
     tick = By.CSS_SELECTOR, ".ticks button"
+
+    def pressed(page):
+        with suppress(ElementNotInteractableException):
+            page.find_element(*tick).send_keys(Keys.ENTER)
+            return True
+        return False
+
     waiting(browser, 120).until(lambda b: b.find_elements(*tick))
     # Further intervals of the slider redraw them.
     labels = steady(
@@ -288,7 +296,8 @@ def test_ticks_trace_and_a_study_on_the_page(browser, seed):
     assert any("gear 5 leaves its ring" in label for label in labels)
     buttons[1].click()
     waiting(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trace svg"))
-    steady(browser, lambda b: b.find_element(*tick).send_keys(Keys.ENTER))
+    # While the trace is being placed, ticks are out of reach for a moment.
+    waiting(browser, 60).until(lambda b: steady(b, pressed))
     says = settled(browser)
     assert says["fields"]["rings.*.float"].startswith("2.976")
     assert browser.find_elements(By.CSS_SELECTOR, "#trace svg .here")
