@@ -187,7 +187,7 @@ def test_what_solved_the_step_before_does_not_change_a_step(monkeypatch):
         return found
 
     monkeypatch.setattr(room, "stepped", both)
-    ls.march(CASES / "fgfbstts/all_elements.toml", steps=3)
+    ls.march(CASES / "fgfbstts/all_elements.toml", steps=5)
     assert any("friction followed" in rung for rung in rungs)
 
 
