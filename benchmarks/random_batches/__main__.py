@@ -14,7 +14,7 @@ import numpy as np
 
 import loadshare as ls
 from benchmarks import kept
-from benchmarks.random_batches.measure import FEW, SAMPLES, SCATTER, SLOW, measured
+from benchmarks.random_batches.measure import COUNTS, SCATTER, measured
 from benchmarks.random_trains.draw import draw
 
 ABOUT = f"""# Random batches
@@ -22,13 +22,13 @@ ABOUT = f"""# Random batches
 How fast is a batch of a train that nobody chose? [Speed against accuracy](speed.md) measures a
 few trains that we had in mind. Here random trains are drawn as for [random
 trains](random-trains.md) and [random planetary sets](planetary-sets.md), loops included, and
-each is solved for {SAMPLES} samples in which loads, errors, clearances, gaps and stiffnesses
+each is solved for {COUNTS[-1]} samples in which loads, errors, clearances, gaps and stiffnesses
 vary by up to {100 * SCATTER:.0f} % each. These trains are meant to be hard: stiffnesses that
 differ by up to nine decades, clearances of zero, loads from a millionth of the rated one, and
 often more splines, rings and bearings with clearance than any gearbox has. Times are processor
 time per equilibrium on one core, certificate and bound included, of a batch that was solved
-once before (of {FEW} samples where one takes more than {SLOW / 1e3:.0f} ms). Of each batch, three
-samples are compared with single solves.
+once before (of {COUNTS[1]} or {COUNTS[0]} samples where {COUNTS[-1]} take too long). Of each batch,
+three samples are compared with single solves.
 """
 EDGES = (10.0, 30.0, 100.0, 300.0, 1e3, 1e4, 1e5, np.inf)
 """Classes of times [µs]."""

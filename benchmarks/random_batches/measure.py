@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,10 @@ from loadshare.study.sensitivity.inputs import inputs_of
 
 Samples = Mapping[str, NDArray[np.float64]]
 
-SAMPLES, FEW = 400, 20
-SLOW = 2000.0
-"""Time of an equilibrium [µs] above which the few samples by which it is known have to do."""
+COUNTS = (20, 100, 400)
+"""Numbers of samples, of which the largest is measured that does not take too long."""
+LONGEST = 20.0
+"""Processor time [s] that the next number of samples may take, judged by the one before."""
 SCATTER = 0.1
 """Largest change of an input, in parts of its value."""
 COMPARED = 3
@@ -53,9 +55,10 @@ def measured(seed: int, number: int) -> dict[str, Any]:
     except (ls.CaseError, ls.Refused):
         return {"train": case.name}
     samples = samples_of(case, seed, number)
-    found, each = _timed(case, {key: values[:FEW] for key, values in samples.items()})
-    if each <= SLOW:
-        found, each = _timed(case, samples)
+    for count, following in pairwise((*COUNTS, COUNTS[-1])):
+        found, each = _timed(case, {key: values[:count] for key, values in samples.items()})
+        if 1e-6 * each * found.certified.size * following / count > LONGEST:
+            break
     return {
         "train": case.name,
         "equilibria": int(found.certified.size),
@@ -78,7 +81,7 @@ def samples_of(case: Case, seed: int, number: int) -> Samples:
     dice = np.random.default_rng([seed, number])
     return {
         f"{item.key} [{item.value.unit}]": item.value.number
-        * dice.uniform(1.0 - SCATTER, 1.0 + SCATTER, SAMPLES)
+        * dice.uniform(1.0 - SCATTER, 1.0 + SCATTER, COUNTS[-1])
         for item in inputs_of(case, None)
         if VARIED.fullmatch(item.key)
     }

@@ -123,6 +123,8 @@ class Bound(NamedTuple):
     """Angle [rad] between two lines that still count as nearly the same."""
     references: int = 16
     """Claims whose lines are tried for all claims whose elements act alike."""
+    operators: int = 1 << 21
+    """Numbers in the operators of claims that are found together, so that memory is bounded."""
     few: int = 8
     """Number of claims up to which each is bounded separately where lines turn."""
     gain: float = 0.5

@@ -178,23 +178,27 @@ class _Enclosure(ActingGroup):
         """Bound the errors of the forces of these columns and of the coordinates.
 
         Claims that yield alike share the linear operators of one of them; their differences are
-        bounded with the rest.
+        bounded with the rest. Those that this does not prove have operators of their own.
         """
         force = np.full(self.soft.shape, np.inf)
         coordinate = np.full((len(self.rows), len(self.statics.directions.T)), np.inf)
         allowed = rounding_of(self.found.force[self.rows], scale)
-        left, alike = np.flatnonzero(self.stray <= allowed), True
-        for _ in range(BOUND.references):
-            if not len(left):
-                break
-            middle = left[len(left) // 2]
-            # If the operators of one claim prove no other, the others are unlike: one at a time.
-            rows = left if alike else np.array([middle])
-            response = Response(self, int(middle))
+        left = np.flatnonzero(self.stray <= allowed)
+
+        def bound(rows: Numbers, whose: Numbers) -> None:
+            response = Response(self, whose)
             force[rows], coordinate[rows] = self._errors(response, rows)
-            self.shared = np.maximum(self.shared, response.shared)
-            more = left[(left != middle) & np.isinf(force[left]).any(axis=1)]
-            left, alike = more, alike and len(more) < len(left) - 1
+            self.shared[rows] = np.maximum(self.shared[rows], response.shared)
+
+        if len(left):
+            middle = left[len(left) // 2]
+            bound(left, middle[None])
+            left = left[(left != middle) & np.isinf(force[left]).any(axis=1)]
+        size = len(self.columns) * sum(self.statics.directions.shape)
+        together = max(BOUND.operators // max(size, 1), 1)
+        for at in range(0, len(left), together):
+            rows = left[at : at + together]
+            bound(rows, rows)
         return force, coordinate
 
     def _errors(self, response: Response, rows: Numbers) -> tuple[Array, Array]:
@@ -226,9 +230,9 @@ class _Enclosure(ActingGroup):
         levels = np.abs(self.level[rows])
         found = np.full(force.shape, np.inf), np.full(moved.shape, np.inf)
         steps = np.abs(force), np.abs(moved), np.abs(torque)
-        reached = response.reach(over, apart)
-        boxes = tuple(np.zeros_like(v) for v in reached)
         left = np.arange(len(rows))
+        reached = response.reach(over, apart, left)
+        boxes = tuple(np.zeros_like(v) for v in reached)
         for _ in range(BOUND.passes):
             boxes = tuple(
                 np.maximum(b, BOUND.wider * v) for b, v in zip(boxes, reached, strict=True)
@@ -244,7 +248,7 @@ class _Enclosure(ActingGroup):
                 load += put_aside(
                     self.claim.columns, self.found.spare[self.rows[rows[left]]], ends[2]
                 )
-            forces, places, torques = response.reach(load, apart[left] + gap)
+            forces, places, torques = response.reach(load, apart[left] + gap, left)
             reached = forces + push, places, torques
             proved = np.logical_and.reduce(
                 [(v <= b).all(axis=1) for v, b in zip(reached, boxes, strict=True)]

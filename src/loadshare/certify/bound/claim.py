@@ -26,7 +26,7 @@ class Claim:
     answers : Equilibria
     fine : bool
         Whether residuals are found in twice the working precision.
-    slack : ndarray, shape (m,), or None
+    slack : ndarray, shape (S, m), or None
         By how much the lengths of the columns are left open [m].
     limits : ndarray, shape (S, radials, 2), or None
         Levels [N] and reaches [m] of the radial elements that replace those of their laws.
@@ -49,8 +49,8 @@ class Claim:
         answers = self.answers.take(rows)
         here = self.situations
         here = here.take(rows) if here.count > 1 else here
-        limits = None if self.limits is None else self.limits[rows]
-        return Claim(self.columns, here, answers, self.fine, self.slack, limits)
+        slack, limits = (None if v is None else v[rows] for v in (self.slack, self.limits))
+        return Claim(self.columns, here, answers, self.fine, slack, limits)
 
     @cached_property
     def coordinates(self) -> Array:

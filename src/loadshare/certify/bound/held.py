@@ -107,7 +107,8 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
             shared += _columns(claim, friction, stop)
     if shared:
         answers = replace(claim.answers, radial_reaction=reactions)
-        claim = replace(claim, answers=answers, limits=limits, slack=slack)
+        every = np.broadcast_to(slack, (claim.count, len(slack)))
+        claim = replace(claim, answers=answers, limits=limits, slack=every)
     return HeldSlips(claim, np.array(shared, dtype=np.intp), turned)
 
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from loadshare.array_types import Array, Flags, Numbers
-from loadshare.certify.bound.acts import Act, Acts, first_acts
+from loadshare.certify.bound.acts import Act, Acts, alike, first_acts
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.held import HeldSlips, with_held_slips
 from loadshare.certify.bound.locked import locked, without
-from loadshare.certify.bound.open_slips import is_inside, open_slips, reaction_error
+from loadshare.certify.bound.open_slips import OpenSlip, is_inside, open_slips, reaction_error
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.squeezed import squeezed
 from loadshare.certify.bound.verge import on_the_verge
@@ -206,13 +206,17 @@ def _proved(
         force, coordinate = _fine(fine, act[rows], scale[rows])
         found = _largest(columns, force, flanks[rows]) / largest[rows]
         _improve(box, relative, rows, (force, coordinate, found))
-    for row in np.flatnonzero(~(relative <= CERTIFY.largest) & finite).tolist():
-        one = replace(claim.take(np.array([row])), fine=True)
-        ways = (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ()
+    ways = (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ()
+    left = np.flatnonzero(~(relative <= CERTIFY.largest) & finite)
+    together = [left[at : at + BOUND.together] for at in range(0, len(left), BOUND.together)]
+    # Together, claims are bounded less closely than alone.
+    for rows in (*together, *(left[:, None] if len(left) > 1 else ())):
         for way in (*ways, _without_rounding):
-            if not relative[row] <= CERTIFY.largest:
-                box.force[row], box.coordinate[row] = way(one, scale[row : row + 1])
-                relative[row] = _largest(columns, box.force[row], flanks[row]) / largest[row]
+            rest = rows[~(relative[rows] <= CERTIFY.largest)]
+            if len(rest):
+                some = replace(claim.take(rest), fine=True)
+                box.force[rest], box.coordinate[rest] = way(some, scale[rest])
+                relative[rest] = _largest(columns, box.force[rest], flanks[rest]) / largest[rest]
     # Where torques are not bounded closely enough for any certificate, other bounds hold only if
     # the right elements act, and secants may differ from tangents by more than was allowed for.
     unproved = ~(relative <= CERTIFY.largest) | held.denied(box.force)
@@ -222,43 +226,73 @@ def _proved(
 
 
 def _with_locked(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound the rest of a single claim with gears held that cannot move."""
-    found = _without(claim, locked(claim), scale)
-    return found.force[0], found.coordinate[0]
+    """Bound the rest of S claims with gears held that cannot move."""
+    plays = locked(claim)
+    held = np.isfinite(np.reshape([*plays.values()], (-1, claim.count))).T
+    force, coordinate = _unproved(claim)
+    for rows in alike(held):
+        gears = {g: plays[g][rows, None] for g, h in zip(plays, held[rows[0]], strict=True) if h}
+        if gears:
+            force[rows], coordinate[rows] = _without(claim.take(rows), gears, scale[rows])
+    return force, coordinate
 
 
 def _with_open_slips(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound a single claim with gears held in place whose splines have used up their friction."""
+    """Bound S claims with gears held in place whose splines have used up their friction."""
+    force, coordinate = _unproved(claim)
+    for row in range(claim.count):
+        one = np.array([row])
+        found = _with_these(claim.take(one), open_slips(claim.take(one)), scale[one])
+        if found is not None:
+            force[row], coordinate[row] = found
+    return force, coordinate
+
+
+def _with_these(
+    claim: Claim, slips: Sequence[OpenSlip], scale: Array
+) -> tuple[Array, Array] | None:
+    """Bound a single claim with the gears of some slips held in place; None without a proof."""
+    if not slips:
+        return None
     columns = claim.columns
-    slips = open_slips(claim)
-    found = _without(claim, {slip.gear: slip.play for slip in slips}, scale)
-    flanks = found.force[0, columns.flanks]
+    every, places = _without(claim, {slip.gear: slip.play[None] for slip in slips}, scale)
+    force = every[0]
+    flanks = force[columns.flanks]
     if not all(is_inside(claim, slip, flanks) for slip in slips):
-        return np.full_like(found.force[0], np.inf), np.full_like(found.coordinate[0], np.inf)
+        return None
     for slip in slips:
-        both = columns.both(columns.claims.splines.start + slip.number)
-        found.force[0, both] = reaction_error(claim, slip, flanks)
+        force[columns.both(columns.claims.splines.start + slip.number)] = reaction_error(
+            claim, slip, flanks
+        )
         bearing = columns.bearings.start + 2 * list(columns.places).index(slip.gear)
-        found.force[0, bearing : bearing + 2] = np.abs(claim.forces[0, bearing : bearing + 2])
-    return found.force[0], found.coordinate[0]
+        force[bearing : bearing + 2] = np.abs(claim.forces[0, bearing : bearing + 2])
+    return force, places[0]
 
 
-def _without(claim: Claim, gears: Mapping[str, float | Array], scale: Array) -> Box:
-    """Bound the rest of a single claim with some gears held in place, except for a play."""
+def _without(claim: Claim, gears: Mapping[str, Array], scale: Array) -> tuple[Array, Array]:
+    """Bound the rest of S claims with some gears held in place, except for a play."""
     whole = claim.columns
-    found = Box.unproved(claim, first_acts(claim))
-    if gears:
-        held, origin = without(claim, gears)
-        names = [whole.coordinates.index(n) for n in held.columns.coordinates]
-        found.force[:, origin], found.coordinate[:, names] = _fine(held, first_acts(held), scale)
-        for gear, play in gears.items():
-            at = whole.places[gear]
-            found.coordinate[0, at : at + 2] = play
-    return found
+    force, coordinate = _unproved(claim)
+    held, origin = without(claim, gears)
+    names = [whole.coordinates.index(n) for n in held.columns.coordinates]
+    force[:, origin], coordinate[:, names] = _fine(held, first_acts(held), scale)
+    for gear, play in gears.items():
+        at = whole.places[gear]
+        coordinate[:, at : at + 2] = play
+    return force, coordinate
+
+
+def _unproved(claim: Claim) -> tuple[Array, Array]:
+    """Return errors of forces (S, m) and coordinates (S, n) of which nothing is proved."""
+    columns = claim.columns
+    return (
+        np.full((claim.count, len(columns.names)), np.inf),
+        np.full((claim.count, len(columns.coordinates)), np.inf),
+    )
 
 
 def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound a single claim as if elements that carry only rounding carried nothing.
+    """Bound S claims as if elements that carry only rounding carried nothing.
 
     The load left over along moves that only they hold is then zero, to the last digit.
     """
@@ -278,11 +312,11 @@ def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
         kept[name] = np.where(np.abs(force) > rounding, force, 0.0)
     none = replace(claim, answers=replace(answers, **kept))
     box = quick_boxes(none, first_acts(none), scale, rounded=True)
-    return (box.force + np.abs(claim.forces - none.forces))[0], box.coordinate[0]
+    return box.force + np.abs(claim.forces - none.forces), box.coordinate
 
 
 def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound a single claim with friction put aside that is light compared with what is certified.
+    """Bound S claims with friction put aside that is light compared with what is certified.
 
     With memory, the friction of splines pressed to the end of their clearance is put aside too:
     there a slip can only turn, which the stop hardly allows.
@@ -292,8 +326,7 @@ def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
         stops = act.shape[1] - len(claim.columns.train.splines)
         slips = stops - len(claim.columns.train.splines)
         act[:, slips:stops][act[:, stops:] == Act.STOP] = Act.OPEN
-    force, coordinate = _fine(claim, act, scale)
-    return force[0], coordinate[0]
+    return _fine(claim, act, scale)
 
 
 def _fine(claim: Claim, act: Acts, scale: Array) -> tuple[Array, Array]:
@@ -301,12 +334,12 @@ def _fine(claim: Claim, act: Acts, scale: Array) -> tuple[Array, Array]:
     box = boxes(claim, act, scale)
     force, coordinate = box.force.copy(), box.coordinate.copy()
 
-    def try_ways(rows: Flags, doubtful: Flags) -> None:
-        for row in np.flatnonzero(rows & doubtful.any(axis=1)).tolist():
-            one = np.array([row])
-            part = replace(box.take(one), doubtful=doubtful[one])
-            single = on_the_verge(claim.take(one), act[one], scale[one], part)
-            force[row], coordinate[row] = single.force[0], single.coordinate[0]
+    def try_ways(those: Flags, doubtful: Flags) -> None:
+        rows = np.flatnonzero(those & doubtful.any(axis=1))
+        if len(rows):
+            part = replace(box.take(rows), doubtful=doubtful[rows])
+            found = on_the_verge(claim.take(rows), act[rows], scale[rows], part)
+            force[rows], coordinate[rows] = found.force, found.coordinate
 
     # An element that carries only rounding may as well be open, unless it holds a gear.
     light = _of_rounding(claim, scale) & (act != Act.OPEN)
@@ -314,10 +347,10 @@ def _fine(claim: Claim, act: Acts, scale: Array) -> tuple[Array, Array]:
     again = ~_bounded(claim, force) & light.any(axis=1)
     force[again], coordinate[again] = box.force[again], box.coordinate[again]
     try_ways(again, box.doubtful)
-    for row in np.flatnonzero(~_bounded(claim, force)).tolist():
-        one = np.array([row])
-        single = quick_boxes(claim.take(one), act[one], scale[one])
-        force[row], coordinate[row] = single.force[0], single.coordinate[0]
+    rows = np.flatnonzero(~_bounded(claim, force))
+    if len(rows):
+        found = quick_boxes(claim.take(rows), act[rows], scale[rows])
+        force[rows], coordinate[rows] = found.force, found.coordinate
     return force, coordinate
 
 

@@ -46,7 +46,7 @@ def elements(
     paired = ("skew", "size", "along", "bent", "stiff_error", "follows", "shrinks")
     found = Elements(
         act=act,
-        active=np.zeros(shape, dtype=bool),
+        active=acting(claim, act),
         force=force,
         misfit=lengths.value,
         room=np.full(shape, np.inf),
@@ -60,7 +60,6 @@ def elements(
     scalar, contacts = slice(0, columns.first_pair), len(columns.contacts)
     least = BOUND.light * scale[:, None]
     _flanks(claim, found, scale, least, verge)
-    found.active[:, columns.contacts] = act[:, :contacts] != Act.OPEN
     _springs(claim, found)
     found.width[:, scalar] += EPS * np.abs(found.misfit[:, scalar]) + TINY * sizes[:, scalar]
     force[:, scalar] = np.where(found.active[:, scalar], force[:, scalar], 0.0)
@@ -70,6 +69,17 @@ def elements(
             put_pairs(claim, act[:, contacts:], found, least, open_ended, softest)
     if claim.slack is not None:
         found.width[:] += claim.slack
+    return found
+
+
+def acting(claim: Claim, act: Acts) -> Flags:
+    """Return which columns act, shape (S, m); parameters as for `elements`."""
+    columns, contacts = claim.columns, len(claim.columns.contacts)
+    found = np.ones((len(act), len(columns.names)), dtype=bool)
+    found[:, columns.contacts] = act[:, :contacts] != Act.OPEN
+    support = claim.situations.support[:, columns.moving]
+    found[:, columns.bearings] = support.reshape(len(support), -1) > 0.0
+    found[:, columns.first_pair :] = np.repeat(act[:, contacts:] != Act.OPEN, 2, axis=1)
     return found
 
 
@@ -157,18 +167,14 @@ def _springs(claim: Claim, found: Elements) -> None:
     held = support > 0.0
     given = [
         columns.shaft_arms**2 / here.torsion[:, columns.elastic_shafts],
-        np.where(held, 1.0 / np.where(held, support, 1.0), np.nan),
+        np.where(held, 1.0 / np.where(held, support, 1.0), 0.0),
         np.repeat(here.wall, 2, axis=1),
     ]
     if columns.slips:
         given.append(np.repeat(1.0 / here.spline[:, :, 0], 2, axis=1))
     rows = max(map(len, given))
     compliance = np.concatenate([np.broadcast_to(v, (rows, v.shape[1])) for v in given], axis=1)
-    linear, stops = slice(columns.shafts.start, columns.bends.stop), columns.stops
-    held = ~np.isnan(compliance)
-    compliance = np.where(held, compliance, 0.0)
-    found.active[:, linear.start : stops.start] = held[:, : stops.start - linear.start]
-    found.active[:, columns.bends] = held[:, stops.stop - linear.start :]
+    linear = slice(columns.shafts.start, columns.bends.stop)
     found.soft[:, linear] = compliance
     yielded = compliance * claim.forces[:, linear]
     length = claim.lengths[0]

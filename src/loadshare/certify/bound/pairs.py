@@ -89,7 +89,6 @@ def put_pairs(
     found.rounding[:, first:] = np.repeat(np.where(lined & on, 2.0 * EPS * np.abs(size), 0.0), 2, 1)
     aside, found.spare[:] = _put_aside(claim, acts)
     found.rounding[:, columns.radials] += np.repeat(aside, 2, axis=1)
-    found.active[:, first:] = np.repeat(on, 2, axis=1)
     found.line[:], found.distance[:], found.size[:] = line, distance, size
     found.begins[:], found.along[:] = begins, yields
     if claim.rolls:

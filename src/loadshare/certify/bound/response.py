@@ -49,7 +49,7 @@ class ActingGroup:
         self.at = at[self.pairs]
         self.skew = found.skew[np.ix_(rows, self.pairs)]
         self._set_following()
-        self.shared = np.zeros(len(columns))
+        self.shared = np.zeros((len(rows), len(columns)))
 
     def _set_following(self) -> None:
         """Find the torques over splines [N·m], and what follows them.
@@ -74,10 +74,10 @@ class ActingGroup:
         self.level, self.room = (v[:, :, None] * line for v in rates[:2])
 
     def spread(self, pairs: Array) -> Array:
-        """Put vectors of the pairs, (pairs, 2), in their columns, by spline: (columns, splines)."""
-        spread = np.zeros((len(self.columns), len(self.twist)))
+        """Put vectors of pairs (R, pairs, 2) in their columns by spline: (R, columns, splines)."""
+        spread = np.zeros((len(pairs), len(self.columns), len(self.twist)))
         for k in (0, 1):
-            spread[self.at + k] = pairs[:, k, None] * self.splined
+            spread[:, self.at + k] = pairs[:, :, k, None] * self.splined
         return spread
 
     def per_torque(self, vectors: Array, torque: Array) -> Array:
@@ -97,7 +97,7 @@ def yielding(soft: Array, skew: Array, at: Numbers, force: Array) -> Array:
 
 
 class Response:
-    """Response of forces and coordinates to a load [N] and a gap [m], with one claim's compliances.
+    """Responses of forces and coordinates to loads [N] and gaps [m], with R claims' compliances.
 
     Friction that follows a torque T is part of the response: with levels B per torque, rooms C per
     torque and T = M F of the response without them, the resulting torque is
@@ -106,34 +106,37 @@ class Response:
     Parameters
     ----------
     part : ActingGroup
-    row : int
-        The claim.
+    rows : ndarray of int, shape (R,)
+        The claims: one, whose response others share, or as many as respond.
     """
 
-    def __init__(self, part: ActingGroup, row: int) -> None:
+    def __init__(self, part: ActingGroup, rows: Numbers) -> None:
         known = part.statics
         p, n = known.particular, known.redundant
-        self.soft, self.skew = part.soft[row], part.skew[row]
-        self.level, self.room = part.level[row], part.room[row]
+        self.soft, self.skew = part.soft[rows], part.skew[rows]
+        self.level, self.room = part.level[rows], part.room[rows]
 
         def bent(forces: Array) -> Array:
-            return yielding(self.soft, self.skew, part.at, forces.T).T
+            along = np.swapaxes(forces, -1, -2)
+            moved = yielding(self.soft[:, None], self.skew[:, None], part.at, along)
+            return np.swapaxes(moved, -1, -2)
 
         m = n.T @ bent(n)
-        if not np.isfinite(m).all():
-            m = np.zeros_like(m)
-        values, vectors = np.linalg.eigh(0.5 * (m + m.T))
+        m[~np.isfinite(m).all(axis=(1, 2))] = 0.0
+        values, vectors = np.linalg.eigh(0.5 * (m + np.swapaxes(m, 1, 2)))
         # A self-stress among rigid parts has no compliance: it is left as claimed.
-        kept = np.abs(values) > BOUND.singular * np.abs(values).max(initial=0.0)
-        basis = n @ vectors[:, kept]
-        free = n @ vectors[:, ~kept]
-        self.shared = np.where(np.abs(free).max(axis=1, initial=0.0) > BOUND.shared, np.inf, 0.0)
-        by_gap = basis / values[kept] @ basis.T
+        size = np.abs(values)
+        kept = size > BOUND.singular * size.max(axis=1, initial=0.0)[:, None]
+        stiff = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)[:, None]
+        basis, free = n @ (vectors * kept[:, None]), n @ (vectors * ~kept[:, None])
+        self.shared = np.where(np.abs(free).max(axis=2, initial=0.0) > BOUND.shared, np.inf, 0.0)
+        by_gap = (basis * stiff) @ np.swapaxes(basis, 1, 2)
         by_load = p - by_gap @ bent(p)
         self.force_by = by_load, by_gap
         self.moved_by = p.T @ bent(by_load), p.T @ (bent(by_gap) - np.eye(len(p)))
-        exact = vectors[:, kept].T @ m @ vectors[:, kept] / values[kept]
-        self.defect = float(np.abs(exact - np.eye(int(kept.sum()))).sum(axis=1).max(initial=0.0))
+        wrong = np.abs(np.swapaxes(vectors, 1, 2) @ m @ vectors * stiff - np.eye(n.shape[1]))
+        wrong *= kept[:, None] & kept[:, :, None]
+        self.defect = wrong.sum(axis=2).max(axis=1, initial=0.0)
         self._follow(part)
         self._sizes = tuple(np.abs(v) for v in (*self.force_by, *self.moved_by))
 
@@ -145,9 +148,10 @@ class Response:
         back = part.spread(self.level), part.spread(self.room)
         pushed = part.statics.directions.T @ back[0]
         around = unit + by[0] @ pushed - by[1] @ back[1]
-        inverse = np.linalg.pinv(around) if np.isfinite(around).all() else np.zeros_like(unit)
-        wrong = np.abs(inverse @ around - unit).sum(axis=1).max(initial=0.0)
-        self.defect = float(np.maximum(self.defect, wrong))
+        finite = np.isfinite(around).all(axis=(1, 2))
+        inverse = np.linalg.pinv(np.where(finite[:, None, None], around, 0.0))
+        wrong = np.abs(inverse @ around - unit).sum(axis=2).max(axis=1, initial=0.0)
+        self.defect = np.maximum(self.defect, wrong)
         torque_by = inverse @ by[0], inverse @ by[1]
 
         def followed(ways: tuple[Array, Array]) -> tuple[Array, Array]:
@@ -160,7 +164,7 @@ class Response:
             elastic[1] + back[0] @ torque_by[1],
         )
         # A sum that cancels over a spline is known only to the rounding of its terms.
-        spread = EPS * len(part.columns) + min(self.defect, 1.0)
+        spread = EPS * len(part.columns) + np.minimum(self.defect, 1.0)[:, None, None]
         self._torques = tuple(
             np.abs(v) + spread * np.abs(inverse) @ size
             for v, size in zip(torque_by, sizes, strict=True)
@@ -168,16 +172,31 @@ class Response:
 
     def step(self, load: Array, gap: Array) -> tuple[Array, Array]:
         """Return forces and coordinates under S loads and gaps."""
-        forces, moved = self.force_by, self.moved_by
-        return load @ forces[0].T + gap @ forces[1].T, load @ moved[0].T + gap @ moved[1].T
+        ways = self.force_by, self.moved_by
+        force, moved = (_times(one, load) + _times(other, gap) for one, other in ways)
+        return force, moved
 
-    def reach(self, load: Array, gap: Array) -> tuple[Array, Array, Array]:
-        """Return the largest forces, coordinates and spline torques for sizes of loads and gaps."""
-        f, g, x, y = self._sizes
-        t, u = self._torques
-        enough = 1.0 / (1.0 - self.defect) if self.defect < 0.5 else np.inf
-        return (
-            enough * (load @ f.T + gap @ g.T),
-            enough * (load @ x.T + gap @ y.T),
-            enough * (load @ t.T + gap @ u.T),
+    def reach(self, load: Array, gap: Array, rows: Numbers) -> tuple[Array, Array, Array]:
+        """Return the largest forces, coordinates and spline torques for sizes of loads and gaps.
+
+        Parameters
+        ----------
+        load, gap : ndarray, shape (S, n) and (S, k)
+        rows : ndarray of int, shape (S,)
+            Whose response each one has, if claims have their own.
+        """
+        pick = slice(None) if len(self.defect) == 1 else rows
+        enough = np.where(self.defect < 0.5, 1.0 / (1.0 - self.defect), np.inf)[pick, None]
+        f, g, x, y, t, u = (v[pick] for v in (*self._sizes, *self._torques))
+        forces, moved, torques = (
+            enough * (_times(one, load) + _times(other, gap))
+            for one, other in ((f, g), (x, y), (t, u))
         )
+        return forces, moved, torques
+
+
+def _times(matrices: Array, vectors: Array) -> Array:
+    """Return the products of vectors (S, n) with one matrix or one for each, (1 or S, k, n)."""
+    if len(matrices) == 1:
+        return np.asarray(vectors @ matrices[0].T)
+    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])

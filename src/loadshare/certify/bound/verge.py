@@ -9,192 +9,257 @@ which they can act. Source: formulation, section 16.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
 from itertools import product
 
 import numpy as np
 
-from loadshare.array_types import Array, Flags
-from loadshare.certify.bound.acts import Act, Acts
+from loadshare.array_types import Array, Flags, Numbers
+from loadshare.certify.bound.acts import Act, Acts, alike
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import elements
-from loadshare.certify.bound.quick import quick_boxes
+from loadshare.certify.bound.laws import acting
 from loadshare.settings import BOUND
 
 
 def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
-    """Bound the error of one claim some of whose elements may act otherwise.
+    """Bound the errors of S claims some of whose elements may act otherwise.
+
+    Claims whose elements may act in the same ways are bounded together; those that are not bounded
+    so, once more alone.
 
     Parameters
     ----------
     claim : Claim
-        A single one.
-    act : ndarray of int8, shape (1, elements)
+    act : ndarray of int8, shape (S, elements)
         How the elements seem to act.
-    scale : ndarray, shape (1,)
-        Load of the claim [N].
+    scale : ndarray, shape (S,)
+        Load of the claims [N].
     box : Box
-        The box found for this way of acting.
+        The boxes found for this way of acting.
     """
+    found, flanks = Box.unproved(claim, act), claim.columns.flanks
     free = ~_held_by_twins(claim, box)
-    ways = {
-        int(e): _ways(claim, int(e), int(act[0, e]), bool(box.above[0, e]))
-        for e in np.flatnonzero(box.doubtful[0] & free)
-    }
-    for _ in range(BOUND.verge_passes):
-        idle = _idle(claim, act, list(ways), scale)
-        tried = {e: way for e, way in ways.items() if e not in idle}
-        if len(tried) > BOUND.on_the_verge:
-            break
-        acts = np.array(
-            [
-                _with(act[0], dict.fromkeys(idle, Act.OPEN) | dict(zip(tried, choice, strict=True)))
-                for choice in product(*tried.values())
-            ]
-        )
-        touching = _touching(acts, idle)
-        # A contact that closes alone can change no force, and counts as open.
-        opened, of = np.unique(
-            [_without_idle(claim, a, list(tried), scale) for a in acts],
-            axis=0,
-            return_inverse=True,
-        )
-        verge = np.zeros(act.shape[1], dtype=bool)
-        verge[list(ways)] = True
-        many = _each(claim, opened, scale, verge)
-        if many.unbalanced.any():
-            # Unless it balances residuals that nothing else can balance.
-            lost = acts[many.unbalanced[of.reshape(-1)]]
-            lost[:, list(idle)] = Act.STOP
-            acts = np.unique(np.concatenate([opened[~many.unbalanced], lost]), axis=0)
-            many = _each(claim, acts, scale, verge)
-        # A way of acting in which the load is not in balance belongs to no equilibrium.
-        held = ~many.unbalanced
-        if not held.any():
-            break
-        doubtful, above = many.doubtful[held], many.above[held]
-        if not (doubtful & ~verge & free).any() and not np.array_equal(touching, opened):
-            # But such a contact may push a loose part until that touches elsewhere.
-            pushed = _each(claim, touching, scale, verge)
-            doubtful, above = pushed.doubtful, pushed.above
-        new = np.flatnonzero((doubtful & ~verge & free).any(axis=0))
-        if not len(new):
-            found = _largest(many, held)
-            flanks = found.force[:, claim.columns.flanks]
-            return found if np.isfinite(flanks).all() else quick_boxes(claim, act, scale)
-        for e in new.tolist():
-            row = int(np.flatnonzero(doubtful[:, e])[0])
-            ways[e] = _ways(claim, e, int(act[0, e]), bool(above[row, e]))
-    return quick_boxes(claim, act, scale)
-
-
-def _each(claim: Claim, acts: Acts, scale: Array, verge: Flags) -> Box:
-    """Return the boxes of one claim with its elements acting in several ways."""
-    rows = np.zeros(len(acts), dtype=np.intp)
-    return boxes(claim.take(rows), acts, scale[rows], np.broadcast_to(verge, acts.shape))
-
-
-def _touching(acts: Acts, idle: Iterable[int]) -> Acts:
-    """Return ways of acting with all contacts closed that cannot change a force."""
-    touching = acts.copy()
-    touching[:, list(idle)] = Act.STOP
-    return np.asarray(np.unique(touching, axis=0))
+    doubtful, graphs = box.doubtful & free, _graphs(claim)
+    above = doubtful & box.above
+    support = claim.situations.support.reshape(len(claim.situations.support), -1) > 0.0
+    support = np.broadcast_to(support, (claim.count, support.shape[1]))
+    kinds = act, doubtful, above, graphs.reshape(claim.count, -1), support
+    for group in alike(np.concatenate(kinds, axis=1).astype(np.int8)):
+        for rows in (group, *(group[:, None] if len(group) > 1 else ())):
+            rest = rows[~np.isfinite(found.force[rows, flanks]).all(axis=1)]
+            if len(rest):
+                one = rest[0]
+                some = _Group(claim.take(rest), act[one], scale[rest], free[rest], graphs[one])
+                found.put(rest, some.bound(doubtful[one], above[one]))
+    return found
 
 
 def _held_by_twins(claim: Claim, box: Box) -> Flags:
     """Return stops of drums without clearance that carry nothing as the opposite one is pressed."""
     stops, first = claim.columns.stops, claim.columns.flanks.stop
-    held = np.zeros(box.doubtful.shape[1], dtype=bool)
-    limits = claim.situations.stop[0].reshape(-1)
-    pressed = claim.forces[0, stops] > box.force[0, stops]
-    for k, twin in enumerate(np.arange(len(limits)) ^ 1):
-        apart = limits[k] + limits[twin] >= -EPS * abs(limits[k])
-        held[first + k] = pressed[twin] and not pressed[k] and apart
+    held = np.zeros(box.doubtful.shape, dtype=bool)
+    limits = claim.situations.stop.reshape(len(claim.situations.stop), -1)
+    pressed = claim.forces[:, stops] > box.force[:, stops]
+    for k in range(limits.shape[1]):
+        one, twin = limits[:, k], limits[:, k ^ 1]
+        apart = one + twin >= -EPS * np.abs(one)
+        held[:, first + k] = pressed[:, k ^ 1] & ~pressed[:, k] & apart
     return held
 
 
-def _with(act: Acts, changes: dict[int, int]) -> Acts:
+def _graphs(claim: Claim) -> Flags:
+    """Return what decides how radial elements may act, shape (S, radials, 5).
+
+    Whether an element can only be open or pressed (a ring, and a spline whose friction is put aside
+    where it is open), whether it has no friction, no first piece, a step, a level piece.
+    """
+    largest = np.abs(claim.forces[:, claim.columns.flanks]).max(axis=1, initial=0.0)
+    first, stick, level, reach, _ = claim.graphs.transpose(2, 0, 1)
+    with np.errstate(invalid="ignore"):
+        steps = (stick == 0.0) | (first * stick < level * (1.0 - BOUND.step))
+    is_limit = level <= BOUND.noise * largest[:, None]
+    kinds = is_limit, level == 0.0, stick == 0.0, (level > 0.0) & steps, reach > stick
+    return np.stack(kinds, axis=2)
+
+
+class _Group:
+    """Claims whose elements may act in the same ways.
+
+    Parameters
+    ----------
+    claim : Claim
+    act : ndarray of int8, shape (elements,)
+        How the elements seem to act in all of them.
+    scale : ndarray, shape (S,)
+        Load of the claims [N].
+    free : ndarray of bool, shape (S, elements)
+        Elements that may turn out to be on the verge.
+    graphs : ndarray of bool, shape (radials, 5)
+        See `_graphs`.
+    """
+
+    def __init__(self, claim: Claim, act: Acts, scale: Array, free: Flags, graphs: Flags) -> None:
+        self.claim, self.act, self.scale, self.free, self.graphs = claim, act, scale, free, graphs
+        self.first = claim.take(np.array([0]))
+        self.contacts = len(claim.columns.contacts)
+        self.radials = len(act) - len(graphs)
+        self.box = Box.unproved(claim, np.broadcast_to(act, (claim.count, len(act))))
+
+    def bound(self, doubtful: Flags, above: Flags) -> Box:
+        """Bound the errors, given which elements are in doubt, and which of them may act above."""
+        ways = {e: self._ways(e, bool(above[e])) for e in np.flatnonzero(doubtful).tolist()}
+        self._try(np.arange(self.claim.count), ways, BOUND.verge_passes)
+        return self.box
+
+    def _try(self, rows: Numbers, ways: Mapping[int, tuple[int, ...]], passes: int) -> None:
+        """Bound some of the claims with some elements on the verge, and those found on the way."""
+        idle = self._idle(list(ways))
+        tried = {e: way for e, way in ways.items() if e not in idle}
+        if len(tried) > BOUND.on_the_verge or not passes:
+            return
+        acts = np.array(
+            [
+                _with(
+                    self.act, dict.fromkeys(idle, Act.OPEN) | dict(zip(tried, choice, strict=True))
+                )
+                for choice in product(*tried.values())
+            ]
+        )
+        # A contact that closes alone can change no force, and counts as open. But it may push a
+        # loose part until that touches elsewhere.
+        opened, of = np.unique(
+            [self._without_idle(act, list(tried)) for act in acts], axis=0, return_inverse=True
+        )
+        touching = _closed(acts, idle)
+        pushed = None if np.array_equal(touching, opened) else touching
+        every = self._each(rows, opened, ways)
+        for some in alike(every.unbalanced):
+            many, lost = every.take(some), every.unbalanced[some[0]]
+            if lost.any():
+                # Unless it balances residuals that nothing else can balance.
+                closed = _closed(acts[lost[of.reshape(-1)]], idle)
+                these = np.unique(np.concatenate([opened[~lost], closed]), axis=0)
+                many = self._each(rows[some], these, ways)
+            for same in alike(many.unbalanced):
+                self._take(rows[some[same]], many.take(same), ways, pushed, passes)
+
+    def _take(
+        self,
+        rows: Numbers,
+        many: Box,
+        ways: Mapping[int, tuple[int, ...]],
+        pushed: Acts | None,
+        passes: int,
+    ) -> None:
+        """Take the largest errors of claims; where further elements are on the verge, go on."""
+        # A way of acting in which the load is not in balance belongs to no equilibrium.
+        held = ~many.unbalanced[0]
+        if not held.any():
+            return
+        new, above = self._new(rows, many.doubtful[:, held], many.above[:, held], ways)
+        quiet = np.flatnonzero(~new.any(axis=1))
+        if len(quiet) and pushed is not None:
+            more = self._each(rows[quiet], pushed, ways)
+            new[quiet], above[quiet] = self._new(rows[quiet], more.doubtful, more.above, ways)
+        for same in alike(new.astype(np.int8) + (new & above)):
+            one = same[0]
+            if new[one].any():
+                found = np.flatnonzero(new[one]).tolist()
+                others = {e: self._ways(e, bool(above[one, e])) for e in found}
+                self._try(rows[same], {**ways, **others}, passes - 1)
+                continue
+            force, coordinate = (
+                v[same][:, held].max(axis=1) for v in (many.force, many.coordinate)
+            )
+            self.box.force[rows[same]], self.box.coordinate[rows[same]] = force, coordinate
+
+    def _new(
+        self, rows: Numbers, doubtful: Flags, above: Flags, known: Iterable[int]
+    ) -> tuple[Flags, Flags]:
+        """Return further elements in doubt, and whether they may act above, (rows, elements)."""
+        doubtful = doubtful & self.free[rows][:, None]
+        doubtful[:, :, list(known)] = False
+        first = doubtful.argmax(axis=1)[:, None]
+        return np.asarray(doubtful.any(axis=1)), np.take_along_axis(above, first, axis=1)[:, 0]
+
+    def _each(self, rows: Numbers, acts: Acts, verge: Iterable[int]) -> Box:
+        """Return the boxes of claims for each of W ways of acting, arrays (rows, W, …)."""
+        on_verge = np.zeros(len(self.act), dtype=bool)
+        on_verge[list(verge)] = True
+        parts, together = [], max(BOUND.together // len(acts), 1)
+        for at in range(0, len(rows), together):
+            some = np.repeat(rows[at : at + together], len(acts))
+            many = np.tile(acts, (len(some) // len(acts), 1))
+            there = np.broadcast_to(on_verge, many.shape)
+            parts.append(boxes(self.claim.take(some), many, self.scale[some], there))
+        every = (np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Box))
+        return Box(*(v.reshape(len(rows), len(acts), *v.shape[1:]) for v in every))
+
+    def _idle(self, doubtful: list[int]) -> set[int]:
+        """Return doubtful contacts that cannot change a force, whether they touch or not."""
+        contacts = [e for e in doubtful if e < self.contacts]
+        return self._alone(_with(self.act, dict.fromkeys(contacts, Act.STOP)), contacts)
+
+    def _without_idle(self, act: Acts, doubtful: list[int]) -> Acts:
+        """Return a way of acting with those elements open that cannot change a force in it."""
+        limits = [e for e in doubtful if act[e] == Act.STOP and self._is_limit(e)]
+        return _with(act, dict.fromkeys(self._alone(act, limits), Act.OPEN))
+
+    def _is_limit(self, e: int) -> bool:
+        """Return whether an element can only be open or pressed."""
+        return e < self.radials or bool(self.graphs[e - self.radials, 0])
+
+    def _alone(self, act: Acts, some: list[int]) -> set[int]:
+        """Return those of some closed elements that take no part in any self-stress."""
+        columns = self.claim.columns
+        if not some:
+            return set()
+        active = np.flatnonzero(acting(self.first, act[None])[0])
+        part = np.zeros(len(columns.names))
+        redundant = columns.statics(active).redundant
+        part[active] = np.abs(redundant).max(axis=1, initial=0.0)
+
+        def share(e: int) -> float:
+            if e < self.contacts:
+                return float(part[columns.contacts[e]])
+            first = columns.first_pair + 2 * (e - self.contacts)
+            return float(part[first : first + 2].max())
+
+        return {e for e in some if share(e) < BOUND.idle}
+
+    def _ways(self, e: int, above: bool) -> tuple[int, ...]:
+        """Return how an element may act."""
+        act = int(self.act[e])
+        if act == Act.OPEN or (act == Act.STOP and self._is_limit(e)):
+            return Act.OPEN, Act.STOP
+        if e < self.radials:
+            return (act,)
+        _, frictionless, blunt, steps, slips = self.graphs[e - self.radials].tolist()
+        bottom = Act.OPEN if frictionless else Act.PINNED if blunt else Act.STICK
+        chain = [bottom]
+        if steps and bottom != Act.PINNED:
+            chain.append(Act.STEP)
+        if slips and not frictionless:
+            chain.append(Act.SLIP)
+        chain.append(Act.STOP)
+        if act not in chain:
+            return (act,)
+        at = chain.index(act)
+        other = at + 1 if above else at - 1
+        return (act, chain[other]) if 0 <= other < len(chain) else (act,)
+
+
+def _with(act: Acts, changes: Mapping[int, int]) -> Acts:
     changed = act.copy()
     for e, way in changes.items():
         changed[e] = way
     return changed
 
 
-def _idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> set[int]:
-    """Return doubtful contacts that cannot change a force, whether they touch or not."""
-    contacts = [e for e in doubtful if e < len(claim.columns.contacts)]
-    verge = np.zeros(act.shape, dtype=bool)
-    verge[0, contacts] = True
-    return _alone(claim, np.where(verge, np.int8(Act.STOP), act), contacts, verge, scale)
-
-
-def _without_idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> Acts:
-    """Return a way of acting with those doubtful elements open that cannot change a force in it."""
-    limits = [e for e in doubtful if act[e] == Act.STOP and _is_limit(claim, e)]
-    verge = np.zeros((1, len(act)), dtype=bool)
-    verge[0, doubtful] = True
-    return _with(act, dict.fromkeys(_alone(claim, act[None], limits, verge, scale), Act.OPEN))
-
-
-def _is_limit(claim: Claim, e: int) -> bool:
-    """Return whether an element can only be open or pressed.
-
-    This holds for a contact, a ring, and a spline whose friction is put aside where it is open.
-    """
-    columns = claim.columns
-    radial = e - len(columns.contacts) - (columns.arcs.stop - columns.arcs.start) // 2
-    largest = np.abs(claim.forces[0, columns.flanks]).max(initial=0.0)
-    return radial < 0 or bool(claim.graphs[0, radial, 2] <= BOUND.noise * largest)
-
-
-def _alone(claim: Claim, act: Acts, some: list[int], verge: Flags, scale: Array) -> set[int]:
-    """Return those of some closed elements that take no part in any self-stress."""
-    columns = claim.columns
-    if not some:
-        return set()
-    acting = np.flatnonzero(elements(claim, act, scale, verge).active[0])
-    redundant = columns.statics(acting).redundant
-    part = np.zeros(len(columns.names))
-    part[acting] = np.abs(redundant).max(axis=1, initial=0.0)
-    count = len(columns.contacts)
-
-    def share(e: int) -> float:
-        if e < count:
-            return float(part[columns.contacts[e]])
-        first = columns.first_pair + 2 * (e - count)
-        return float(part[first : first + 2].max())
-
-    return {e for e in some if share(e) < BOUND.idle}
-
-
-def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
-    """Return how an element may act."""
-    columns = claim.columns
-    contacts = len(columns.contacts)
-    arcs = (columns.arcs.stop - columns.arcs.start) // 2
-    if act == Act.OPEN or (act == Act.STOP and _is_limit(claim, e)):
-        return Act.OPEN, Act.STOP
-    first, stick, level, reach, _ = claim.graphs[0, e - contacts - arcs].tolist()
-    steps = level > 0.0 and (stick == 0.0 or first * stick < level * (1.0 - BOUND.step))
-    slips = reach > stick
-    bottom = Act.OPEN if level == 0.0 else Act.PINNED if stick == 0.0 else Act.STICK
-    chain = [bottom]
-    if steps and bottom != Act.PINNED:
-        chain.append(Act.STEP)
-    if slips and level > 0.0:
-        chain.append(Act.SLIP)
-    chain.append(Act.STOP)
-    if act not in chain:
-        return (act,)
-    at = chain.index(act)
-    other = at + 1 if above else at - 1
-    return (act, chain[other]) if 0 <= other < len(chain) else (act,)
-
-
-def _largest(many: Box, held: Flags) -> Box:
-    """Return the largest errors over all ways of acting."""
-    force = many.force[held].max(axis=0)[None]
-    coordinate = many.coordinate[held].max(axis=0)[None]
-    none = np.zeros((1, many.doubtful.shape[1]), dtype=bool)
-    return Box(force, coordinate, none, none, np.zeros(1, dtype=bool))
+def _closed(acts: Acts, contacts: Iterable[int]) -> Acts:
+    """Return ways of acting with some contacts closed, each once."""
+    closed = acts.copy()
+    closed[:, list(contacts)] = Act.STOP
+    return np.asarray(np.unique(closed, axis=0))
