@@ -26,7 +26,7 @@ from loadshare.train.build import with_laws
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.geometry import Geometry
 from loadshare.train.placed import train_at
-from loadshare.train.situations import situation_of, situations_of
+from loadshare.train.situations import Situations, situation_of, situations_of
 
 
 class Trains:
@@ -53,6 +53,7 @@ class Trains:
         self._base, self._case, self._item = base, case, item
         self._positions = tuple(positions)
         self._at = lru_cache(maxsize=None)(self._built)
+        self._situations = lru_cache(maxsize=None)(self._situations_of)
         self._numbers = lru_cache(maxsize=None)(self._numbers_of)
 
     def at(self, number: float) -> Train:
@@ -81,12 +82,25 @@ class Trains:
         ValueError
             If the train has other elements than `base`.
         """
-        if train.placed or position not in self._positions:
+        if self._is_alone(train, position):
             return Numbers.of(structure_like(base, train), situation_of(train, position))
         return self._numbers(train, base).row(self._positions.index(position))
 
+    def situation(self, train: Train, position: int) -> Situations:
+        """Return the situation of a train at a position."""
+        if self._is_alone(train, position):
+            return situation_of(train, position)
+        row = self._positions.index(position)
+        return self._situations(train).take(slice(row, row + 1))
+
+    def _is_alone(self, train: Train, position: int) -> bool:
+        return bool(train.placed) or position not in self._positions
+
+    def _situations_of(self, train: Train) -> Situations:
+        return situations_of(train, self._positions)
+
     def _numbers_of(self, train: Train, base: Structure) -> Numbers:
-        return Numbers.of(structure_like(base, train), situations_of(train, self._positions))
+        return Numbers.of(structure_like(base, train), self._situations(train))
 
 
 class Variation:
@@ -116,7 +130,8 @@ class Variation:
         train, structure = train_at(self._trains.at(number), self.position), self._structure
         if train.flank_positions(self.position) == self.cycle:
             numbers = self._trains.numbers(train, self.position, structure)
-            return Setting(train, structure, situation_of(train, self.position), numbers)
+            situation = self._trains.situation(train, self.position)
+            return Setting(train, structure, situation, numbers)
         return Setting.at(replace(train, held_at=self.cycle), self.position, structure)
 
     def setting(self, amount: float) -> Setting:
