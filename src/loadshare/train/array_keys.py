@@ -59,11 +59,11 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
             return column.is_positive and not words
         case ("splines", _, key):
             return key in _OF_SPLINES
-        case ("meshes", _, "stiffness" | "gap") | ("meshes", _, "law", "b"):
+        case ("meshes", _, "stiffness" | "gap", *_) | ("meshes", _, "law", "b", *_):
             return True
-        case ("meshes", mesh, "law", "a"):
+        case ("meshes", mesh, "law", "a", *_):
             return case.meshes[str(mesh)].gap is None
-        case ("meshes", _, "law", "c"):
+        case ("meshes", _, "law", "c", *_):
             # Without a Hertz part the law is linear, and the machine another one.
             return column.is_positive or not column.has_numbers
         case ("meshes", _, "backlash" | "normal_backlash"):
