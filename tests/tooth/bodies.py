@@ -30,6 +30,11 @@ class SpurTooth:
     axial_pitches: float = 0.0
 
     @property
+    def gear(self):
+        """Its dimensions: the tooth is its own gear."""
+        return self
+
+    @property
     def pitch_radius(self):
         return 0.5 * self.teeth * self.module
 

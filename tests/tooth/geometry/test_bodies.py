@@ -26,14 +26,14 @@ BODIES = [
 @pytest.mark.parametrize("body", BODIES)
 def test_outline_runs_from_the_middle_of_the_space_to_the_tip(body):
     w = np.linspace(0.0, 1.0, 5)
-    half_pitch = math.pi / body.teeth
+    half_pitch = math.pi / body.gear.teeth
     twist = getattr(body.gear, "twist", 0.0) * (w - 0.5) * getattr(body.gear, "face_width", 0.0)
     start, tip = body.outline(0.0, w, 1), body.outline(1.0, w, 1)
     polar = np.arctan2(start[:, 1], start[:, 0]) - twist
     np.testing.assert_allclose(polar, half_pitch, atol=1e-13)
     land = np.arctan2(tip[:, 1], tip[:, 0]) - twist
     assert ((land > 0.0) & (land < half_pitch)).all()
-    if body.shape == "face":
+    if body.gear.shape == "face":
         np.testing.assert_allclose(body.gear.blank(tip)[1], body.gear.tip_depth, atol=1e-15)
         if body.gear.shaft_angle == math.pi / 2:
             # The shaper's tip cylinder leaves a plane.
@@ -55,7 +55,7 @@ def test_outline_is_in_one_piece_and_climbs_steadily(body):
     assert (np.diff(around) < 1e-12).all()
 
 
-@pytest.mark.parametrize("body", [b for b in BODIES if b.shape != "face"])
+@pytest.mark.parametrize("body", [b for b in BODIES if b.gear.shape != "face"])
 def test_fillet_is_tangent_to_the_flank(body):
     step = 1e-7
     u = body.foot + np.array([-2 * step, -step, step, 2 * step])
@@ -143,7 +143,7 @@ def test_contact_lines_lie_on_the_outlines(made):
                 line.gap,
             ),
         ):
-            turn = rotation + 2.0 * math.pi * step * line.pair / body.teeth
+            turn = rotation + 2.0 * math.pi * step * line.pair / body.gear.teeth
             outline = to_space(body, body.outline(*uw.T, side), turn)
             reached = line.points + np.asarray(gap)[..., None] * line.normals
             np.testing.assert_allclose(outline, reached, atol=1e-12)

@@ -90,7 +90,7 @@ def pair_compliance(
                 body,
                 side,
                 # A pinion of few teeth may have less than that.
-                teeth=teeth or min(count, most_teeth(body.teeth)),
+                teeth=teeth or min(count, most_teeth(body.gear.teeth)),
                 divisions=replace(default_divisions(body), width=layers) if layers else None,
             )
             for body, side in (driver, driven)
@@ -237,11 +237,11 @@ def _strips(
             length=line.length,
             curvature=line.curvature,
             curvature_along=line.curvature_along,
-            modulus=(pair.driver.youngs_modulus, pair.driven.youngs_modulus),
-            poisson=(pair.driver.poisson, pair.driven.poisson),
+            modulus=(pair.driver.gear.youngs_modulus, pair.driven.gear.youngs_modulus),
+            poisson=(pair.driver.gear.poisson, pair.driven.gear.poisson),
             depth=(depth[0], depth[1]),
             factor=factor,
-            face_width=min(pair.driver.face_width, pair.driven.face_width),
+            face_width=min(pair.driver.gear.face_width, pair.driven.gear.face_width),
         )
 
 

@@ -229,4 +229,4 @@ def _to_free_side(middle: MiddleSurface, root: Array, n: Divisions) -> Array:
 
 def _pitches(middle: MiddleSurface, number: float) -> float:
     """Return the angle of a number of pitches [rad]."""
-    return 2.0 * np.pi * number / middle.body.teeth
+    return 2.0 * np.pi * number / middle.body.gear.teeth

@@ -56,10 +56,10 @@ class FiniteElements(Compliance):
         divisions: Divisions | None = None,
     ) -> None:
         n = divisions or default_divisions(body)
-        if teeth % 2 == 0 or not 1 <= teeth <= most_teeth(body.teeth):
+        if teeth % 2 == 0 or not 1 <= teeth <= most_teeth(body.gear.teeth):
             raise ValueError(
                 f"teeth = {teeth}: the model has tooth 0 in its middle; allowed: odd numbers below "
-                f"the {body.teeth} teeth of the gear"
+                f"the {body.gear.teeth} teeth of the gear"
             )
         if n.across % 2:
             raise ValueError(
@@ -69,7 +69,7 @@ class FiniteElements(Compliance):
         self.middle = MiddleSurface(body)
         bare = _bare_rim(body, teeth) if bare is None else bare
         mesh = block_mesh(self.middle, teeth, bare, n, n.coarser())
-        solid = build_solid(mesh, body.youngs_modulus, body.poisson)
+        solid = build_solid(mesh, body.gear.youngs_modulus, body.gear.poisson)
         self.size = solid.size
         self._flank = Sheet(n.levels(self.middle)[2 * n.fillet :], n.stations())
         self._feet = self.middle.feet(self._flank.places, side)
@@ -113,7 +113,7 @@ class FiniteElements(Compliance):
         for (k, sheet), part in zip(sheets.items(), parts, strict=True):
             weights = sheet.weights(self._feet.zw)
             at_feet = (weights @ part.reshape(len(part), -1)).reshape(-1, *part.shape[1:])
-            normals = turned(self._feet.inward, 2.0 * np.pi * k / body.teeth)
+            normals = turned(self._feet.inward, 2.0 * np.pi * k / body.gear.teeth)
             influence[k] = np.einsum("nij,ni->nj", at_feet, normals)
         return influence
 
@@ -129,11 +129,11 @@ def _bare_rim(body: ToothBody, teeth: int) -> list[int]:
     pitch = float(np.linalg.norm(space[1] - space[0]))
     depth = float(np.linalg.norm(under(body, space)[0] - space[0]))
     wanted = int(np.ceil(REACH * depth / pitch)) - teeth // 2
-    left = max(0, min(wanted, (body.teeth - teeth - 1) // 2))
+    left = max(0, min(wanted, (body.gear.teeth - teeth - 1) // 2))
     lengths: list[int] = []
     while left > 0:
         # An element may bend through 20° at most, and turn no sliver over to the next.
-        longest = min(len(lengths) + 1, max(1, body.teeth // 18))
+        longest = min(len(lengths) + 1, max(1, body.gear.teeth // 18))
         lengths.append(min(longest, left))
         left -= lengths[-1]
     return lengths

@@ -115,14 +115,14 @@ class MiddleSurface:
 def both_sides(body: ToothBody, u: Array, w: Array) -> tuple[Array, Array]:
     """Return points (..., 3) of the outline on side +1 and on side −1 [m]."""
     first = body.outline(u, w, 1)
-    if body.shape == "face":  # its tooth is its own mirror image
+    if body.gear.shape == "face":  # its tooth is its own mirror image
         return first, first * np.array([1.0, -1.0, 1.0])
     return first, body.outline(u, w, -1)
 
 
 def under(body: ToothBody, points: Array) -> Array:
     """Return the points (..., 3) of the rim's free side that lie under `points` [m]."""
-    if body.shape == "face":
+    if body.gear.shape == "face":
         moved = points.copy()
         moved[..., 2] = _floor_of(body) - body.rim
         return moved

@@ -162,7 +162,7 @@ class Plate:
         """Return the factors X of the compliances X Xᵀ of deflection and of compression."""
         from scipy.linalg import cholesky, solve_triangular
 
-        e, nu = self.middle.body.youngs_modulus, self.middle.body.poisson
+        e, nu = self.middle.body.gear.youngs_modulus, self.middle.body.gear.poisson
         plane, shear = e / (1.0 - nu**2), 0.5 * e / (1.0 + nu)
         (z, over_z), (w, over_w) = self._over_height, self._over_width
         at = self._sections[1]

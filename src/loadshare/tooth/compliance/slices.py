@@ -119,21 +119,21 @@ class Slices(Compliance):
         root = self.middle.points(middle)
         radius = float(np.hypot(root[0, 0], root[0, 1]))
         depth = float(np.linalg.norm(under(self.body, root) - root))
-        loaded = ROUND * depth if self.body.shape == "face" else radius
+        loaded = ROUND * depth if self.body.gear.shape == "face" else radius
         return Ring(
             loaded=loaded,
-            held=loaded + depth if self.body.shape == "internal" else loaded - depth,
+            held=loaded + depth if self.body.gear.shape == "internal" else loaded - depth,
             thickness=float(self._plate.station(middle).thickness[0]),
             width=self._plate.width,
-            teeth=self.body.teeth * loaded / radius,
-            poisson=self.body.poisson,
+            teeth=self.body.gear.teeth * loaded / radius,
+            poisson=self.body.gear.poisson,
         )
 
     def _through_body(self, k: int) -> Array:
         """Return the compliance (3, 3) [m/N, …] that the body adds between teeth `k` apart."""
-        found, nu = self._ring.root(k), self.body.poisson
+        found, nu = self._ring.root(k), self.body.gear.poisson
         if k == 0:
             local = root_compliance(nu)
             local[1, 1] = LEAN
             found = found - local
-        return found * (1.0 - nu**2) / (self.body.youngs_modulus * self._plate.width)
+        return found * (1.0 - nu**2) / (self.body.gear.youngs_modulus * self._plate.width)

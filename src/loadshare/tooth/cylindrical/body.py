@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,24 +28,14 @@ class HelicoidBody(ToothBody):
     gear: HelicoidGear
 
     @property
-    def shape(self) -> Literal["external", "internal"]:
-        """Kind of gear body."""
-        return "internal" if self.gear.internal else "external"
-
-    @property
     def rim(self) -> float:
         """Inner radius of the body, outer radius if internal [m]."""
         return self.gear.rim_radius
 
     @property
-    def face_width(self) -> float:
-        """Face width [m]."""
-        return self.gear.face_width
-
-    @property
     def axial_pitches(self) -> float:
         """Number of axial pitches in the face width."""
-        return self.face_width * abs(self.gear.twist) * self.gear.teeth / (2.0 * math.pi)
+        return self.gear.face_width * abs(self.gear.twist) * self.gear.teeth / (2.0 * math.pi)
 
     @cached_property
     def _root(self) -> Curve:

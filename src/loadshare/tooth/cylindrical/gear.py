@@ -125,14 +125,14 @@ class HelicoidGear(InvoluteTooth, Gear):
     pitch: PitchDeviations | None = None
 
     @property
+    def shape(self) -> Literal["external", "internal"]:
+        """Kind of gear body."""
+        return "internal" if self.internal else "external"
+
+    @property
     def pitch_radius(self) -> float:
         """Radius of the circle along which pitch deviations are measured [m]."""
         return self.radius
-
-    @property
-    def total_width(self) -> float:
-        """Width over both halves and their gap [m]."""
-        return self.helices * self.face_width + self.helix_gap * (self.helices - 1)
 
     @cached_property
     def twist(self) -> float:

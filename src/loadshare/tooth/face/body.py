@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,19 +27,9 @@ class FaceBody(ToothBody):
     gear: FaceGear
 
     @property
-    def shape(self) -> Literal["face"]:
-        """Kind of gear body."""
-        return "face"
-
-    @property
     def rim(self) -> float:
         """Thickness of the body below the root [m]."""
         return self.gear.rim_thickness
-
-    @property
-    def face_width(self) -> float:
-        """L2 − L1 [m]."""
-        return self.gear.outer - self.gear.inner
 
     @cached_property
     def flank(self) -> FaceFlank:
@@ -52,7 +41,7 @@ class FaceBody(ToothBody):
 
         `u` is linear in depth on the flank and in the shaper's angle on the fillet.
         """
-        length = self.gear.inner + np.asarray(w, float) * (self.gear.outer - self.gear.inner)
+        length = self.gear.inner + np.asarray(w, float) * self.gear.face_width
         u, *station = np.broadcast_arrays(np.asarray(u, float), length, *self._foot(length))
         length, foot_phi, foot_depth = station
         rooted = u <= self.foot
@@ -83,7 +72,7 @@ class FaceBody(ToothBody):
         length, depth = gear.blank(points)
         _, foot_depth = self._foot(length)
         up = (depth - foot_depth) / (gear.tip_depth - foot_depth)
-        return self.foot + (1.0 - self.foot) * up, (length - gear.inner) / (gear.outer - gear.inner)
+        return self.foot + (1.0 - self.foot) * up, (length - gear.inner) / gear.face_width
 
     def margins(self, a: Array, b: Array) -> dict[str, Array]:
         """Return distances to the flank's edges at ξ = `a`, Φ = `b`; see `ToothBody.margins`."""
@@ -115,7 +104,7 @@ class FaceBody(ToothBody):
         share of the length at mid-width, but at most one half, because the fillet shrinks outwards.
         """
         gear = self.gear
-        middle = np.array(0.5 * (gear.inner + gear.outer))
+        middle = np.array(gear.pitch_radius)
         corner = self._corner(middle, self._foot(middle)[0], np.linspace(0.0, 1.0, 33))
         fillet = np.linalg.norm(np.diff(corner, axis=0), axis=1).sum()
         # The tip land cuts the space while the shaper turns through the land's own half angle.

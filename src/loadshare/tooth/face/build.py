@@ -156,7 +156,7 @@ def _mesh_problems(pair: FaceGearPair) -> Iterator[Problem]:
 
 def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:
     pinion, gear, shaper = pair.pinion, pair.gear, pair.gear.shaper
-    contact, beside = pair.contact_length, abs(pair.contact_length - pair.middle)
+    contact, beside = pair.contact_length, abs(pair.contact_length - pair.gear.pitch_radius)
     if not gear.inner < contact < gear.outer:
         inside = contact <= gear.inner
         end, more, to = ("inner", "less", down) if inside else ("outer", "more", up)

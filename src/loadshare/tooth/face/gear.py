@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from loadshare.involute import InvoluteTooth
-from loadshare.tooth.geometry.body import HEIGHTS, Array, Gear, PitchDeviations, about_y
+from loadshare.tooth.geometry.body import HEIGHTS, RIM, Array, Gear, PitchDeviations, about_y
 
 
 @dataclass(frozen=True)
@@ -82,10 +83,18 @@ class FaceGear(Gear):
     poisson: float = 0.3
     pitch: PitchDeviations | None = None
 
+    shape: ClassVar[Literal["face"]] = "face"
+    assumed_rim: ClassVar[str] = RIM
+
     @property
     def pitch_radius(self) -> float:
-        """Radius of the circle along which pitch deviations are measured [m]."""
+        """Radius of the circle along which pitch deviations are measured [m]: (L1 + L2)/2."""
         return 0.5 * (self.inner + self.outer)
+
+    @property
+    def face_width(self) -> float:
+        """L2 − L1 [m]."""
+        return self.outer - self.inner
 
     @property
     def roll_ratio(self) -> float:

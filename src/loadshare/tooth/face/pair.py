@@ -101,11 +101,6 @@ class FaceGearPair(GearPair):
         """Coordinate along the shaper's axis of all points of contact of the ideal pair [m]."""
         return self.gear.axial_scale / math.cos(self.working_angle)
 
-    @property
-    def middle(self) -> float:
-        """Middle of the gear's face width (L1 + L2)/2 [m], and of the pinion's."""
-        return 0.5 * (self.gear.inner + self.gear.outer)
-
     def shaper_roll(self, roll: Roll) -> Roll:
         """Return the shaper's angle of roll at the ideal pair's contact, from the pinion's."""
         pitch = math.tan(self.working_angle)
@@ -139,7 +134,7 @@ class FaceGearPair(GearPair):
         off, ideal = self.misalignment, self.gear.shaft_angle
         crossing = self.axis_distance / math.sin(ideal)
         # Where the axes should cross, in the fixed frame.
-        centre = np.array([-self.axis_distance, 0.0, -self.middle])
+        centre = np.array([-self.axis_distance, 0.0, -self.gear.pitch_radius])
         centre = centre - crossing * about_y(-ideal)[:, 2]
         axes = about_y(-ideal - off.shaft_angle)
         origin = centre + (crossing + off.gear_shift) * axes[:, 2]
@@ -167,7 +162,7 @@ class FaceGearPair(GearPair):
         """Return lines of pairs (m,) at rotations (m,) [rad] from the ideal points of contact."""
         # Below the base circle there is no involute; no pair is active near it.
         roll = np.maximum(self.roll(pairs, 0.0, driver), 0.25 * self.pinion.form_roll)
-        own = roll, np.full_like(roll, self.contact_length - self.middle)
+        own = roll, np.full_like(roll, self.contact_length - self.gear.pitch_radius)
         other = self.shaper_roll(roll), np.full_like(roll, -self.working_angle)
         patches = self.driver_patch(pairs, own, driver), self.driven_patch(pairs, other, driven)
         turns = np.stack(self.turns(pairs, driver, driven), axis=-1)
@@ -222,10 +217,10 @@ class FaceGearPair(GearPair):
 
     def _reach(self, valleys: Valleys) -> Array:
         """Return how far from their anchors lines (m,) may reach on both flanks [m]."""
-        pinion, gear = 0.5 * self.pinion.face_width, 0.5 * (self.gear.outer - self.gear.inner)
+        pinion, gear = 0.5 * self.pinion.face_width, 0.5 * self.gear.face_width
         point, major = valleys.start.point, np.abs(valleys.start.major)
         along = np.maximum(major[:, 2], 0.2)
         # The ends of the gear are arcs, which curve away beside the pinion's axis.
         beside = np.abs(point[:, 1]) + major[:, 1] / along * min(pinion, gear)
         half = np.minimum(pinion, gear + 0.5 * beside**2 / self.gear.inner)
-        return np.asarray(1.1 * (half + abs(self.contact_length - self.middle)) / along)
+        return np.asarray(1.1 * (half + abs(self.contact_length - self.gear.pitch_radius)) / along)

@@ -6,10 +6,14 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from loadshare.tooth.cylindrical.gear import HelicoidGear
+    from loadshare.tooth.face.gear import FaceGear
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -50,11 +54,6 @@ class Gear:
     """Poisson's ratio."""
     pitch: PitchDeviations | None = None
     """Pitch deviations, if any."""
-
-    @property
-    def assumed_rim(self) -> str:
-        """Default depth of the body below the teeth, in words."""
-        return RIM
 
     @property
     def pitch_radius(self) -> float:
@@ -106,7 +105,7 @@ class ToothBody(ABC):
 
     Parameters
     ----------
-    gear : Gear
+    gear : HelicoidGear or FaceGear
         The gear.
     placement : Placement
         Its placement in the fixed frame.
@@ -114,24 +113,14 @@ class ToothBody(ABC):
         The u at which the fillet ends and the flank begins.
     """
 
-    gear: Gear
+    gear: HelicoidGear | FaceGear
     placement: Placement = field(default_factory=fixed)
     foot: float = 0.4
 
     @property
     @abstractmethod
-    def shape(self) -> Literal["external", "internal", "face"]:
-        """Kind of gear body."""
-
-    @property
-    @abstractmethod
     def rim(self) -> float:
         """Inner radius (external), outer radius (internal), thickness below root (face) [m]."""
-
-    @property
-    @abstractmethod
-    def face_width(self) -> float:
-        """Face width, of one half for a herringbone gear [m]."""
 
     @property
     def axial_pitches(self) -> float:
@@ -176,21 +165,6 @@ class ToothBody(ABC):
     @abstractmethod
     def margins(self, a: Array, b: Array) -> Mapping[str, Array]:
         """Return the distances [m] of flank points, at surface parameters, to the named edges."""
-
-    @property
-    def teeth(self) -> int:
-        """Number of teeth."""
-        return self.gear.teeth
-
-    @property
-    def youngs_modulus(self) -> float:
-        """Modulus of elasticity [Pa]."""
-        return self.gear.youngs_modulus
-
-    @property
-    def poisson(self) -> float:
-        """Poisson's ratio."""
-        return self.gear.poisson
 
     def to_body(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""

@@ -109,7 +109,7 @@ def gears_of(pair: HelicoidPair | FaceGearPair) -> PairGears:
 def _cylindrical(gear: HelicoidGear) -> dict[str, Any]:
     same = ("teeth", "profile_shift", "addendum", "dedendum", "tip_radius")
     return {
-        "type": "internal" if gear.internal else "external",
+        "type": gear.shape,
         "base_radius": _millimetres(gear.base_radius),
         "module": _millimetres(gear.module),
         "pressure_angle": _degrees(gear.pressure_angle),

@@ -64,7 +64,7 @@ def rim_effects(pair: PairFile) -> dict[Which, RimEffect]:
     found = {}
     for name, (body, side) in loaded.items():
         thickness = body.gear.rim_thickness
-        most = np.inf if body.shape != "external" else 0.5 * (thickness + body.gear.root)
+        most = np.inf if body.gear.shape != "external" else 0.5 * (thickness + body.gear.root)
         tried = thickness * THINNER, min(thickness * THICKER, most)
         others = [
             _mean_deflection(pair, own | {name: Slices(_on_rim(body, rim), side)}) for rim in tried
@@ -100,5 +100,5 @@ def _mean_deflection(pair: PairFile, models: dict[Which, Slices]) -> float:
 
 def _on_rim(body: Any, thickness: float) -> Any:
     gear = body.gear
-    rim = thickness if body.shape == "face" else gear.root - gear.kind * thickness
+    rim = thickness if body.gear.shape == "face" else gear.root - gear.kind * thickness
     return replace(body, gear=replace(gear, rim=rim))

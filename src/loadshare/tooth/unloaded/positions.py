@@ -162,13 +162,13 @@ class GearPair(ABC):
     @property
     def ratio(self) -> float:
         """Angle of the driver over angle of the driven gear, positive."""
-        return self.driven.teeth / self.driver.teeth
+        return self.driven.gear.teeth / self.driver.gear.teeth
 
     @property
     def contact_ratio(self) -> float:
         """Transverse contact ratio ε_α without load."""
         first, last = self.roll_range
-        return (last - first) * self.driver.teeth / (2.0 * math.pi)
+        return (last - first) * self.driver.gear.teeth / (2.0 * math.pi)
 
     def openings(self, pairs: Array) -> Array:
         """Return how far pitch deviations part the flanks of pairs (m,) along their normals [m].
@@ -194,7 +194,7 @@ class GearPair(ABC):
         There the contact of an ideally placed pair of teeth enters or leaves the range of roll.
         """
         driver = self.ideal(np.zeros(1))[0]
-        pitches = self.driver.gear.kind * self.driver.teeth / (2.0 * math.pi)
+        pitches = self.driver.gear.kind * self.driver.gear.teeth / (2.0 * math.pi)
         at = [float(self.roll(np.zeros(1), end, driver)[0]) for end in self.ends]
         found = {(roll - own) * pitches % 1.0 for roll in self.roll_range for own in at}
         return tuple(sorted(found))
@@ -228,7 +228,7 @@ class GearPair(ABC):
 
     def turns(self, pairs: Array, driver: Array, driven: Array) -> tuple[Array, Array]:
         """Return how far the teeth of pairs have turned at rotations of their gears [rad]."""
-        pitches = 2.0 * math.pi / self.driver.teeth, 2.0 * math.pi / self.driven.teeth
+        pitches = 2.0 * math.pi / self.driver.gear.teeth, 2.0 * math.pi / self.driven.gear.teeth
         return driver + pitches[0] * pairs, driven + self.driven_step * pitches[1] * pairs
 
     def driver_patch(self, pairs: Array, at: Place, rotation: Array) -> Patch:
