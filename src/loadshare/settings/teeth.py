@@ -36,8 +36,6 @@ class Teeth(NamedTuple):
     """Powers of b² that are kept of a strip."""
     far: float = 4.0
     """Distance, in half-widths, from which they are accurate to 4e-11."""
-    far_off: float = 1.0
-    """Gap [m] of points that only pad a batch: they never close."""
     last_step: float = 1e-9
     """Newton step [m] after which no other is made: the error is its square over a radius of
     curvature, below round-off."""

@@ -125,10 +125,8 @@ def test_more_load_more_approach_and_the_tangent_is_the_slope(seed):
 
 
 def test_contacts_solved_together_are_those_solved_alone():
-    """Sizes and loads are unequal, so that the smaller are padded; tolerance: round-off of one
-    solution.
-    """
-    problems, loads = [uneven(1), crowned(21, 3e-3, 1 / RADIUS, 0.3 / RADIUS)], [900.0, 200.0]
+    """Compliances, lines and loads are unequal; tolerance: round-off of one solution."""
+    problems, loads = [uneven(1), crowned(48, 3e-3, 1 / RADIUS, 0.3 / RADIUS)], [900.0, 200.0]
     batch = ContactBatch(problems)
     for problem, load, found in zip(
         problems, loads, solve_contacts(batch, np.array(loads)), strict=True

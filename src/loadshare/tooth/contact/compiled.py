@@ -61,7 +61,7 @@ def expand(strips, coefficients, series):  # type: ignore[no-untyped-def]
         number, place, half = strips.number[n], strips.place[n], strips.half[n]
         for i in range(len(number)):
             for j in range(len(number)):
-                if i == j or number[i] < 0.0 or number[i] != number[j]:
+                if i == j or number[i] != number[j]:
                     series[n, :, i, j] = 0.0
                     continue
                 away = place[i] - place[j]
@@ -91,8 +91,6 @@ def surface(strips, n, force, least, secant, tangent):  # type: ignore[no-untype
                 term = strips.series[n, k, i, j]
                 secant[i, j] = secant[i, j] * square[j] + term
                 tangent[i, j] = tangent[i, j] * square[j] + (1.0 + k * grows[j]) * term
-        if number[i] < 0.0:
-            continue
         for j in range(count):
             away = place[i] - place[j]
             beside = abs(abs(away) - half[j]) if i != j else 0.0

@@ -88,7 +88,7 @@ class Strips(NamedTuple):
     """Strips of M positions, N of each, in the form that compiled code reads.
 
     Lines are numbered within a position and do not interact here, because the bulk compliance
-    includes that. Strips that only fill up a position have the number −1.
+    includes that.
     """
 
     number: Array  # (M, N)
@@ -105,10 +105,7 @@ class Strips(NamedTuple):
 
 
 class ContactBatch:
-    """Contact problems of K positions, stacked to be solved together.
-
-    Problems with fewer points than the largest, N, are filled up with rigid points whose gap is
-    too large to close.
+    """Contact problems of K positions with N points each, stacked to be solved together.
 
     Parameters
     ----------
@@ -116,8 +113,6 @@ class ContactBatch:
 
     Attributes
     ----------
-    count : array (K,) of int
-        Number of points of each problem, which come before those that fill it up.
     gap : array (K, N)
         [m].
     names : tuple of str
@@ -132,27 +127,19 @@ class ContactBatch:
     def __init__(self, problems: Sequence[ToothContact]) -> None:
         from loadshare.tooth.contact.compiled import expand
 
-        self.count = np.array([len(problem.gap) for problem in problems])
         self.names = tuple(problem.name for problem in problems)
         self.which = np.arange(len(problems))
-        positions, points = len(problems), int(self.count.max())
-        self.gap = np.full((positions, points), TEETH.far_off)
-        self.fixed = np.zeros((positions, points, points))
-        strips = np.zeros((8, positions, points))
-        strips[0] = -1.0
-        for k, (problem, count) in enumerate(zip(problems, self.count, strict=True)):
-            self.gap[k, :count] = problem.gap
-            self.fixed[k, :count, :count] = problem.fixed
-            for number, (line, part) in enumerate(zip(problem.lines, problem.parts, strict=True)):
-                strips[:, k, part] = _strips(number, line)
-        series = np.empty((positions, TEETH.terms + 1, points, points))
+        self.gap = np.stack([problem.gap for problem in problems])
+        self.fixed = np.stack([problem.fixed for problem in problems])
+        strips = np.stack([_strips(problem.lines) for problem in problems], axis=1)
+        series = np.empty((len(problems), TEETH.terms + 1, *self.fixed.shape[1:]))
         self.strips = Strips._make([*strips, series, TEETH.far, strip_table()])
         expand(self.strips, COEFFICIENTS, series)
 
     def rows(self, chosen: NDArray[np.int64]) -> ContactBatch:
         """Return some of the problems, or some of them several times."""
         part = copy(self)
-        part.count, part.gap, part.which = self.count[chosen], self.gap[chosen], self.which[chosen]
+        part.gap, part.which = self.gap[chosen], self.which[chosen]
         part.names = tuple(self.names[k] for k in chosen)
         return part
 
@@ -182,11 +169,12 @@ COEFFICIENTS = np.array(
 """Coefficients of the series above; the first is the logarithm's."""
 
 
-def _strips(number: int, line: StripLine) -> Array:
-    """Return the fields of `Strips` for the strips of a line, from `number` to `level` (8, n)."""
-    scale = 1.0 / (pi * line.effective * line.length)
-    if line.narrow:
-        scale = (1.0 - line.narrow) * scale
-    numbers, widest = (np.full_like(scale, value) for value in (number, line.widest**2))
-    half = 0.5 * line.length
-    return np.stack([numbers, line.place, half, scale, line.square, widest, *line.slices])
+def _strips(lines: Sequence[StripLine]) -> Array:
+    """Return the fields of `Strips` for a position, from `number` to `level` (8, N)."""
+    found = []
+    for number, line in enumerate(lines):
+        scale = (1.0 - line.narrow) / (pi * line.effective * line.length)
+        numbers, widest = (np.full_like(scale, value) for value in (number, line.widest**2))
+        half = 0.5 * line.length
+        found.append([numbers, line.place, half, scale, line.square, widest, *line.slices])
+    return np.hstack(found)

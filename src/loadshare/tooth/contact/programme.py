@@ -106,18 +106,19 @@ def solve_contacts(
         raise ValueError(
             f"load = {wrong[0]}: a load must press the flanks together; allowed: above 0 N"
         )
+    points = batch.gap.shape[1]
     if warm is None:
-        real = np.arange(batch.gap.shape[1]) < batch.count[:, None]
-        force = np.where(real, (load / batch.count)[:, None], 0.0)
+        force = np.repeat(load[:, None] / points, points, axis=1)
     else:
         force = warm * (load / np.sum(warm, axis=1))[:, None]
     found = _Found.initial(force, warm is not None)
-    of, points = _Batch(batch.which, load, batch.gap, batch.fixed), force.shape[1]
+    of = _Batch(batch.which, load, batch.gap, batch.fixed)
     linear = _Linear(np.empty((points, points)), np.empty(points), np.empty(points))
     circling = -1
     while (circling := _settle(batch.strips, of, found, linear, circling)) >= 0:
         try:
-            linear.answer(batch.count[circling], load[circling], force[circling], solver)
+            last = float(load[circling]), force[circling]
+            linear.force[:] = by_interface(linear.matrix, linear.gap, *last, backend(solver))
         except Refused as refusal:
             message = _called(batch.names[circling]) + str(refusal)
             raise Refused(message, refusal.figures) from refusal
@@ -180,12 +181,6 @@ class _Linear(NamedTuple):
     gap: Array  # (N,)
     force: Array  # (N,)
 
-    def answer(self, count: int, load: float, last: Array, solver: str) -> None:
-        """Solve it by the solver interface; only `count` of the points are real."""
-        linear = self.matrix[:count, :count], self.gap[:count], float(load), last[:count]
-        self.force[:] = 0.0
-        self.force[:count] = by_interface(*linear, backend(solver))
-
 
 def _certified(batch: ContactBatch, load: Array, found: _Found) -> tuple[Contact, ...]:
     certificates = certify_contacts(batch, load, found.force, found.approach)
@@ -198,13 +193,15 @@ def _certified(batch: ContactBatch, load: Array, found: _Found) -> tuple[Contact
                 certificate.failing,
             )
     distance = np.where(found.force > 0.0, 0.0, found.distance)
-    return tuple(
-        Contact(
-            found.force[k, :n], float(found.approach[k]), distance[k, :n], float(found.slope[k]),
-            int(found.passes[k]), certificates[k],
-        )
-        for k, n in enumerate(batch.count)
-    )  # fmt: skip
+    columns = (
+        found.force,
+        found.approach.tolist(),
+        distance,
+        found.slope.tolist(),
+        found.passes.tolist(),
+        certificates,
+    )
+    return tuple(map(Contact, *columns))
 
 
 def _called(name: str) -> str:
