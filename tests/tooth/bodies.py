@@ -167,7 +167,6 @@ class SpurPair:
                 )
             )
         return MeshPosition(
-            index=0,
             phase=phase,
             driver_rotation=phase * 2.0 * np.pi / a.teeth,
             driven_rotation=-phase * 2.0 * np.pi / b.teeth,

@@ -41,16 +41,6 @@ class LawFit:
         """Return Δφ (K,) [rad] under `torque` [N·m]."""
         return np.asarray(self.a + self.b * torque + self.c * np.cbrt(torque) ** 2)
 
-    def secant(self, torque: float) -> Array:
-        """Return K = T/(Δφ − a) (K,) [N·m/rad at the driver]."""
-        return np.asarray(torque / (self.angle(torque) - self.a))
-
-    def tangent(self, torque: float) -> Array:
-        """Return dT/dΔφ (K,) [N·m/rad at the driver]; 0 without load where c > 0."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            hertz = np.where(self.c > 0.0, 2.0 / 3.0 * self.c / np.cbrt(torque), 0.0)
-        return np.asarray(1.0 / (self.b + hertz))
-
 
 def fit_law(torque: Array, angle: Array) -> LawFit:
     """Fit a, b and c to angles under three torques or more.

@@ -16,8 +16,8 @@ import numpy as np
 
 from loadshare.errors import Refused
 from loadshare.tooth.analysis.fit import FIT_LOADS
-from loadshare.tooth.analysis.result import Beside, LineLoad, Ltca
-from loadshare.tooth.analysis.sampling import cells
+from loadshare.tooth.analysis.result import LineLoad, Ltca, Sampled
+from loadshare.tooth.analysis.sampling import at_each, cells
 from loadshare.tooth.compliance.interface import Compliance, Flank
 from loadshare.tooth.contact.problem import ContactBatch, ToothContact
 from loadshare.tooth.contact.programme import Contact, solve_contacts
@@ -153,8 +153,8 @@ def ltca(
     if means and not isinstance(phases, int):
         raise ValueError("means need the number of positions, not phases")
     places = [k / phases for k in range(phases)] if isinstance(phases, int) else list(phases)
-    count, parts_of = len(places), cells(len(places), pair.changes) if means else None
-    if parts_of is not None:
+    count, parts_of = len(places), cells(len(places), pair.changes) if means else at_each(places)
+    if means:
         places += parts_of.phase.tolist()
     if isinstance(compliance, str):
         compliance = pair_compliance(pair, compliance)
@@ -171,6 +171,7 @@ def ltca(
                 progress(len(found) * count // len(places), count)
     contacts = tuple(found[k] for k in range(len(positions)))
     _refuse_falling(problems, contacts)
+    sampled = slice(count if means else 0, None)
     return Ltca(
         rated=torque,
         torque=torques,
@@ -180,7 +181,7 @@ def ltca(
         contacts=contacts[:count],
         lines=tuple(map(_line_loads, positions[:count], problems[:count], contacts[:count])),
         compliance=compliance.model,
-        beside=None if parts_of is None else Beside(parts_of, positions[count:], contacts[count:]),
+        sampled=Sampled(parts_of, positions[sampled], contacts[sampled]),
     )
 
 

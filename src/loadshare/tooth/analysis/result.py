@@ -78,8 +78,8 @@ class EdgeContact:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Beside:
-    """Contact between the positions, from which means follow.
+class Sampled:
+    """Contact from which the law follows: at the positions, or between them for means.
 
     Attributes
     ----------
@@ -120,8 +120,8 @@ class Ltca:
         Load on each line of each position and load.
     compliance : str
         Model of the compliances.
-    beside : Beside, optional
-        Contact between the positions.
+    sampled : Sampled
+        Contact from which the law follows.
     """
 
     rated: float
@@ -132,7 +132,7 @@ class Ltca:
     contacts: tuple[tuple[Contact, ...], ...]
     lines: tuple[tuple[tuple[LineLoad, ...], ...], ...] = field(repr=False)
     compliance: str
-    beside: Beside | None = field(default=None, repr=False)
+    sampled: Sampled = field(repr=False)
 
     @cached_property
     def phase(self) -> Array:
@@ -157,18 +157,14 @@ class Ltca:
     @cached_property
     def elastic(self) -> Array:
         """Approach (K, L) [m] to which the law is fitted: at the positions, or their means."""
-        if self.beside is None:
-            return self.approach
-        every = np.array([[c.approach for c in row] for row in self.beside.contacts])
-        return self.beside.cells.mean(every)
+        every = [[c.approach for c in row] for row in self.sampled.contacts]
+        return self.sampled.cells.mean(every)
 
     @cached_property
     def law_angle(self) -> Array:
         """Δφ (K, L) [rad at the driver] that the law is fitted to: at positions, or their means."""
-        lead = self.unloaded_error
-        if self.beside is not None:
-            every = np.array([p.transmission_error for p in self.beside.positions])
-            lead = self.beside.cells.mean(every)
+        every = [p.transmission_error for p in self.sampled.positions]
+        lead = self.sampled.cells.mean(every)
         return np.asarray(lead[:, None] + self.elastic / self.arm)
 
     @cached_property
@@ -207,10 +203,7 @@ class Ltca:
         It follows from the derivative of the contact itself, not from the fitted law.
         """
         k = self._load(part)
-        slope = np.array([row[k].tangent for row in self.contacts])
-        if self.beside is not None:
-            every = np.array([row[k].tangent for row in self.beside.contacts])
-            slope = self.beside.cells.mean(every)
+        slope = self.sampled.cells.mean([row[k].tangent for row in self.sampled.contacts])
         return np.asarray(self.helices * self.arm**2 / slope)
 
     def increment(self, low: float, high: float) -> Array:

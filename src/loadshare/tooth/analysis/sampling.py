@@ -43,6 +43,12 @@ class Cells:
         return np.asarray(np.tensordot(self.weight, np.asarray(values, float), axes=1))
 
 
+def at_each(phases: ArrayLike) -> Cells:
+    """Return cells in which the value of every position is that at its own phase."""
+    phase = np.asarray(phases, float)
+    return Cells(phase, np.eye(len(phase)))
+
+
 def cells(count: int, changes: Sequence[float]) -> Cells:
     """Divide the mesh cycle into parts around `count` positions, and these at changes of contact.
 

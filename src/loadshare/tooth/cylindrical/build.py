@@ -67,7 +67,7 @@ def helicoid_pair(
     """
     misalignment = misalignment or Misalignment()
     refuse(value_problems(driver, "driver") + value_problems(driven, "driven"))
-    found = gear_problems(driver, "driver") + gear_problems(driven, "driven")
+    found = [*gear_problems(driver, "driver"), *gear_problems(driven, "driven")]
     refuse([*found, *_partner_problems(driver, driven, misalignment)])
     base = base_distance(driver, driven)
     if centre_distance is None:

@@ -12,11 +12,6 @@ from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.problems import Check, digits, down, failed, millimetres, problem, up
 
 
-def gear_problems(gear: HelicoidGear, key: str) -> list[Problem]:
-    """Return all problems of one gear, with keys below `key`."""
-    return value_problems(gear, key) or list(_tooth_problems(gear, key))
-
-
 def value_problems(gear: HelicoidGear, key: str) -> list[Problem]:
     """Return the values that no gear can have, each checked alone."""
     found = failed(key, "no gear can have this value", _values(gear))
@@ -68,7 +63,8 @@ def _amounts(gear: HelicoidGear) -> Iterator[Check]:
         yield f"modification.{name}", amount, 0.0 <= amount <= largest, allowed
 
 
-def _tooth_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
+def gear_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
+    """Yield the problems of a gear whose values are possible, with keys below `key`."""
     yield from (_internal_problems if gear.internal else _external_problems)(gear, key)
     depth = gear.kind * (gear.root - gear.rim_radius)
     if not (depth > 0.0 and gear.rim_radius > 0.0):

@@ -60,7 +60,7 @@ def face_gear_pair(
     """
     none = "no face gear can have this value"
     refuse(value_problems(pinion, "driver") + failed("driven", none, _values(gear)))
-    found = gear_problems(pinion, "driver") + _partner_problems(pinion, gear.shaper)
+    found = [*gear_problems(pinion, "driver"), *_partner_problems(pinion, gear.shaper)]
     refuse([*found, *_shaper_problems(gear)])
     pair = FaceGearPair(pinion, gear, misalignment or FaceMisalignment())
     try:

@@ -73,7 +73,6 @@ class FaceGearPair(GearPair):
     misalignment: FaceMisalignment = field(default_factory=FaceMisalignment)
 
     driven_side = -1
-    overlap_ratio = 0.0
 
     @cached_property
     def working_angle(self) -> float:

@@ -10,6 +10,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from loadshare.case.keys import parse, unmatched, walk
 from loadshare.case.origin import Origin
 from loadshare.case.quantity import ANGLE, LENGTH
@@ -24,7 +26,7 @@ from loadshare.one_thread import one_thread
 from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
 from loadshare.tooth.analysis.result import Ltca
-from loadshare.tooth.analysis.sampling import cells
+from loadshare.tooth.analysis.sampling import at_each, cells
 from loadshare.tooth.cylindrical.build import helicoid_pair, overlap_problems
 from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
@@ -42,7 +44,7 @@ from loadshare.tooth.pair.model import (
     HelicoidContent,
 )
 from loadshare.tooth.problems import refuse
-from loadshare.tooth.unloaded.positions import transmission_error
+from loadshare.tooth.unloaded.positions import touching
 
 Tick = Callable[[int, int], None]
 
@@ -99,19 +101,15 @@ class PairFile:
         geometry = self.geometry
         if isinstance(geometry, HelicoidPair):
             return 0.0
-        without = replace(geometry.misalignment, offset=0.0, gear_shift=0.0)
-        if geometry.misalignment == without:
+        kept = replace(geometry.misalignment, offset=0.0, gear_shift=0.0)
+        if geometry.misalignment == kept:
             return 0.0
-        placed = replace(geometry, misalignment=without)
+        placed = replace(geometry, misalignment=kept)
         count = self.analysis.positions
         means = self.analysis.sampling == "means"
-        parts = cells(count, geometry.changes) if means else None
-        phases = [k / count for k in range(count)] if parts is None else parts.phase.tolist()
-        leads = [
-            transmission_error(geometry, phase) - transmission_error(placed, phase)
-            for phase in phases
-        ]
-        return sum(leads) / len(leads) if parts is None else float(parts.mean(leads).mean())
+        parts = cells(count, geometry.changes) if means else at_each(np.arange(count) / count)
+        leads, without = (touching(pair, parts.phase)[0] for pair in (geometry, placed))
+        return float(parts.mean(leads - without).mean())
 
     def revised(
         self,

@@ -77,8 +77,6 @@ class MeshPosition:
 
     Parameters
     ----------
-    index : int
-        Number of the position within the cycle, from 0; 0 for a position asked for on its own.
     phase : float
         0 ≤ phase < 1 of the mesh cycle; the driver turns by one pitch per cycle.
     driver_rotation, driven_rotation : float
@@ -90,7 +88,6 @@ class MeshPosition:
         Every pair whose line has a part on both active flanks, by rising pair index.
     """
 
-    index: int
     phase: float
     driver_rotation: float
     driven_rotation: float
@@ -140,9 +137,9 @@ class GearPair(ABC):
         """Driver's angle of roll over which both flanks are active [rad]."""
 
     @property
-    @abstractmethod
     def overlap_ratio(self) -> float:
         """Overlap ratio ε_β of one half; 0 for spur teeth and face gears."""
+        return 0.0
 
     @property
     def driven_step(self) -> int:
@@ -289,7 +286,7 @@ class GearPair(ABC):
             own = np.flatnonzero(found.position == k)
             rotations = float(found.driver[own[0]]), float(found.driven[own[0]])
             own_lines = tuple(lines[i] for i in own)
-            made.append(MeshPosition(k, phase, *rotations, float(error[k]), own_lines))
+            made.append(MeshPosition(phase, *rotations, float(error[k]), own_lines))
         return tuple(made)
 
 
@@ -305,7 +302,7 @@ def transmission_error(pair: GearPair, phase: float) -> float:
 
 
 def touching(
-    pair: GearPair, phases: Sequence[float], points: int = FEWEST
+    pair: GearPair, phases: Sequence[float] | Array, points: int = FEWEST
 ) -> tuple[Array, Extents, Trace]:
     """Find where the first flanks touch.
 
@@ -354,7 +351,7 @@ def meeting_problems(pair: GearPair) -> list[Problem]:
     if not off:
         return []
     try:
-        touching(pair, list(np.arange(TEETH.looked_at) / TEETH.looked_at))
+        touching(pair, np.arange(TEETH.looked_at) / TEETH.looked_at)
     except NoContactError as error:
         name, value = next(iter(off.items()))
         alone = len(off) == 1
