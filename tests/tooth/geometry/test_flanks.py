@@ -2,7 +2,6 @@
 gear against the shaper that cuts it."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -42,7 +41,7 @@ FLANKS = [
     helicoid(),
     helicoid(0.4, side=-1),
     helicoid(-0.3, modification=RELIEVED),
-    helicoid(0.2, modification=replace(RELIEVED, end_relief=5e-6, end_relief_length=3e-3), side=-1),
+    helicoid(0.2, modification=RELIEVED._replace(end_relief=5e-6, end_relief_length=3e-3), side=-1),
     helicoid(internal=True),
     helicoid(0.3, internal=True, modification=RELIEVED, side=-1),
     FaceFlank(face_gear(), -1),
@@ -102,7 +101,7 @@ def test_modification_is_taken_off_along_the_normal(side):
     roll, axial = np.broadcast_arrays(*spread(plain))
     before, after = plain.patch(roll, axial, 0.0), cut.patch(roll, axial, 0.0)
     depth = dot(before.point - after.point, before.normal)
-    taken, radius = cut.gear.taken, cut.gear.base_radius
+    taken, radius = cut.numbers, cut.gear.base_radius
     expected = [
         profile(taken, radius * a)[0] + lead(taken, b)[0]
         for a, b in zip(roll.ravel(), axial.ravel(), strict=True)

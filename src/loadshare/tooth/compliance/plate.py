@@ -231,10 +231,7 @@ def _gauss(low: float, high: float, count: int) -> tuple[Array, Array]:
     return np.asarray(low + half * (nodes + 1.0)), np.asarray(half * weights)
 
 
-@cache
-def _leggauss(count: int) -> tuple[Array, Array]:
-    nodes, weights = leggauss(count)
-    return np.asarray(nodes), np.asarray(weights)
+_leggauss = cache(leggauss)
 
 
 def _legendre(place: Array, degree: int) -> tuple[Array, Array]:

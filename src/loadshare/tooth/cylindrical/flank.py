@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from loadshare.tooth.cylindrical.gear import HelicoidGear, Removal
+from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import Patch, patch
 
@@ -66,12 +66,19 @@ class HelicoidFlank:
             half_angle=gear.base_half_angle,
             sine=math.sin(angle),
             cosine=math.cos(angle),
-            taken=gear.taken,
+            root=gear.base_radius * gear.form_roll,
+            tip=gear.base_radius * gear.tip_roll,
+            width=float(gear.face_width),
+            taken=gear.modification,
         )
 
 
 class HelicoidNumbers(NamedTuple):
-    """Numbers of a flank, named as in `HelicoidGear`; sine and cosine are those of β_b."""
+    """Numbers of a flank, named as in `HelicoidGear`; sine and cosine are those of β_b.
+
+    `root` and `tip` are lengths of roll at the ends of the profile [m], root > tip for an internal
+    gear; `width` is the face width [m], the flank being −width/2 ≤ ζ ≤ width/2.
+    """
 
     side: float
     kind: float
@@ -80,4 +87,7 @@ class HelicoidNumbers(NamedTuple):
     half_angle: float
     sine: float
     cosine: float
-    taken: Removal
+    root: float
+    tip: float
+    width: float
+    taken: Modification

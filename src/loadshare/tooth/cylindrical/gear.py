@@ -14,11 +14,11 @@ HALF = 0.5
 """Least radius, over the root radius, at which the body of an external gear is assumed to end."""
 
 
-@dataclass(frozen=True)
-class Modification:
+class Modification(NamedTuple):
     """Micro-geometry of both flanks of a tooth; every amount is material taken off [m].
 
-    Amounts are measured along the flank's normal.
+    Amounts are measured along the flank's normal. They are floats, because code that is compiled
+    reads them; other types of numbers would compile it again.
 
     Parameters
     ----------
@@ -45,25 +45,6 @@ class Modification:
     lead_crowning: float = 0.0
     end_relief: float = 0.0
     end_relief_length: float = 0.0
-
-
-class Removal(NamedTuple):
-    """A modification applied to a usable flank, in the form that compiled code reads.
-
-    `root` and `tip` are lengths of roll at the ends of the profile [m], root > tip for an internal
-    gear; `width` is the face width [m], the flank being −width/2 ≤ ζ ≤ width/2.
-    """
-
-    tip_relief_exponent: int
-    root: float
-    tip: float
-    width: float
-    tip_relief: float
-    tip_relief_length: float
-    profile_crowning: float
-    lead_crowning: float
-    end_relief: float
-    end_relief_length: float
 
 
 @dataclass(frozen=True)
@@ -172,19 +153,6 @@ class HelicoidGear(InvoluteTooth, Gear):
         depth = (self.straight_dedendum - self.profile_shift) * self.module
         past_pitch = depth / math.sin(self.transverse_angle)
         return math.tan(self.transverse_angle) - past_pitch / self.base_radius
-
-    @property
-    def taken(self) -> Removal:
-        """The modification applied to the usable flank."""
-        # Floats, because code is compiled for them; other types of numbers would recompile it.
-        amounts = {name: float(getattr(self.modification, name)) for name in Removal._fields[4:]}
-        return Removal(
-            self.modification.tip_relief_exponent,
-            self.base_radius * self.form_roll,
-            self.base_radius * self.tip_roll,
-            float(self.face_width),
-            **amounts,
-        )
 
     @property
     def rim_radius(self) -> float:

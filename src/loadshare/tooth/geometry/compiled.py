@@ -15,16 +15,16 @@ compiled = jit(nogil=True, error_model="numpy")
 
 
 @compiled
-def profile(taken, roll):  # type: ignore[no-untyped-def]
+def profile(gear, roll):  # type: ignore[no-untyped-def]
     """Return the material taken off at a length of roll [m], and its first two derivatives."""
-    half = 0.5 * (taken.tip - taken.root)
-    middle = roll - 0.5 * (taken.tip + taken.root)
+    taken, half = gear.taken, 0.5 * (gear.tip - gear.root)
+    middle = roll - 0.5 * (gear.tip + gear.root)
     bend = taken.profile_crowning / half**2
     height, slope, second = bend * middle**2, 2.0 * bend * middle, 2.0 * bend
     if taken.tip_relief != 0.0:
         # Grows towards the tip, where the roll of an internal gear is shortest.
         length, n = np.sign(half) * taken.tip_relief_length, taken.tip_relief_exponent
-        into = (roll - taken.tip) / length + 1.0
+        into = (roll - gear.tip) / length + 1.0
         if into > 0.0:
             height += taken.tip_relief * into**n
             slope += taken.tip_relief * n * into ** (n - 1) / length
@@ -33,12 +33,13 @@ def profile(taken, roll):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def lead(taken, axial):  # type: ignore[no-untyped-def]
+def lead(gear, axial):  # type: ignore[no-untyped-def]
     """Return the material taken off at ζ [m], and its first two derivatives."""
-    bend = 4.0 * taken.lead_crowning / taken.width**2
+    taken = gear.taken
+    bend = 4.0 * taken.lead_crowning / gear.width**2
     height, slope, second = bend * axial**2, 2.0 * bend * axial, 2.0 * bend
     if taken.end_relief != 0.0:
-        into = (abs(axial) - 0.5 * taken.width) / taken.end_relief_length + 1.0
+        into = (abs(axial) - 0.5 * gear.width) / taken.end_relief_length + 1.0
         if into > 0.0:
             height += taken.end_relief * into
             slope += taken.end_relief / taken.end_relief_length * np.sign(axial)
@@ -55,9 +56,9 @@ def helicoid(gear, roll, axial, turn, point):  # type: ignore[no-untyped-def]
     # Components along e_r, e_t and e_z, which turn with φ: the generator of the helicoid is
     # (0, sin β_b, cos β_b), the plain normal s (0, cos β_b, −sin β_b).
     across, up, arc = s * cosine, -s * sine, -per_roll * radius * roll
-    taken, by_roll, by_roll2 = profile(gear.taken, radius * roll)
+    taken, by_roll, by_roll2 = profile(gear, radius * roll)
     by_roll, by_roll2 = radius * by_roll, radius**2 * by_roll2
-    more, by_axial, by_axial2 = lead(gear.taken, axial)
+    more, by_axial, by_axial2 = lead(gear, axial)
     taken += more
     reach = radius * roll - gear.kind * cosine * taken
     # Along e_r, generator and plain normal, the normal is (tilt, lean, 1), normalised.
