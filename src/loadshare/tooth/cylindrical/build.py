@@ -19,10 +19,7 @@ from loadshare.involute import (
 from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.checks import gear_problems, value_problems
 from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.cylindrical.pair import (
-    HelicoidPair,
-    Misalignment,
-)
+from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
 from loadshare.tooth.problems import (
     Check,
     degrees,
@@ -35,7 +32,7 @@ from loadshare.tooth.problems import (
     same,
     up,
 )
-from loadshare.tooth.unloaded.positions import meeting_problems
+from loadshare.tooth.unloaded.positions import meeting_problems, ratio_problems
 
 
 def helicoid_pair(
@@ -169,18 +166,15 @@ def _mesh_problems(pair: HelicoidPair) -> Iterator[Problem]:
         *(_fouling(pair) if pair.kind < 0 else ()),
     ]
     yield from found
-    total = pair.contact_ratio + pair.overlap_ratio
     low, high = pair.ends
     if low >= high:
         reach = 0.5 * (driver.face_width + driven.face_width)
         shift, apart = pair.misalignment.axial_shift, "the face widths no longer overlap"
         allowed = f"less than {millimetres(reach, down)}"
         yield problem("misalignment.axial_shift", millimetres(shift), apart, allowed)
-    elif not found and (total < 1.0 or pair.contact_ratio <= 0.0):
-        what = f"the contact ratio is {total:.3f}: at some positions no teeth are in contact"
-        allowed = "a contact ratio of 1 or more"
+    elif not found:
         hint = "Larger addenda, a smaller centre distance or a wider helical gear raise it."
-        yield problem("driver.addendum", driver.addendum, what, allowed, hint)
+        yield from ratio_problems(pair, hint)
 
 
 def _tip_problems(

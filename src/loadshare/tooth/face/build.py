@@ -30,7 +30,7 @@ from loadshare.tooth.problems import (
     same,
     up,
 )
-from loadshare.tooth.unloaded.positions import meeting_problems
+from loadshare.tooth.unloaded.positions import meeting_problems, ratio_problems
 
 
 def face_gear_pair(
@@ -64,7 +64,10 @@ def face_gear_pair(
     refuse([*found, *_shaper_problems(gear)])
     pair = FaceGearPair(pinion, gear, misalignment or FaceMisalignment())
     try:
-        refuse((*_limit_problems(gear), *_mesh_problems(pair)))
+        found = list(_contact_problems(pair))
+        if not found:
+            found += ratio_problems(pair, "Larger addenda of pinion, gear and shaper raise it.")
+        refuse((*_limit_problems(gear), *found))
     except NoLimitError:
         what = "the shaper cuts no teeth with this addendum"
         refuse([problem("driven.addendum", gear.addendum, what, "a smaller one")])
@@ -138,20 +141,6 @@ def _limit_problems(gear: FaceGear) -> Iterator[Problem]:
         allowed = f"at most L2 = {millimetres(pointed, down)}"
         hint = "A smaller addendum of the gear raises this limit."
         yield problem("driven.outer", gear.outer, what, allowed, hint)
-
-
-def _mesh_problems(pair: FaceGearPair) -> Iterator[Problem]:
-    found = list(_contact_problems(pair))
-    yield from found
-    if not found and pair.contact_ratio < 1.0:
-        yield problem(
-            "driver.addendum",
-            pair.pinion.addendum,
-            f"the contact ratio is {pair.contact_ratio:.3f}: "
-            "at some positions no teeth are in contact",
-            "a contact ratio of 1 or more",
-            "Larger addenda of pinion, gear and shaper raise it.",
-        )
 
 
 def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -343,6 +343,15 @@ def touching(
         error = error + np.where(apart, least / pair.arm, 0.0)
     found = pair.extents(driver + error, driven)
     return error, found, least_gap(found, points)[2]
+
+
+def ratio_problems(pair: GearPair, hint: str) -> Iterator[Problem]:
+    """Yield a problem if there are positions without teeth in contact."""
+    total = pair.contact_ratio + pair.overlap_ratio
+    if total < 1.0 or pair.contact_ratio <= 0.0:
+        what = f"the contact ratio is {total:.3f}: at some positions no teeth are in contact"
+        allowed = "a contact ratio of 1 or more"
+        yield problem("driver.addendum", pair.driver.gear.addendum, what, allowed, hint)
 
 
 def meeting_problems(pair: GearPair) -> list[Problem]:
