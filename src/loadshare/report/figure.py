@@ -220,10 +220,11 @@ class Figure(Comparable):
             return self.to_svg()
         if form == "html":
             # The page writer of vl-convert leaves texts of the specification unescaped.
-            from loadshare.report.page.offline import figure_page
+            from loadshare.report.page.offline import render
 
             title = self.spec.get("title", "")
-            return figure_page(self.spec, title["text"] if isinstance(title, dict) else title)
+            text = title["text"] if isinstance(title, dict) else title
+            return render("figure.html", title=text, spec=self.spec)
         if form == "json":
             return json.dumps(self.spec, indent=1, ensure_ascii=False) + "\n"
         # Every picture is drawn once, as SVG, from which PNG and PDF are converted.

@@ -44,9 +44,10 @@ def plot(found: object, *settings: Any, **named: Any) -> Any:
     raise TypeError(f"there are no pictures of {type(found).__name__}, only of results and studies")
 
 
-@plot.register
-def _(found: Result) -> Plots:
-    return Plots(found)
+plot.register(Result, Plots)
+plot.register(Critical, critical.critical)
+plot.register(Sensitivity, sensitivity.sensitivity)
+plot.register(Comparison, comparison.comparison)
 
 
 @plot.register
@@ -55,24 +56,13 @@ def _(found: Sweep, *settings: Any, **named: Any) -> Figure:
 
 
 @plot.register
-def _(found: Critical) -> Figure:
-    return critical.critical(found)
-
-
-@plot.register
-def _(found: Sensitivity, stage: str = "system", over: Over = "stage") -> Figure:
-    return sensitivity.sensitivity(found, stage, over)
-
-
-@plot.register
 def _(found: March, over: branches.Mean = "stage") -> Figure:
     return branches.share(found.result, over)
 
 
-@plot.register(Comparison)
-@plot.register(Fit)
-def _(found: Comparison | Fit) -> Figure:
-    return comparison.comparison(found.comparison if isinstance(found, Fit) else found)
+@plot.register
+def _(found: Fit) -> Figure:
+    return comparison.comparison(found.comparison)
 
 
 @plot.register

@@ -64,9 +64,9 @@ class Chapter:
     outcome: str
     verdict: str
     problems: list[str]
-    case: Case | None
-    result: Result | None
-    drawing: Figure | None
+    case: Case | None = None
+    result: Result | None = None
+    drawing: Figure | None = None
     figures: Sequence[Figure] = ()
     summary: Sequence[Table] = ()
     trust: Mapping[str, str] = field(default_factory=dict)
@@ -183,8 +183,6 @@ def _unusable(file: str, error: CaseError) -> Chapter:
         outcome=UNUSABLE,
         verdict="This case cannot be used; nothing was solved.",
         problems=[str(problem) for problem in error.problems],
-        case=None,
-        result=None,
         drawing=drawing,
     )
 

@@ -66,8 +66,3 @@ def render(template: str, **values: Any) -> str:
     hashes = (sha256(script.encode()).digest() for script in SCRIPT.findall(page))
     allowed = " ".join(f"'sha256-{b64encode(found).decode()}'" for found in hashes)
     return page.replace(OWN_SCRIPTS, allowed, 1)
-
-
-def figure_page(spec: dict[str, Any], title: str) -> str:
-    """Return a page that shows one figure with hover read-out."""
-    return render("figure.html", title=title, spec=spec)

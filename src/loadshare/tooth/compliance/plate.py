@@ -90,7 +90,7 @@ class Plate:
 
     def station(self, zw: Array) -> Station:
         """Return the middle surface and the thickness across it at places (n, 2)."""
-        at = self.middle.sample(zw)
+        at = self.middle.sample(*zw.T)
         up, rise = at.middle_u, np.linalg.norm(at.middle_u, axis=1)
         flat = rise < FLAT * self.middle.whole_height
         if flat.any():

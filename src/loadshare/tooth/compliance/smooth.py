@@ -80,7 +80,7 @@ class SmoothMiddle(MiddleSurface):
         )
 
         # Length of the middle line at mid-width, integrated from its exact slope.
-        rise = self._read(u[:, 0], np.full(2 * count, 0.5)).middle_u
+        rise = self.sample(u[:, 0], np.full(2 * count, 0.5)).middle_u
         speed = np.linalg.norm(rise, axis=1).reshape(2, count)
         self._height, start = [], 0.0
         for part, domain in zip(speed, self._pieces, strict=True):
@@ -89,10 +89,6 @@ class SmoothMiddle(MiddleSurface):
             self._height.append((line, slope))
             start = float(line(domain[1]))
         self.whole_height = start
-
-    def sample(self, zw: Array) -> Sample:
-        """Evaluate the tooth at places (n, 2), none of them below the waist."""
-        return self._read(zw[:, 0], zw[:, 1])
 
     def height(self, z: Array) -> tuple[Array, Array]:
         """Return the height above the root section at mid-width, over the whole, and its slope."""
@@ -111,7 +107,7 @@ class SmoothMiddle(MiddleSurface):
     def surface(self, zw: Array) -> tuple[Array, Array, Array]:
         """See :meth:`MiddleSurface.surface`."""
         z, w = zw[:, 0], zw[:, 1]
-        at = self._read(np.maximum(z, self.waist), w)
+        at = self.sample(np.maximum(z, self.waist), w)
         below = np.maximum(self.waist - z, 0.0) / (1.0 + self.waist)
         if not below.any():
             return at.middle, at.middle_u, at.middle_w
@@ -122,13 +118,14 @@ class SmoothMiddle(MiddleSurface):
 
     def facing(self, uw: Array, side: int) -> tuple[Array, Array]:
         """See :meth:`MiddleSurface.facing`."""
-        at = self.sample(uw)
+        at = self.sample(*uw.T)
         normal = cross(at.middle_u + side * at.half_u, at.middle_w + side * at.half_w)
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         inside = -side * np.sum(normal * at.half, axis=1)
         return at.middle + side * at.half, np.asarray(np.sign(inside)[:, None] * normal)
 
-    def _read(self, u: Array, w: Array) -> Sample:
+    def sample(self, u: Array, w: Array) -> Sample:
+        """Evaluate the tooth at places u and w (n,), none of them below the waist."""
         from loadshare.tooth.compliance.compiled_smooth import read
 
         found = np.empty((len(u), 18))
