@@ -189,7 +189,7 @@ class FaceGearPair(GearPair):
                 found = here.find(stations, TEETH.near_edge)
             if not valleys.known.found.size:
                 valleys = valleys.knowing(stations, found)
-            a, b, c, d, gap = found
+            a, b, c, d, gap = np.moveaxis(found, -1, 0)
             least = np.min(list(self.margins((a, b), (c, d)).values()), axis=0)
             return np.where(np.isfinite(gap), least, -1.0)
 
@@ -200,7 +200,8 @@ class FaceGearPair(GearPair):
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
         """Return margins along the lines of pairs near contact, whether on both flanks or not."""
         _, _, valleys, reach = self._candidates(driver, driven)
-        a, b, c, d, _ = valleys.find(reach[:, None] * np.linspace(-1.0, 1.0, 33), TEETH.near_edge)
+        found = valleys.find(reach[:, None] * np.linspace(-1.0, 1.0, 33), TEETH.near_edge)
+        a, b, c, d, _ = np.moveaxis(found, -1, 0)
         return self.margins((a, b), (c, d))
 
     def _candidates(

@@ -94,9 +94,8 @@ class Valleys:
         return Valleys(self.flanks, self.turns[chosen], Anchor(*start), Known(*known))
 
     def knowing(self, stations: Array, found: Array) -> Valleys:
-        """Return the same valleys with unknowns (5, m, g) known at even stations (m, g)."""
-        kept = np.ascontiguousarray(np.moveaxis(found, 0, -1))
-        return replace(self, known=Known(stations, kept))
+        """Return the same valleys with unknowns (m, g, 5) known at even stations (m, g)."""
+        return replace(self, known=Known(stations, found))
 
     def guess(self, stations: Array) -> Array | None:
         """Interpolate the result of :meth:`find` to micrometres; None where values are missing."""
@@ -104,34 +103,30 @@ class Valleys:
 
         near = np.empty((*stations.shape, 5))
         interpolate(self.known, stations, near)
-        return np.moveaxis(near, -1, 0) if np.isfinite(near).all() else None
+        return near if np.isfinite(near).all() else None
 
     def find(self, stations: Array, last: float = TEETH.last_step) -> Array:
-        """Find surface parameters on both flanks and gap (5, m, n) at stations (m, n) [m].
+        """Find surface parameters on both flanks and gap (m, n, 5) at stations (m, n) [m].
 
         The gap is NaN where Newton's method finds no point; it ends with a step below `last` [m].
         """
-        return np.moveaxis(self._find(stations, last), -1, 0)
-
-    def trace(self, stations: Array) -> Trace:
-        """Return both flanks and the gap at stations (m, n) [m]."""
-        from loadshare.tooth.geometry.compiled import trace
-
-        found, shape = self._find(stations, TEETH.last_step), stations.shape
-        points, tangent = np.empty((2, 6, 3, stations.size)), np.empty((*shape, 3))
-        trace(self.flanks, self.start, self.turns, found, points[0], points[1], tangent)
-        own, other = (Patch(components) for components in points.reshape(2, 6, 3, *shape))
-        a, b, c, d, gap = np.moveaxis(found, -1, 0)
-        return Trace(own, other, (a, b), (c, d), gap, tangent)
-
-    def _find(self, stations: Array, last: float) -> Array:
-        """Return the unknowns (m, n, 5)."""
         from loadshare.tooth.geometry.compiled import find
 
         found = np.empty((*stations.shape, 5))
         # The limits are arguments, because compiled code would keep an old value of a global.
         find(self.flanks, self.start, self.turns, self.known, stations, last, TEETH, found)
         return found
+
+    def trace(self, stations: Array) -> Trace:
+        """Return both flanks and the gap at stations (m, n) [m]."""
+        from loadshare.tooth.geometry.compiled import trace
+
+        found, shape = self.find(stations), stations.shape
+        points, tangent = np.empty((2, 6, 3, stations.size)), np.empty((*shape, 3))
+        trace(self.flanks, self.start, self.turns, found, points[0], points[1], tangent)
+        own, other = (Patch(components) for components in points.reshape(2, 6, 3, *shape))
+        a, b, c, d, gap = np.moveaxis(found, -1, 0)
+        return Trace(own, other, (a, b), (c, d), gap, tangent)
 
 
 class Margin(Protocol):
