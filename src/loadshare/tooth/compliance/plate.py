@@ -12,7 +12,7 @@ from numpy.polynomial.legendre import legder, leggauss, legvander
 from loadshare.errors import Refused
 from loadshare.tooth.compliance.smooth import SmoothMiddle
 from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.geometry.flank import cross, dot
+from loadshare.tooth.geometry.flank import dot
 
 HEIGHT_DEGREE = 6
 """Degree of the polynomials along the tooth's height."""
@@ -103,7 +103,7 @@ class Plate:
             whole = np.subtract(*ends) / (1.0 - foot)
             up, rise = up.copy(), rise.copy()
             up[flat], rise[flat] = FLAT * whole, FLAT * np.linalg.norm(whole, axis=1)
-        normal = cross(at.middle_w, up)
+        normal = np.cross(at.middle_w, up)
         normal = normal / np.linalg.norm(normal, axis=1)[:, None]
         thickness = 2.0 * dot(at.half, normal)
         return Station(

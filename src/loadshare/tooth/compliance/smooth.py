@@ -11,7 +11,6 @@ from numpy.polynomial import chebyshev
 
 from loadshare.tooth.compliance.middle import MiddleSurface, both_sides, under
 from loadshare.tooth.geometry.body import Array, ToothBody
-from loadshare.tooth.geometry.flank import cross
 
 DEGREE = 9
 """Degree of the polynomials, in u on either side of the end of the fillet and in w."""
@@ -119,7 +118,7 @@ class SmoothMiddle(MiddleSurface):
     def facing(self, uw: Array, side: int) -> tuple[Array, Array]:
         """See :meth:`MiddleSurface.facing`."""
         at = self.sample(*uw.T)
-        normal = cross(at.middle_u + side * at.half_u, at.middle_w + side * at.half_w)
+        normal = np.cross(at.middle_u + side * at.half_u, at.middle_w + side * at.half_w)
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         inside = -side * np.sum(normal * at.half, axis=1)
         return at.middle + side * at.half, np.asarray(np.sign(inside)[:, None] * normal)

@@ -104,17 +104,6 @@ def dot(first: Array, second: Array) -> Array:
     return product
 
 
-def cross(first: Array, second: Array) -> Array:
-    """Return vector products along the last axis."""
-    a, b, c = first[..., 0], first[..., 1], first[..., 2]
-    d, e, f = second[..., 0], second[..., 1], second[..., 2]
-    product = np.empty((3, *np.broadcast_shapes(a.shape, d.shape)))
-    product[0] = b * f - c * e
-    product[1] = c * d - a * f
-    product[2] = a * e - b * d
-    return product.transpose(*range(1, product.ndim), 0)
-
-
 def solve_2(
     first: Iterable[Array], second: Iterable[Array], right_1: Array, right_2: Array
 ) -> tuple[Array, Array]:
@@ -129,10 +118,10 @@ def solve_3(first: Array, second: Array, third: Array, right: Array) -> tuple[Ar
 
     A singular system gives infinite or undefined numbers.
     """
-    across = cross(first, second)
+    across = np.cross(first, second)
     with np.errstate(divide="ignore", invalid="ignore"):
         over = 1.0 / dot(across, third)
-        beside = cross(right, third)
+        beside = np.cross(right, third)
         return -dot(beside, second) * over, dot(beside, first) * over, dot(across, right) * over
 
 
@@ -160,11 +149,11 @@ def principal_directions(driver: Patch, driven: Patch) -> tuple[Array, Array]:
         Unit tangents of the driver's flank, major × minor = normal.
     """
     first = unit(driver.rays[0])
-    second = cross(driver.normal, first)
+    second = np.cross(driver.normal, first)
     change_1 = driver.normal_change(first) + driven.normal_change(first)
     change_2 = driver.normal_change(second) + driven.normal_change(second)
     k11, k22 = dot(first, change_1), dot(second, change_2)
     k12 = 0.5 * (dot(first, change_2) + dot(second, change_1))
     greatest = 0.5 * np.arctan2(2.0 * k12, k11 - k22)
     minor = np.cos(greatest)[..., None] * first + np.sin(greatest)[..., None] * second
-    return cross(minor, driver.normal), minor
+    return np.cross(minor, driver.normal), minor

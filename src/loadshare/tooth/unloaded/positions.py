@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from loadshare.errors import Problem
 from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array, ToothBody
-from loadshare.tooth.geometry.flank import Patch, cross, dot, relative_curvature, unit
+from loadshare.tooth.geometry.flank import Patch, dot, relative_curvature, unit
 from loadshare.tooth.geometry.gap import FEWEST, Extents, NoContactError, Trace, least_gap
 from loadshare.tooth.problems import digits, problem
 
@@ -267,7 +267,7 @@ class GearPair(ABC):
         error, found, trace = touching(self, phases, points_per_line)
         part = (found.end - found.start) / points_per_line
         along = unit(trace.tangent)
-        across = cross(trace.driver.normal, along)
+        across = np.cross(trace.driver.normal, along)
         length = part[:, None] * np.sqrt(dot(trace.tangent, trace.tangent))
         columns = (
             trace.driver.point,
