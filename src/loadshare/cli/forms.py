@@ -213,11 +213,7 @@ def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> 
 
 def figure_of(figure: Callable[[], Figure]) -> Makers:
     """Return the functions that make files of a picture."""
-    return {form: partial(_drawn, figure, form) for form in FIGURES}
-
-
-def _drawn(figure: Callable[[], Figure], form: str) -> str | bytes:
-    return figure().content(form)
+    return {form: lambda form=form: figure().content(form) for form in FIGURES}  # type: ignore[misc]
 
 
 def _parquet(frame: pd.DataFrame) -> bytes:

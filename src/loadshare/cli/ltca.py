@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import REFUSED, fail, reporting_problems, writing
+from loadshare.cli.exits import reporting_problems, writing
 from loadshare.cli.files import keep_inputs, save_text
 from loadshare.cli.forms import FOLDER, Output, outputs, write_all
-from loadshare.cli.refusal import refusal_lines
+from loadshare.cli.refusal import fail_refused
 from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
 from loadshare.libraries import pd
@@ -75,7 +75,7 @@ def ltca(
         with progress("positions", pair_file.analysis.positions) as tick:
             found = pair_file.analyse(tick)
     except Refused as refusal:
-        fail([f"REFUSED  {line}" for line in refusal_lines(refusal)], REFUSED)
+        fail_refused(refusal)
     law = kept_law(pair_file, found)
     _print_positions(found, law)
     _print_summary(pair_file, found)

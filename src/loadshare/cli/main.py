@@ -49,25 +49,18 @@ CASES = (run, batch, report, draw, check, export, explore, *STUDIES)
 SCRIPTED = (run, *STUDIES)
 """Commands that can write JSON, and so print it with ``--json``."""
 COMMANDS = {
-    **{
-        command.__name__: command
-        for command in (
-            *(run, batch, report, draw, explore, check, schema, new, ltca, export, warm),
-            *STUDIES,
-        )
-    },
-    "import": import_machine,
-}
+    command.__name__: command
+    for command in (
+        *(run, batch, report, draw, explore, check, schema, new, ltca, export, warm),
+        *STUDIES,
+    )
+} | {"import": import_machine}
 
 
 def _made(name: str) -> Any:
     """Return a command, with the shared options added that it does not define itself."""
     command = COMMANDS[name]
-    has = {
-        "json": command in SCRIPTED,
-        "allow_outside": command in CASES,
-        "quiet": True,
-    }
+    has = {"json": command in SCRIPTED, "allow_outside": command in CASES, "quiet": True}
     alone = typer.Typer(rich_markup_mode=None, add_completion=False)
     options = (option for option, wanted in has.items() if wanted)
     alone.command(name, cls=Command)(taking(command, *options))

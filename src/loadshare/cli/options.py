@@ -164,22 +164,6 @@ def output(what: str) -> Any:
     return typer.Option("-o", "--output", metavar=OUTPUT, dir_okay=False, writable=True, help=what)
 
 
-def split_setting(text: str, form: str) -> tuple[tuple[str, ...], str]:
-    """Split ``KEY=VALUE`` or ``KEY=KEY=VALUE`` at the equals signs outside of quotes.
-
-    Raises
-    ------
-    typer.BadParameter
-        If a key or the value is missing, naming the option and the form it has.
-    """
-    from loadshare.study.parameter import split_outside
-
-    *found, value = split_outside(text, "=")
-    if not found or not all(found) or not value:
-        raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint=OVER)
-    return tuple(found), value
-
-
 def settings_of(given: Iterable[str], form: str) -> dict[tuple[str, ...], str]:
     """Return the value of every ``KEY=VALUE`` or ``KEY=KEY=VALUE``, by its keys.
 
@@ -188,13 +172,17 @@ def settings_of(given: Iterable[str], form: str) -> dict[tuple[str, ...], str]:
     typer.BadParameter
         For a text of another form, or if the same keys are given twice: the first would be lost.
     """
+    from loadshare.study.parameter import split_outside
+
     found: dict[tuple[str, ...], str] = {}
     for text in given:
-        names, value = split_setting(text, form)
-        if names in found:
-            twice = "=".join(names)
+        *names, value = split_outside(text, "=")
+        if not names or not all((*names, value)):
+            raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint=OVER)
+        if (tied := tuple(names)) in found:
+            twice = "=".join(tied)
             raise typer.BadParameter(f"{twice}: is given twice; give it once", param_hint=OVER)
-        found[names] = value
+        found[tied] = value
     return found
 
 

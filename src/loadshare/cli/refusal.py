@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, NoReturn
 
 from loadshare._version import __version__
+from loadshare.cli.exits import REFUSED, fail
 from loadshare.errors import Refused
 from loadshare.report.numbers import runs
 
@@ -24,16 +26,29 @@ def refusal_lines(refusal: Refused) -> list[str]:
 
 
 def _named(positions: list[int]) -> str:
-    if not positions:
-        return ""
-    noun = "position" if len(positions) == 1 else "positions"
-    return f"{noun} {ranges(positions)}: "
+    return f"{places(positions)}: " if positions else ""
+
+
+def places(positions: list[int]) -> str:
+    """Return positions in short: ``positions 1-3, 7``."""
+    return f"position{'s' * (len(positions) > 1)} {ranges(positions)}"
 
 
 def ranges(numbers: list[int]) -> str:
     """Return whole numbers in short: ``1-3, 7``."""
     # A plain hyphen: terminals and logs may know no other dash.
     return ", ".join(runs(numbers, "-"))
+
+
+def fail_refused(refusal: Refused, more: Iterable[str] = ()) -> NoReturn:
+    """Write the lines of a refusal, and more, to stderr and leave with the code of a refusal.
+
+    Raises
+    ------
+    typer.Exit
+        Always.
+    """
+    fail([*(f"REFUSED  {line}" for line in refusal_lines(refusal)), *more], REFUSED)
 
 
 def refused_document(refusal: Refused, case: str) -> dict[str, Any]:

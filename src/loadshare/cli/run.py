@@ -10,11 +10,11 @@ import typer
 
 from loadshare.cli.cases import open_case
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import REFUSED, fail, reporting_problems, writing
+from loadshare.cli.exits import reporting_problems, writing
 from loadshare.cli.files import print_written
 from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
-from loadshare.cli.refusal import refusal_lines, refused_document
+from loadshare.cli.refusal import fail_refused, refused_document
 from loadshare.errors import Refused
 from loadshare.json_text import json_text
 from loadshare.libraries import pd
@@ -144,9 +144,8 @@ def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoRetu
     written = [output for output in files if output.form == "json"]
     document = json_text(refused_document(refusal, case))
     write_all(written, {"json": lambda: document})
-    lines = [f"REFUSED  {line}" for line in refusal_lines(refusal)]
     others = [output.file for output in files if output not in written]
-    fail([*lines, *(f"{f}: not written, as there is no answer" for f in others)], REFUSED)
+    fail_refused(refusal, (f"{file}: not written, as there is no answer" for file in others))
 
 
 def _write(

@@ -25,26 +25,7 @@ if TYPE_CHECKING:
     from loadshare.study.critical import Critical
     from loadshare.study.fit import Fit
     from loadshare.study.march import March
-    from loadshare.study.sensitivity import Sensitivity
     from loadshare.study.sweep import Sweep
-    from loadshare.study.tolerance.result import Tolerance
-
-
-class Kind(NamedTuple):
-    """The functions that print the answer of a kind of study, and that make files of it."""
-
-    show: Callable[[Any], None]
-    makers: Callable[[Any], Makers]
-
-
-def _of_table(kind: str, found: Any, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:
-    """Return the functions that make files of a table and of the picture of an answer."""
-    return {**tables_of(kind, frame, **about), **figure_of(found.plot)}
-
-
-def _labelled(found: Any) -> Makers:
-    """Return the function that makes a netCDF file of an answer with labelled arrays of its own."""
-    return {"nc": lambda: netcdf_of(found.dataset)}
 
 
 def show_comparison(found: Comparison) -> None:
@@ -70,10 +51,6 @@ def _row(d: Deviation) -> tuple[str, ...]:
     )
 
 
-def _of_comparison(found: Comparison) -> Makers:
-    return _of_table("compare", found, found.to_frame, chi_square=found.chi_square)
-
-
 def show_critical(found: Critical) -> None:
     """Print every event, with all positions at which it is found alike."""
     unit = f" [{found.parameter.unit}]" if found.parameter.unit else ""
@@ -97,10 +74,10 @@ def show_critical(found: Critical) -> None:
         say("Proved: there are no other events between the certified solves.")
 
 
-def _of_critical(found: Critical) -> Makers:
+def _about_critical(found: Critical) -> dict[str, object]:
     unproved = [{"position": u.position, "from": u.start, "to": u.stop} for u in found.unproved]
     about = {"parameter": found.parameter.name, "unit": found.parameter.unit}
-    return _of_table("critical", found, found.to_dataframe, **about, unproved=unproved)
+    return {**about, "unproved": unproved}
 
 
 def show_fit(found: Fit) -> None:
@@ -133,23 +110,13 @@ def show_fit(found: Fit) -> None:
     say_all(f"WARNING  {warning}" for warning in found.warnings)
 
 
-def _of_fit(found: Fit) -> Makers:
-    def frame() -> pd.DataFrame:
-
-        rows = [
-            (u.parameter.name, u.parameter.unit, u.start, u.value, u.deviation, u.low, u.high)
-            for u in found.unknowns
-        ]
-        heads = ["unknown", "unit", "start", "fitted", "deviation", "low", "high"]
-        return pd.DataFrame(rows, columns=heads)
-
-    def fitted() -> str:
-        from loadshare.tooth import written_in
-
-        return written_in(found.case).to_toml()
-
-    made = _of_table("fit", found, frame, chi_square=found.comparison.chi_square)
-    return {**made, "toml": fitted}
+def _unknowns(found: Fit) -> pd.DataFrame:
+    rows = [
+        (u.parameter.name, u.parameter.unit, u.start, u.value, u.deviation, u.low, u.high)
+        for u in found.unknowns
+    ]
+    heads = ["unknown", "unit", "start", "fitted", "deviation", "low", "high"]
+    return pd.DataFrame(rows, columns=heads)
 
 
 def show_march(found: March) -> None:
@@ -169,19 +136,6 @@ def show_march(found: March) -> None:
         rows.append((gear, stages, f"{min(sizes):.3f} … {max(sizes):.3f}", f"{total:.4g}"))
     heads = ("spline", "stages", "slip [µm]", "dissipated [J]")
     show("Splines", table(heads, rows, words=heads[:2]))
-
-
-def _of_march(found: March) -> Makers:
-    return {**_of_table("march", found, found.to_dataframe), **_labelled(found)}
-
-
-def _of_sensitivity(found: Sensitivity) -> Makers:
-    """Return the functions that make files of sensitivities; tables hold those of torques."""
-
-    def frame() -> pd.DataFrame:
-        return found.dataset["torque"].to_dataframe().reset_index()
-
-    return {**_of_table("sensitivity", found, frame), **_labelled(found)}
 
 
 MEANS = {"stage": "omega", "group": "pair_omega"}
@@ -217,26 +171,54 @@ def _table(found: Sweep, kind: str) -> Table:
     return made
 
 
-def _of_sweep(found: Sweep) -> Makers:
-    about = {"case": found.case, "passed": found.passed}
-    return {**_of_table("sweep", found, found.to_frame, **about), **_labelled(found)}
+class Kind(NamedTuple):
+    """How the answer of a kind of study is printed, and what its files hold.
 
+    Attributes
+    ----------
+    show, table : callable
+        Print the answer; return its table.
+    about : callable
+        Returns what the JSON file says before the rows of the table.
+    """
 
-def _of_tolerance(found: Tolerance) -> Makers:
-    """Return the functions that make files of a tolerance study: samples, and statistics."""
-    return {
-        **_of_table("tolerance", found, found.to_frame),
-        **_labelled(found),
-        "json": lambda: json_text(statistics_document(found)),
-    }
+    show: Callable[[Any], None]
+    table: Callable[[Any], pd.DataFrame]
+    about: Callable[[Any], dict[str, object]] = lambda _: {}
 
 
 KINDS = {
-    "compare": Kind(show_comparison, _of_comparison),
-    "critical": Kind(show_critical, _of_critical),
-    "fit": Kind(show_fit, _of_fit),
-    "march": Kind(show_march, _of_march),
-    "sensitivity": Kind(show_sensitivity, _of_sensitivity),
-    "sweep": Kind(show_sweep, _of_sweep),
-    "tolerance": Kind(show_tolerance, _of_tolerance),
+    "compare": Kind(
+        show_comparison,
+        lambda found: found.to_frame(),
+        lambda found: {"chi_square": found.chi_square},
+    ),
+    "critical": Kind(show_critical, lambda found: found.to_dataframe(), _about_critical),
+    "fit": Kind(show_fit, _unknowns, lambda found: {"chi_square": found.comparison.chi_square}),
+    "march": Kind(show_march, lambda found: found.to_dataframe()),
+    # Tables hold the derivatives of torques.
+    "sensitivity": Kind(
+        show_sensitivity, lambda found: found.dataset["torque"].to_dataframe().reset_index()
+    ),
+    "sweep": Kind(
+        show_sweep,
+        lambda found: found.to_frame(),
+        lambda found: {"case": found.case, "passed": found.passed},
+    ),
+    "tolerance": Kind(show_tolerance, lambda found: found.to_frame()),
 }
+
+
+def makers_of(kind: str, found: Any) -> Makers:
+    """Return the functions that make files of an answer: of its table, arrays and picture."""
+    _, table_of, about = KINDS[kind]
+    made = {**tables_of(kind, lambda: table_of(found), **about(found)), **figure_of(found.plot)}
+    if hasattr(type(found), "dataset"):
+        made["nc"] = lambda: netcdf_of(found.dataset)
+    if kind == "fit":
+        from loadshare.tooth import written_in
+
+        made["toml"] = lambda: written_in(found.case).to_toml()
+    if kind == "tolerance":
+        made["json"] = lambda: json_text(statistics_document(found))
+    return made

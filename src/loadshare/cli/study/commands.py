@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,7 +12,7 @@ import typer
 
 from loadshare.cli.cases import open_case
 from loadshare.cli.completion import study_names
-from loadshare.cli.console import Tick, print_note, progress, stand
+from loadshare.cli.console import print_note, progress, stand
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
 from loadshare.cli.files import print_written
 from loadshare.cli.forms import FIGURES, FOLDER, TABLES, Output, outputs, write_all
@@ -26,9 +27,9 @@ from loadshare.cli.options import (
     ranges_of,
     settings_of,
 )
-from loadshare.cli.refusal import refusal_lines
+from loadshare.cli.refusal import fail_refused
 from loadshare.cli.stop import Stop
-from loadshare.cli.study.answers import KINDS
+from loadshare.cli.study.answers import KINDS, makers_of
 from loadshare.cli.waiting import echo
 from loadshare.errors import LoadshareError, Refused
 
@@ -36,29 +37,32 @@ if TYPE_CHECKING:
     from loadshare.case import Case
 
 
-@contextmanager
-def running_study(
-    file: Path,
-    change: list[str] | None,
-    what: str,
-    total: int | None = 1,
-    *,
-    rated: bool = False,
-) -> Iterator[tuple[Case, Tick]]:
-    """Open the case of a study and a progress bar; what cannot be answered becomes a message.
+def run(
+    kind: str, file: Path, change: list[str] | None, what: str, total: int | None = 1, **asked: Any
+) -> Any:
+    """Run a study of a case with a progress bar and return its answer.
 
     Parameters
     ----------
+    kind : str
+        Name of the study's function in `loadshare`.
     file : Path
     change : list of str or None
         Values of ``--set``.
-    what, total, rated
+    what, total
         As for `progress`, as far as known beforehand.
+    **asked
+        Arguments of the study.
+
+    Raises
+    ------
+    typer.Exit
+        If it cannot be answered; the message says why.
     """
     with answered():
         case = open_case(file, change)
-        with progress(what, total, rated=rated) as tick:
-            yield case, tick
+        with progress(what, total, rated=total is None) as tick:
+            return getattr(import_module("loadshare"), kind)(case, **asked, progress=tick)
 
 
 @contextmanager
@@ -68,7 +72,7 @@ def answered() -> Iterator[None]:
         with reporting_problems():
             yield
     except Refused as refusal:
-        fail([f"REFUSED  {line}" for line in refusal_lines(refusal)], REFUSED)
+        fail_refused(refusal)
     except LoadshareError as error:
         fail([str(error)], UNUSABLE)
     except ValueError as error:
@@ -89,7 +93,7 @@ def conclude(kind: str, found: Any, files: list[Output] | None) -> None:
     for output in files or ():
         if output.form == FOLDER:
             print_written(output.file, err=True)
-    write_all([o for o in files or () if o.form != FOLDER], KINDS[kind].makers(found))
+    write_all([o for o in files or () if o.form != FOLDER], makers_of(kind, found))
     if lines := found._left_open():
         fail(lines, REFUSED)
 
@@ -113,12 +117,8 @@ def sweep(
     change: Changes = None,
 ) -> None:
     """Solve a case over a grid of one or two inputs."""
-    from loadshare.study.sweep import sweep as swept
-
-    form = "KEY=GRID, as in rings.4.float='0 um:12 um:61'"
-    parameters = settings_of(grids, form)
-    with running_study(case, change, "points") as (loaded, tick):
-        found = swept(loaded, parameters, positions=position, progress=tick)
+    parameters = settings_of(grids, "KEY=GRID, as in rings.4.float='0 um:12 um:61'")
+    found = run("sweep", case, change, "points", parameters=parameters, positions=position)
     conclude("sweep", found, file)
 
 
@@ -140,11 +140,9 @@ def critical(
     change: Changes = None,
 ) -> None:
     """Find exactly where contacts, floats and splines change along an input."""
-    from loadshare.study.critical import critical as found_along
-
     along, low, high = _range(ranges, key, start, stop)
-    with running_study(case, change, "positions") as (loaded, tick):
-        found = found_along(loaded, along, low, high, positions=position, progress=tick)
+    asked: dict[str, Any] = {"key": along, "start": low, "stop": high, "positions": position}
+    found = run("critical", case, change, "positions", **asked)
     conclude("critical", found, file)
 
 
@@ -181,10 +179,7 @@ def sensitivity(
     change: Changes = None,
 ) -> None:
     """Compute how torques, Ω and floats change with each input."""
-    from loadshare.study.sensitivity import sensitivity as differentiated
-
-    with running_study(case, change, "inputs") as (loaded, tick):
-        found = differentiated(loaded, key or None, positions=position, progress=tick)
+    found = run("sensitivity", case, change, "inputs", inputs=key or None, positions=position)
     conclude("sensitivity", found, file)
 
 
@@ -196,8 +191,7 @@ def _study_name(text: str) -> Any:
 def tolerance(
     case: CaseFile,
     name: Annotated[
-        str | None,
-        _study_name("Which study, if the case has more than one of this kind."),
+        str | None, _study_name("Which study, if the case has more than one of this kind.")
     ] = None,
     samples: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Samples, instead of the case's.")
@@ -235,32 +229,20 @@ def tolerance(
     change: Changes = None,
 ) -> None:
     """Vary inputs within their tolerances ([study.NAME]) and show how Ω is distributed."""
-    from loadshare.study.tolerance.study import tolerance as studied
-
     folders = [output.file for output in file or () if output.form == FOLDER]
     if len(folders) > 1:
         raise typer.BadParameter("samples can only go into one folder", param_hint="--output")
     out = folders[0] if folders else None
     scatter = _scatter(ranges, "KEY=LOW:HIGH")
     stop = Stop()
-    with running_study(case, change, "samples", None, rated=True) as (loaded, tick):
-        try:
-            with stop:
-                found = studied(
-                    loaded,
-                    scatter or None,
-                    study=name,
-                    samples=samples,
-                    seed=seed,
-                    positions=position,
-                    out=out,
-                    scheduler=scheduler,
-                    workers=workers,
-                    worst=worst,
-                    progress=tick,
-                )
-        except KeyboardInterrupt:
-            fail(["Interrupted: " + _kept(out, *stand())], stop.code)
+    asked: dict[str, Any] = {"inputs": scatter or None, "study": name, "samples": samples}
+    asked |= {"seed": seed, "positions": position, "out": out, "worst": worst}
+    asked |= {"scheduler": scheduler, "workers": workers}
+    try:
+        with stop:
+            found = run("tolerance", case, change, "samples", None, **asked)
+    except KeyboardInterrupt:
+        fail(["Interrupted: " + _kept(out, *stand())], stop.code)
     conclude("tolerance", found, file)
 
 
@@ -294,24 +276,14 @@ def march(
     change: Changes = None,
 ) -> None:
     """March through revolutions; spline friction depends on the previous slip."""
-    from loadshare.study.march import march as marched
-
-    with running_study(case, change, "steps") as (loaded, tick):
-        found = marched(loaded, gear=gear, revolutions=revolutions, steps=steps, progress=tick)
+    asked: dict[str, Any] = {"gear": gear, "revolutions": revolutions, "steps": steps}
+    found = run("march", case, change, "steps", **asked)
     conclude("march", found, file)
 
 
-def compare(
-    case: CaseFile,
-    file: Files = None,
-    change: Changes = None,
-) -> None:
+def compare(case: CaseFile, file: Files = None, change: Changes = None) -> None:
     """Compare measured figures with computed ones."""
-    from loadshare.study.compare import compare as compared
-
-    with running_study(case, change, "positions") as (loaded, tick):
-        found = compared(loaded, progress=tick)
-    conclude("compare", found, file)
+    conclude("compare", run("compare", case, change, "positions"), file)
 
 
 def fit(
@@ -334,20 +306,14 @@ def fit(
     change: Changes = None,
 ) -> None:
     """Fit inputs of a case to measured figures."""
-    from loadshare.study.fit import fit as fitted
-
     unknowns = ranges_of(unknown, "KEY=LOW:HIGH")
-    with running_study(case, change, "starting points", starts) as (loaded, tick):
-        found = fitted(loaded, unknowns, starts=starts, seed=seed, progress=tick)
-    conclude("fit", found, file)
+    asked: dict[str, Any] = {"unknowns": unknowns, "starts": starts, "seed": seed}
+    conclude("fit", run("fit", case, change, "starting points", starts, **asked), file)
 
 
 def study(
     case: CaseFile,
-    name: Annotated[
-        str | None,
-        _study_name("Which study; by default all are listed."),
-    ] = None,
+    name: Annotated[str | None, _study_name("Which study; by default all are listed.")] = None,
     varied: Annotated[
         list[str] | None,
         over(
@@ -378,7 +344,7 @@ def study(
         rated = kind == "tolerance"
         with progress(*(("samples", None) if rated else (name, 1)), rated=rated) as tick:
             found = run_study(loaded, name, progress=tick)
-    makers = KINDS[kind].makers(found)
+    makers = makers_of(kind, found)
     for output in file or ():
         if output.form not in makers:
             can = ", ".join(f".{form}" for form in makers)

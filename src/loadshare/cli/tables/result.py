@@ -11,7 +11,7 @@ from rich.text import Text
 from loadshare.case import Case
 from loadshare.certify import FloatState
 from loadshare.cli.console import say, say_all
-from loadshare.cli.refusal import ranges
+from loadshare.cli.refusal import places, ranges
 from loadshare.cli.tables.table import fits, show, table, texts
 from loadshare.report import records
 from loadshare.report.numbers import NONE, counted, decimals, fixed, significant, small
@@ -150,8 +150,7 @@ def print_heading(
     solved = counted(count, "position")
     if len(wanted) < count:
         # The noun comes first: "3 of 5 positions" would say how many, not which.
-        noun = "positions" if len(wanted) > 1 else "position"
-        solved = f"{noun} {ranges(list(wanted))} of {count}"
+        solved = f"{places(list(wanted))} of {count}"
     say(case.title or case.name, style="bold")
     say(file, whole=True)
     for change in changes:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from copy import copy
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from loadshare.cli.console import console, say
@@ -91,18 +93,8 @@ def _least(column: Column) -> int:
 
 def _of_columns(made: Table, some: list[int]) -> Table:
     """Return a table of some columns of another."""
-    columns = [made.columns[k] for k in some]
-    part = table(())
-    for c in columns:
-        part.add_column(
-            c.header,
-            justify=c.justify,
-            no_wrap=c.no_wrap,
-            overflow=c.overflow,
-            min_width=c.min_width,
-        )
-    for row in zip(*(c.cells for c in columns), strict=True):
-        part.add_row(*row)
+    part = copy(made)
+    part.columns = [replace(made.columns[k], _index=at) for at, k in enumerate(some)]
     return part
 
 
