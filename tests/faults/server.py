@@ -151,7 +151,7 @@ def _keep_answers() -> None:
     import loadshare.job
     from loadshare.report import converter
     from loadshare.results import document, files, result
-    from loadshare.study.tolerance import design, figures, statistics, study, worst
+    from loadshare.study.tolerance import design, job, statistics, study, worst
 
     def case_key(case: Any, **how: Any) -> str:
         options = {name: value for name, value in how.items() if name != "progress"}
@@ -166,8 +166,8 @@ def _keep_answers() -> None:
     document.to_document = result.to_document = _keeping(document.to_document, id)
     files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
 
-    def samples_key(solver: Any, values: Any) -> tuple[object, ...]:
-        return solver.case.hash, solver.positions, solver.engine, values.tobytes()
+    def samples_key(job: Any, values: Any) -> tuple[object, ...]:
+        return job.hash, values.tobytes()
 
     def array_key(values: Any, *given: Any) -> tuple[object, ...]:
         return values.tobytes(), values.shape, repr(given)
@@ -175,7 +175,7 @@ def _keep_answers() -> None:
     def inputs_key(case: Any, name: str) -> str:
         return f"{case.hash} {name} {case.study[name]!r}"
 
-    figures.Solver.solve = _keeping(figures.Solver.solve, samples_key)  # type: ignore[method-assign]
+    job.Job.solve = _keeping(job.Job.solve, samples_key)  # type: ignore[method-assign]
     design.uniforms = _keeping(design.uniforms, lambda *given: repr(given))
     study.read_inputs = _keeping(study.read_inputs, inputs_key)
     # Statistics resample a thousand times.

@@ -142,7 +142,7 @@ def start_study(question: Scatter) -> Plain:
     return {
         "job": job.to_json(),
         "rows": max(rows, EXPLORE.least),
-        "stages": [*(stage.name for stage in job.solver.train.stages), SYSTEM],
+        "stages": [*(stage.name for stage in job.train.stages), SYSTEM],
         "levels": list(block.quantiles or TOLERANCE.levels),
         "limit": block.limit,
         "samples": settings["samples"],
@@ -175,7 +175,7 @@ def samples(part: SampleRange) -> Plain:
     job = known_job(part.job)
     block, at = divmod(part.first, JOB.block)
     values = job.designs[SAMPLES].values(block)[at : at + part.rows]
-    found = job.solver.solve(values)
+    found = job.solve(values)
     kept = tuple(f"{kind}." for kind in KINDS)
     return {
         "columns": {name: v for name, v in found.columns.items() if name.startswith(kept)},

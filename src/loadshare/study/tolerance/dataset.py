@@ -64,7 +64,7 @@ def dataset(found: Tolerance) -> xr.Dataset:
     edges = gathered(lambda o: o.summary.edges, TOLERANCE.bins + 1)
     attributes = {
         "case": found.case,
-        "title": found.folder.job.solver.case.title,
+        "title": found.folder.job.case.title,
         "samples": found.samples,
         "refused": found.refused,
         "seed": found.settings["seed"],

@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from loadshare.array_types import Array
-from loadshare.case import Case
-from loadshare.errors import CaseError
 from loadshare.job.block import Block
-from loadshare.job.many import solve_blocks
 from loadshare.results.share import largest_shares, mesh_torques
-from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import DrumRing
-from loadshare.train.samples import unusable
 from loadshare.train.train import Train
 
 KINDS = {"omega": "stage", "pair_omega": "group"}
@@ -47,84 +41,18 @@ class Figures:
     message: Mapping[int, str]
 
 
-@dataclass(frozen=True, eq=False)
-class Solver:
-    """The solver of a case's samples.
-
-    Attributes
-    ----------
-    case : Case
-    train : Train
-        Of the case.
-    inputs : Inputs
-    positions : tuple of int
-    tolerance : float
-        Largest scaled residual of a certified answer.
-    engine : {"compiled", "vectorised"}
-    """
-
-    case: Case
-    train: Train
-    inputs: Inputs
-    positions: tuple[int, ...]
-    tolerance: float
-    engine: str
-
-    @cached_property
-    def names(self) -> list[str]:
-        """Names of the columns of its figures, in order."""
-        train = self.train
-        stages = [*(s.name for s in train.stages), SYSTEM]
-        return [
-            *(f"{kind}.{stage}" for kind in KINDS for stage in stages),
-            *(f"torque.{mesh} [N*m]" for mesh in train.meshes),
-            *(f"float.{gear} [m]" for gear in train.floating),
-            *(f"boundary_force.{gear} [N]" for gear in train.limits),
-        ]
-
-    def solve(self, values: Array) -> Figures:
-        """Solve samples with the given inputs, shape (S, inputs)."""
-        count = len(values)
-        columns = {name: np.full(count, np.nan) for name in self.names}
-        residual = np.full(count, np.nan)
-        message: dict[int, str] = {}
-        usable = np.arange(count)
-        try:
-            blocks = self._blocks(values)
-        except CaseError:
-            # Some sample gives no valid case; the others are solved all the same.
-            samples = self.inputs.samples(values)
-            message |= {
-                k: f"does not give a valid case: {w}" for k, w in unusable(self.case, samples)
-            }
-            usable = np.setdiff1d(usable, list(message))
-            blocks = self._blocks(values[usable]) if len(usable) else []
-        for block in blocks:
-            rows = usable[block.rows]
-            solved = block.certified.all(axis=1)
-            for name, found in _figures(block).items():
-                columns[name][rows[solved]] = found[solved]
-            residual[rows[solved]] = block.residual[solved].max(axis=1)
-            refused: dict[int, list[str]] = {}
-            for (row, position), why in block.message.items():
-                refused.setdefault(int(usable[row]), []).append(f"position {position}: {why}")
-            message |= {row: "\n".join(why) for row, why in refused.items()}
-        return Figures(columns, residual, message)
-
-    def _blocks(self, values: Array) -> list[Block]:
-        return list(
-            solve_blocks(
-                self.case,
-                self.inputs.samples(values),
-                positions=self.positions,
-                tolerance=self.tolerance,
-                engine=self.engine,
-                workers=1,
-            )
-        )
+def figure_names(train: Train) -> list[str]:
+    """Return the names of the figures of a train's samples, in the order of their columns."""
+    stages = [*(s.name for s in train.stages), SYSTEM]
+    return [
+        *(f"{kind}.{stage}" for kind in KINDS for stage in stages),
+        *(f"torque.{mesh} [N*m]" for mesh in train.meshes),
+        *(f"float.{gear} [m]" for gear in train.floating),
+        *(f"boundary_force.{gear} [N]" for gear in train.limits),
+    ]
 
 
-def _figures(block: Block) -> dict[str, Array]:
+def largest_figures(block: Block) -> dict[str, Array]:
     """Return the largest figures over the positions, shape (S,) each; NaN where there is none."""
     every: dict[str, list[Array]] = {}
     for answers in block.equilibria:

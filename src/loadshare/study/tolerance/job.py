@@ -13,12 +13,17 @@ from typing import Any
 import numpy as np
 
 from loadshare._version import __version__
+from loadshare.array_types import Array
 from loadshare.case import Case
+from loadshare.errors import CaseError
+from loadshare.job.block import Block
+from loadshare.job.many import solve_blocks
 from loadshare.libraries import pa
 from loadshare.study.tolerance.design import Drawn, PickFreeze
-from loadshare.study.tolerance.figures import Solver
+from loadshare.study.tolerance.figures import Figures, figure_names, largest_figures
 from loadshare.study.tolerance.inputs import Inputs
-from loadshare.train import build_train
+from loadshare.train import Train, build_train
+from loadshare.train.samples import unusable
 
 SAMPLES, INDICES = "samples", "indices"
 STAMP = b"loadshare"
@@ -91,17 +96,14 @@ class Job:
         return Inputs.from_plain(self.settings)
 
     @cached_property
-    def solver(self) -> Solver:
-        """The solver of its samples."""
-        case = Case(tomllib.loads(self.text), name=self.name)
-        return Solver(
-            case,
-            build_train(case),
-            self.inputs,
-            tuple(self.settings["positions"]),
-            self.settings["tolerance"],
-            self.settings["engine"],
-        )
+    def case(self) -> Case:
+        """The case."""
+        return Case(tomllib.loads(self.text), name=self.name)
+
+    @cached_property
+    def train(self) -> Train:
+        """The train of the case."""
+        return build_train(self.case)
 
     @cached_property
     def designs(self) -> dict[str, Drawn]:
@@ -151,10 +153,43 @@ class Job:
             metadata={STAMP: self.stamp(part)},
         )
 
+    def solve(self, values: Array) -> Figures:
+        """Solve samples with the given inputs, shape (S, inputs)."""
+        count = len(values)
+        columns = {name: np.full(count, np.nan) for name in figure_names(self.train)}
+        residual = np.full(count, np.nan)
+        message: dict[int, str] = {}
+        usable = np.arange(count)
+        try:
+            blocks = self._solved(values)
+        except CaseError:
+            # Some sample gives no valid case; the others are solved all the same.
+            samples = self.inputs.samples(values)
+            message |= {
+                k: f"does not give a valid case: {w}" for k, w in unusable(self.case, samples)
+            }
+            usable = np.setdiff1d(usable, list(message))
+            blocks = self._solved(values[usable]) if len(usable) else []
+        for block in blocks:
+            rows = usable[block.rows]
+            solved = block.certified.all(axis=1)
+            for name, found in largest_figures(block).items():
+                columns[name][rows[solved]] = found[solved]
+            residual[rows[solved]] = block.residual[solved].max(axis=1)
+            refused: dict[int, list[str]] = {}
+            for (row, position), why in block.message.items():
+                refused.setdefault(int(usable[row]), []).append(f"position {position}: {why}")
+            message |= {row: "\n".join(why) for row, why in refused.items()}
+        return Figures(columns, residual, message)
+
+    def _solved(self, values: Array) -> list[Block]:
+        how = {key: self.settings[key] for key in ("positions", "tolerance", "engine")}
+        return list(solve_blocks(self.case, self.inputs.samples(values), **how, workers=1))
+
     def _piece(self, design: Drawn, block: int) -> dict[str, Any]:
         """Solve one block; answers never depend on the other blocks of its part."""
         rows, values = design.rows(block), design.values(block)
-        found = self.solver.solve(values)
+        found = self.solve(values)
         return {
             "sample": rows,
             **{one.column: values[:, k] for k, one in enumerate(self.inputs.every)},

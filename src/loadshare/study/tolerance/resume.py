@@ -53,7 +53,7 @@ def check_part(folder: Folder, part: Part) -> None:
             row = int(np.flatnonzero(found != column)[0])
             _refuse(file, name, int(numbers[row]), found[row], column[row])
     rows = rng.choice(len(numbers), min(TOLERANCE.sampled, len(numbers)), replace=False)
-    again = job.solver.solve(values[rows])
+    again = job.solve(values[rows])
     least = _round_off(job, again.columns)
     for name, expected in {**again.columns, "certified": ~np.isnan(again.residual)}.items():
         found = _column(there, name, file)[rows]
@@ -71,7 +71,7 @@ def _round_off(job: Job, columns: Mapping[str, Array]) -> dict[str, float]:
 
     A stop that a gear just touches carries nothing but round-off.
     """
-    train, known = job.solver.train, job.solver.tolerance
+    train, known = job.train, job.settings["tolerance"]
     torque = {
         m: np.fmax.reduce(np.abs(columns[f"torque.{m} [N*m]"]), initial=0.0) for m in train.meshes
     }

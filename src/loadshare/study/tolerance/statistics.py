@@ -174,15 +174,8 @@ def wilson(hits: int, count: int) -> Estimate:
     E. B. Wilson, Probable inference, the law of succession, and statistical inference, Journal of
     the American Statistical Association 22 (1927).
     """
-    z = float(special.ndtri(0.5 + TOLERANCE.confidence / 2.0))
-    share = hits / count
-    middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count)
-    inner = share * (1.0 - share) / count + z * z / (4.0 * count * count)
-    half = z / (1.0 + z * z / count) * math.sqrt(inner)
-    # Round-off must not keep the interval from reaching 0 or 1.
-    low = 0.0 if hits == 0 else max(middle - half, 0.0)
-    high = 1.0 if hits == count else min(middle + half, 1.0)
-    return Estimate(share, low, high)
+    found = stats.binomtest(hits, count).proportion_ci(TOLERANCE.confidence, "wilson")
+    return Estimate(hits / count, float(found.low), float(found.high))
 
 
 def exceedance(values: Array, limit: float, replicated: bool) -> Estimate | None:

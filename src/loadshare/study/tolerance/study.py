@@ -281,7 +281,7 @@ class _Reader:
 
     def __init__(self, folder: Folder, block: Study) -> None:
         self.folder, self.limit = folder, block.limit
-        self.settings, self.train = folder.job.settings, folder.job.solver.train
+        self.settings, self.train = folder.job.settings, folder.job.train
         self.levels = block.quantiles or TOLERANCE.levels
         self.replicated = self.settings["sampling"] == "sobol"
 
@@ -349,7 +349,7 @@ def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
         with suppress(TypeError):
             believed = tuple(WorstCase(**one) for one in known)
             for one in believed:
-                check_worst(folder.job.solver, one, str(folder.path / WORST_FILE))
+                check_worst(folder.job, one, str(folder.path / WORST_FILE))
             return believed
     found = tuple(sought(folder, kinds))
     folder.keep_worst([asdict(one) for one in found])
@@ -358,12 +358,11 @@ def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
 
 def sought(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
     """Search for the worst case of every kind of Ω, starting from the worst samples."""
-    solver, seed = folder.job.solver, folder.job.settings["seed"]
     for kind in kinds:
         values = np.nan_to_num(folder.column(f"{kind}.{SYSTEM}"), nan=-np.inf)
         worst = np.argsort(-values, kind="stable")[: TOLERANCE.worst]
         known = _inputs_of(folder, [int(row) for row in worst if np.isfinite(values[row])])
-        found = worst_case(solver, kind, known, seed)
+        found = worst_case(folder.job, kind, known)
         if found is not None:
             yield found
 

@@ -12,8 +12,8 @@ from loadshare.array_types import Array
 from loadshare.errors import CaseError, Problem, Refused, ResultError
 from loadshare.job import solve
 from loadshare.settings import JOB, TOLERANCE
-from loadshare.study.tolerance.figures import KIND_OVER, KINDS, SYSTEM, Solver
-from loadshare.study.tolerance.inputs import Inputs
+from loadshare.study.tolerance.figures import KIND_OVER, KINDS, SYSTEM
+from loadshare.study.tolerance.job import Job
 
 
 @dataclass(frozen=True)
@@ -45,39 +45,7 @@ class WorstCase:
     solved: int
 
 
-class ToleranceBox:
-    """The tolerance box: each input between its ends, scaled to [0, 1].
-
-    A distribution without an end is cut at three standard deviations of a normal one (0.135 % lie
-    beyond). Correlations do not narrow the box.
-    """
-
-    def __init__(self, inputs: Inputs) -> None:
-        ends = np.array([one.distribution.ends() for one in inputs.every])
-        self.low, self.high = ends[:, 0], ends[:, 1]
-        self.periodic = np.array([one.distribution.periodic for one in inputs.every])
-
-    def __len__(self) -> int:
-        return len(self.low)
-
-    def values(self, scaled: Array) -> Array:
-        """Return inputs in their units."""
-        return np.asarray(self.low + scaled * (self.high - self.low))
-
-    def scaled(self, values: Array) -> Array:
-        """Return inputs as fractions of their range, clipped to its ends."""
-        width = self.high - self.low
-        # An input that scatters by less than the precision of numbers has no range.
-        return np.asarray(
-            np.clip((values - self.low) / np.where(width > 0.0, width, 1.0), 0.0, 1.0)
-        )
-
-    def within(self, scaled: Array) -> Array:
-        """Bring points back into the box: angles wrap around, others are clipped."""
-        return np.where(self.periodic, scaled % 1.0, np.clip(scaled, 0.0, 1.0))
-
-
-def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> WorstCase | None:
+def worst_case(job: Job, kind: str, known: Sequence[Array]) -> WorstCase | None:
     """Search for the worst case from many starting points at once.
 
     From each point, every input is tried a step up and down. The point moves to the best of these
@@ -86,21 +54,18 @@ def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> 
 
     Parameters
     ----------
-    solver : Solver
+    job : Job
     kind : {"omega", "pair_omega"}
     known : sequence of ndarray, shape (inputs,)
         Samples to start from, such as the worst ones of the study.
-    seed : int
-        Of the other starting points.
 
     Returns
     -------
     WorstCase or None
         None if no starting point has an answer, or no point found is certified on its own.
     """
-    box = ToleranceBox(solver.inputs)
-    search = _Search(solver, box, f"{kind}.{SYSTEM}")
-    points = _starts(box, known, seed)
+    search = _Search(job, kind)
+    points = search.starts(known)
     best = search.omega(points)
     step = np.full(len(points), TOLERANCE.step)
     for _ in range(TOLERANCE.rounds):
@@ -113,33 +78,51 @@ def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> 
         step[active[~gains]] *= TOLERANCE.narrower
     for k in np.argsort(-best, kind="stable").tolist():
         if np.isfinite(best[k]):
-            found = _confirmed(solver, box, kind, points[k], search.solved)
+            found = _confirmed(search, points[k])
             if found is not None:
                 return found
     return None
 
 
-def _starts(box: ToleranceBox, known: Sequence[Array], seed: int) -> Array:
-    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(0, 3)))
-    inner = rng.random((TOLERANCE.inner, len(box)))
-    corners = np.where(box.periodic, rng.random((TOLERANCE.corners, len(box))), 0.0)
-    corners = np.where(box.periodic, corners, rng.integers(0, 2, (TOLERANCE.corners, len(box))))
-    return np.array([*(box.scaled(k) for k in known), *corners, *inner], dtype=float)
-
-
-@dataclass
 class _Search:
-    solver: Solver
-    box: ToleranceBox
-    column: str
-    solved: int = 0
+    """A search in the tolerance box: each input between its ends, scaled to [0, 1].
+
+    A distribution without an end is cut at three standard deviations of a normal one (0.135 % lie
+    beyond). Correlations do not narrow the box.
+    """
+
+    def __init__(self, job: Job, kind: str) -> None:
+        self.job, self.kind, self.solved = job, kind, 0
+        distributions = [one.distribution for one in job.inputs.every]
+        self.low, high = np.array([one.ends() for one in distributions]).T
+        self.width = high - self.low
+        self.periodic = np.array([one.periodic for one in distributions])
+
+    def starts(self, known: Sequence[Array]) -> Array:
+        """Return points of the box to start from: known inputs, corners, and points inside."""
+        # An input that scatters by less than the precision of numbers has no range.
+        width = np.where(self.width > 0.0, self.width, 1.0)
+        scaled = [np.clip((values - self.low) / width, 0.0, 1.0) for values in known]
+        source = np.random.SeedSequence(self.job.settings["seed"], spawn_key=(0, 3))
+        rng, shape = np.random.default_rng(source), (TOLERANCE.corners, len(self.low))
+        inner = rng.random((TOLERANCE.inner, len(self.low)))
+        corners = np.where(self.periodic, rng.random(shape), rng.integers(0, 2, shape))
+        return np.array([*scaled, *corners, *inner], dtype=float)
+
+    def values(self, scaled: Array) -> Array:
+        """Return inputs in their units."""
+        return np.asarray(self.low + scaled * self.width)
+
+    def within(self, scaled: Array) -> Array:
+        """Bring points back into the box: angles wrap around, others are clipped."""
+        return np.where(self.periodic, scaled % 1.0, np.clip(scaled, 0.0, 1.0))
 
     def omega(self, scaled: Array) -> Array:
         """Return Ω at points of the box; minus infinity where there is no certified answer."""
         found = np.full(len(scaled), -np.inf)
         for at in range(0, len(scaled), JOB.block):
             part = slice(at, at + JOB.block)
-            values = self.solver.solve(self.box.values(scaled[part])).columns[self.column]
+            values = self.job.solve(self.values(scaled[part])).columns[f"{self.kind}.{SYSTEM}"]
             found[part] = np.where(np.isnan(values), -np.inf, values)
         self.solved += len(scaled)
         return found
@@ -149,7 +132,7 @@ class _Search:
         count, width = points.shape
         ways = np.concatenate([np.eye(width), -np.eye(width)])
         around = points[:, None, :] + step[:, None, None] * ways
-        trials = self.box.within(around.reshape(-1, width)).reshape(around.shape)
+        trials = self.within(around.reshape(-1, width)).reshape(around.shape)
         omega = self.omega(trials.reshape(-1, width)).reshape(count, 2 * width)
         gain = np.where(np.isfinite(omega), omega - best[:, None], -np.inf)
         # Steps that gain alone often gain together: all of them, and the better half, are tried.
@@ -160,7 +143,7 @@ class _Search:
         middle = np.ma.median(gains, axis=1).filled(np.inf)  # type: ignore[no-untyped-call]
         together = np.stack(
             [
-                self.box.within(points + step[:, None] * sign * (each > least[:, None]))
+                self.within(points + step[:, None] * sign * (each > least[:, None]))
                 for least in (np.full(count, TOLERANCE.gain), middle)
             ],
             axis=1,
@@ -173,42 +156,39 @@ class _Search:
         return scaled[rows, chosen], every[rows, chosen]
 
 
-def _confirmed(
-    solver: Solver, box: ToleranceBox, kind: str, place: Array, solved: int
-) -> WorstCase | None:
+def _confirmed(search: _Search, place: Array) -> WorstCase | None:
     """Solve a point of the box on its own, with a full certificate."""
-    values = box.values(place).tolist()
-    changes = solver.inputs.changes(values)
-    omega = _omega_with(solver, changes, kind)
+    inputs, values = search.job.inputs, search.values(place).tolist()
+    changes = inputs.changes(values)
+    omega = _omega_with(search.job, changes, search.kind)
     if omega is None:
         return None
-    names = [one.name for one in solver.inputs.every]
+    names = [one.name for one in inputs.every]
     return WorstCase(
-        over=KINDS[kind],
+        over=KINDS[search.kind],
         omega=omega,
         inputs=dict(zip(names, values, strict=True)),
         changes=changes,
         at={
             name: "between" if p else ("low" if u <= 0.0 else "high" if u >= 1.0 else "between")
-            for name, u, p in zip(names, place.tolist(), box.periodic, strict=True)
+            for name, u, p in zip(names, place.tolist(), search.periodic, strict=True)
         },
-        solved=solved,
+        solved=search.solved,
     )
 
 
-def _omega_with(solver: Solver, changes: dict[str, Any], kind: str) -> float | None:
+def _omega_with(job: Job, changes: dict[str, Any], kind: str) -> float | None:
     """Return Ω of the system with inputs changed; None if it is not certified or has no Ω."""
     try:
-        result = solve(
-            solver.case.replace(changes), positions=solver.positions, tolerance=solver.tolerance
-        )
+        how = {key: job.settings[key] for key in ("positions", "tolerance")}
+        result = solve(job.case.replace(changes), **how)
     except (Refused, CaseError):
         return None
     found: dict[str, float | None] = getattr(result, kind)
     return found[SYSTEM]
 
 
-def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
+def check_worst(job: Job, known: WorstCase, file: str) -> None:
     """Check a worst case that an earlier run found, by solving it again.
 
     Raises
@@ -217,8 +197,8 @@ def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
         If its inputs do not give its Ω.
     """
     try:
-        changes = solver.inputs.changes(list(known.inputs.values()))
-        found = _omega_with(solver, changes, KIND_OVER.get(known.over, "pair_omega"))
+        changes = job.inputs.changes(list(known.inputs.values()))
+        found = _omega_with(job, changes, KIND_OVER.get(known.over, "pair_omega"))
     except (TypeError, ValueError):
         changes, found = {}, None
     if (
