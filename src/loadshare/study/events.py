@@ -119,16 +119,9 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
 
 def _events(line: Line, position: int, change: Change, together: int) -> partial[Event]:
     """Return `Event` with a change filled in; element, gear, kind and both states are missing."""
-    return partial(
-        Event,
-        value=change.value,
-        unit=line.parameter.unit,
-        position=position,
-        together=together,
-        confirmed=change.confirmed,
-        worst=change.worst,
-        apart=change.apart,
-    )
+    known = {n: getattr(change, n) for n in ("value", "confirmed", "worst", "apart")}
+    unit = line.parameter.unit
+    return partial(Event, unit=unit, position=position, together=together, **known)
 
 
 def _state(states: int, is_row: bool, is_ring: bool) -> str:

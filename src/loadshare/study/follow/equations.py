@@ -45,8 +45,6 @@ class PolarFrame:
         Distance beyond the radius at which an unknown force holds the element.
     sense : float
         Factor that makes an unknown force act along the offset.
-    spring : bool
-        Whether its force is proportional to the offset.
     """
 
     matrix: Array
@@ -57,23 +55,20 @@ class PolarFrame:
     slope: Array
     beyond: Array | None
     sense: float = 1.0
-    spring: bool = False
 
     @property
     def force(self) -> Array:
         """Force (S, k) along the offset."""
-        if self.spring:
-            return np.asarray(self.slope[:, None] * self.offset)
         return np.asarray(self.size[:, None] * self.along)
 
     @property
     def stiffness(self) -> Array:
         """Derivative (S, k, k) of the force with respect to the offset."""
         one = np.eye(self.offset.shape[1])
-        if self.spring:
-            return np.asarray(self.slope[:, None, None] * one)
         dyad = self.along[:, :, None] * self.along[:, None, :]
-        across = self.size / np.where(self.radius > 0.0, self.radius, np.inf)
+        # At the centre all directions are alike.
+        off = self.radius > 0.0
+        across = np.where(off, self.size / np.where(off, self.radius, 1.0), self.slope)
         return np.asarray(self.slope[:, None, None] * dyad + across[:, None, None] * (one - dyad))
 
 
@@ -254,9 +249,7 @@ class Equations:
             assert where is not None
             size = z[:, where]
             beyond = radius - (law.stick if states == at.CORNER else law.reach)
-        return PolarFrame(
-            matrix, offset, radius, along, size, slope, beyond, spring=bool(states == at.STICK)
-        )
+        return PolarFrame(matrix, offset, radius, along, size, slope, beyond)
 
     def residual(self, z: Array, numbers: Numbers, state: Evaluation | None = None) -> Array:
         """Return G, shape (S, size)."""

@@ -159,6 +159,11 @@ def _times(one: Array, one_off: Array, other: Array, other_off: Array) -> tuple[
     return np.asarray(one * other), np.asarray(off)
 
 
+def _scaled(one: Range, other: Range) -> tuple[Array, Array]:
+    """Return the product of a quantity and the derivative of another, middle and half width."""
+    return _times(one.middle, one.off, other.rate, other.spread)
+
+
 # --- Arcs and radial elements -------------------------------------------------------------------
 
 
@@ -284,9 +289,7 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
     if bound is None:
         clearance = s.sampled(s.numbers.clearance[:, k - e.arcs.start])
         margin = s.sampled(s.state.margin[k])
-        rate = give.middle * clearance.rate + margin.middle * give.rate
-        spread = give.off * np.abs(clearance.rate) + give.most * clearance.spread
-        spread += margin.off * np.abs(give.rate) + margin.most * give.spread
+        rate, spread = np.add(_scaled(give, clearance), _scaled(margin, give))
         extra = give.most * felt
         return Push(value, rate, spread, extra, give.most, give.off)
     follows = (bound.felt * dev).sum(axis=1)
@@ -297,12 +300,10 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
     if power != 1.0:
         return _rolling_push(s, k, felt, value, give, float(power))
     reach = s.sampled(s.state.laws[k].reach)
-    past = s.radii[k] - reach.middle
-    past_off = around.off + reach.off
-    rate = bound.value.rate + give.rate * past - give.middle * reach.rate
-    spread = bound.value.spread + give.spread * (np.abs(past) + past_off)
-    spread += np.abs(give.rate) * past_off + give.off * np.abs(reach.rate)
-    spread += give.most * reach.spread
+    moved, moved_spread = _scaled(give, reach)
+    past = _times(s.radii[k] - reach.middle, around.off + reach.off, give.rate, give.spread)
+    rate = bound.value.rate + past[0] - moved
+    spread = bound.value.spread + past[1] + moved_spread
     extra = follows + give.most * felt
     return Push(value, rate, spread, extra, give.most, give.off)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -75,8 +76,7 @@ def gauges(
         elif k in e.arcs:
             yield _arc_gauge(s, k, dev, bend)
         else:
-            for to, value, *instead in _radial_gauges(s, k, dev, bend):
-                yield Gauge(k, to, value, *instead)
+            yield from _radial_gauges(s, k, dev, bend)
 
 
 def _arc_gauge(s: Stretches, k: int, dev: Array, bend: Array) -> Gauge:
@@ -109,8 +109,9 @@ def _contact_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[G
             yield Gauge(k, at.CLOSED, _known(points[:, :, piece + 1]) - approach)
 
 
-def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[tuple]:  # type: ignore[type-arg]
+def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[Gauge]:
     """Yield gauges of a radial element towards the states before and after its own."""
+    gauge = partial(Gauge, k)
     e, law, states = s.equations, s.state.laws[k], int(s.equations.states[k])
     where = e.polar_at.get(k)
     given = s.split(s.numbers.radial[:, k - e.radials.start])
@@ -119,37 +120,37 @@ def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[tu
     ends = bool(np.isfinite(reach.chord.nodes).all())
     if states == at.OPEN:
         if ends:
-            yield at.STOP, reach - radius
+            yield gauge(at.STOP, reach - radius)
         # Without friction a spline moves freely; any friction ends that. A ring has none.
         if given[:, :, 3:5].any():
-            yield at.SLIP, -bound
+            yield gauge(at.SLIP, -bound)
     elif states == at.STICK and np.isnan(given[:, 0, 1]).all():
         # The spline bends throughout as long as its clearance closes before it slips.
-        yield at.SLIP, stick - radius, stick - reach
+        yield gauge(at.SLIP, stick - radius, stick - reach)
     elif states == at.STICK:
-        yield at.SLIP, stick - radius
+        yield gauge(at.SLIP, stick - radius)
     elif states == at.SLIP:
         if bound.chord.nodes.any():
-            yield at.STICK, radius - stick
+            yield gauge(at.STICK, radius - stick)
         if ends:
-            yield at.STOP, reach - radius
+            yield gauge(at.STOP, reach - radius)
     elif states == at.STOP:
-        yield at.SLIP, radius - reach
+        yield gauge(at.SLIP, radius - reach)
         # An element without a shaft that bends first has no such piece, even without clearance.
         if given[:, :, 0].any():
-            yield at.STICK, reach - stick
+            yield gauge(at.STICK, reach - stick)
     elif states == at.WALL and where is not None:
-        yield at.OPEN, s.unknown(where, dev, bend)
+        yield gauge(at.OPEN, s.unknown(where, dev, bend))
     elif states == at.CORNER and where is not None:
         force = s.unknown(where, dev, bend)
-        yield at.STICK, force - _known(s.split(law.first * law.stick))
-        yield at.SLIP, bound - force
+        yield gauge(at.STICK, force - _known(s.split(law.first * law.stick)))
+        yield gauge(at.SLIP, bound - force)
     elif np.isinf(law.last).all():
         # A rigid ring pins its gear only as long as it has no play at all.
-        yield at.WALL, -reach
+        yield gauge(at.WALL, -reach)
     elif where is not None:
-        yield at.STICK, -stick
-        yield at.SLIP, bound - _pull(s, where, dev, bend)
+        yield gauge(at.STICK, -stick)
+        yield gauge(at.SLIP, bound - _pull(s, where, dev, bend))
 
 
 def _known(nodes: Array) -> Enclosure:

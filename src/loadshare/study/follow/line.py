@@ -15,7 +15,7 @@ import numpy as np
 from loadshare.array_types import Array, States
 from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
-from loadshare.job.machine import Answers, Machine
+from loadshare.job.machine import Machine
 from loadshare.scene.structure import Structure
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
@@ -146,33 +146,33 @@ class Line:
         """Solve and certify a position at values (S,)."""
         if self._samples is not None:
             situations = self._at(values).situations(position)
-            found = self.machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
-            return [
-                self._from_batch(self.structure, situations, found, k, value)
-                if found.passed[k]
-                else self._from_ladder(position, value)
-                for k, value in enumerate(values.tolist())
-            ]
-        return [self._one(position, value) for value in values.tolist()]
+            return self._answers(self.machine, situations, position, values.tolist())
+        found: list[SolvedValue | Missing] = []
+        for value in values.tolist():
+            try:
+                train, structure = self._own(value)
+            except (CaseError, ValueError) as problem:
+                found.append(Missing(value, str(problem)))
+                continue
+            machine = Machine(train)
+            machine.__dict__["structure"] = structure
+            found += self._answers(machine, situation_of(train, position), position, [value])
+        return found
 
-    def _one(self, position: int, value: float) -> SolvedValue | Missing:
-        try:
-            train, structure = self._own(value)
-        except (CaseError, ValueError) as problem:
-            return Missing(value, str(problem))
-        machine = Machine(train)
-        machine.__dict__["structure"] = structure
-        situations: Situations = situation_of(train, position)
+    def _answers(
+        self, machine: Machine, situations: Situations, position: int, values: list[float]
+    ) -> list[SolvedValue | Missing]:
+        """Return the answers of a machine, or of a slower method where one is not certified."""
         found = machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
-        if not found.passed[0]:
-            return self._from_ladder(position, value)
-        return self._from_batch(structure, situations, found, 0, value)
-
-    def _from_batch(
-        self, structure: Structure, situations: Situations, found: Answers, k: int, value: float
-    ) -> SolvedValue:
-        x = coordinates(structure, situations.take(slice(k, k + 1)), found.equilibria.one(k, 1))
-        return SolvedValue(value, found.states[k].copy(), x, float(found.verdicts.worst[k]))
+        every: list[SolvedValue | Missing] = []
+        for k, value in enumerate(values):
+            if not found.passed[k]:
+                every.append(self._from_ladder(position, value))
+                continue
+            one, own = found.equilibria.one(k, 1), situations.take(slice(k, k + 1))
+            x, worst = coordinates(machine.structure, own, one), float(found.verdicts.worst[k])
+            every.append(SolvedValue(value, found.states[k].copy(), x, worst))
+        return every
 
     def _from_ladder(self, position: int, value: float) -> SolvedValue | Missing:
         """Return the answer of a slower method, with states read from forces and radii."""

@@ -57,18 +57,15 @@ class Numbers:
         loading = loading_of(structure, situations)
         carried = loading.carried.copy()
         carried[_idle(structure, situations)] = 0.0
-        constant: dict[str, Any] = {
+        own: dict[str, Any] = {
             "vectors": structure.vectors,
             "tabulated": loading.tabulated,
             "nominal": loading.nominal,
             "relative": loading.relative,
             "carried": carried,
         }
-        names = [f.name for f in fields(cls) if f.name not in constant]
-        return cls(
-            **{name: value[None] for name, value in constant.items()},
-            **{name: getattr(loading, name) for name in names},
-        )
+        names = [f.name for f in fields(cls)]
+        return cls(**{n: own[n][None] if n in own else getattr(loading, n) for n in names})
 
     @classmethod
     def stacked(cls, parts: Sequence[Numbers]) -> Numbers:

@@ -27,7 +27,7 @@ from loadshare.array_types import Array, Flags
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import balanced, free_moves
-from loadshare.study.follow.forces import forces
+from loadshare.study.follow.forces import Force, forces
 from loadshare.study.follow.gauges import gauges
 from loadshare.study.follow.ranges import sampled
 from loadshare.study.follow.stretches import Stretches
@@ -175,7 +175,7 @@ def _roundings(s: Stretches, reach: Array) -> Array:
         length = (np.abs(polar.matrix) @ x[:, :, None])[:, :, 0].max(axis=1) + polar.radius
         length = s.split(length).max(axis=1)
         push, slope = (s.split(np.abs(v)).max(axis=1) for v in (polar.size, polar.slope))
-        across = slope if polar.spring else push / around.least + slope * around.turn
+        across = slope if e.states[k] == at.STICK else push / around.least + slope * around.turn
         pulls = np.abs(reach @ s.inputs[:, columns].transpose(0, 2, 1))
         found += (slope * length)[:, None] * pulls[:, :, 0]
         found += (across * length)[:, None] * pulls[:, :, 1:].sum(axis=2)
@@ -184,11 +184,9 @@ def _roundings(s: Stretches, reach: Array) -> Array:
 
 def _stacked(s: Stretches, dev: Array) -> tuple[Array, Array, Array, Array]:
     """Return U, ρ, and derivatives along the chord with their spreads, of all forces that vary."""
-    every = list(forces(s, dev))
-    if not every:
-        shapes = ((0, s.equations.size), (0, s.width), (0,), (0,))
-        into, slack, rate, spread = (np.zeros((s.count, *shape)) for shape in shapes)
-        return into, slack, rate, spread
+    still = np.zeros((2, s.count))
+    none = Force(*(np.zeros((s.count, n)) for n in (s.equations.size, s.width)), *still)
+    every = list(forces(s, dev)) or [none]
     into, slack, rate, spread = (np.stack(part, axis=1) for part in zip(*every, strict=True))
     return into, slack, rate, spread
 

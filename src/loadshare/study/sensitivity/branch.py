@@ -179,22 +179,16 @@ class Branch:
         found = np.zeros(self.size)
         for k, play in self.pins.items():
             if play > 0.0:
-                found[self._pinned(k)] = play * self._way(k, z)
+                where = self.equations.polar_at[k]
+                assert where is not None
+                force = z[where : where + 2]
+                size = float(np.linalg.norm(force))
+                if size <= SENSITIVITY.verge:
+                    why = "a gear on which no force acts floats as soon as its limit has play"
+                    raise BranchLost(why)
+                # The gear moves the way it is pushed.
+                found[where : where + 2] = play * (force / size)
         return found
-
-    def _pinned(self, k: int) -> slice:
-        """Return where the two forces of a pin are among the unknowns."""
-        where = self.equations.polar_at[k]
-        assert where is not None
-        return slice(where, where + 2)
-
-    def _way(self, k: int, z: Array) -> Array:
-        """Return the direction in which a pin is pushed; its gear moves that way by the play."""
-        force = z[self._pinned(k)]
-        size = float(np.linalg.norm(force))
-        if size <= SENSITIVITY.verge:
-            raise BranchLost("a gear on which no force acts floats as soon as its limit has play")
-        return np.asarray(force / size)
 
     def jacobians(self, z: Array) -> Array:
         """Return the derivative of G at points z (S, size)."""

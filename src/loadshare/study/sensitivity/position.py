@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,27 +21,6 @@ from loadshare.study.sensitivity.result import Input, Rates, Remark
 from loadshare.study.sensitivity.variation import Trains, Variation, torques_of
 from loadshare.train import Train
 from loadshare.train.placed import train_at
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Motions:
-    """One-sided derivatives of torques and displacements, with bounds on their errors.
-
-    Attributes
-    ----------
-    torque, torque_error : ndarray, shape (meshes,)
-        [N·m] per SI unit.
-    share_error : callable
-        Bound on the errors of linear combinations (k, meshes) of the torques' derivatives.
-    displacement, displacement_error : mapping of gear to ndarray, shape (2,)
-        [m] per SI unit; NaN where undetermined.
-    """
-
-    torque: Array
-    torque_error: Array
-    share_error: Callable[[Array], Array]
-    displacement: dict[str, Array]
-    displacement_error: dict[str, Array]
 
 
 class PositionSensitivity:
@@ -121,23 +100,23 @@ class PositionSensitivity:
         if motion is not None:
             self._caught |= dict.fromkeys(motion.elements)
             shared = not motion.one_sided and not kinked
-            return self._rates(self._moved(motion)), shared
+            return self._moved(motion), shared
         try:
-            motions = self._differenced(varied, sign, step)
+            found = self._differenced(varied, sign, step)
         except NoDifference as why:
             return self._without(key, side, why), False
         self._remark(
             key, side, f"found by differences when it is {_word(side)}: no active set was proved"
         )
-        return self._rates(motions), False
+        return found, False
 
     def _without(self, key: str, side: str, why: Exception) -> Rates:
         """Add a remark on why a side has no derivative, and return NaN for it."""
         self._remark(key, side, f"has no derivative when it is {_word(side)}: {why}")
         return self._nothing()
 
-    def _differenced(self, varied: Variation, sign: float, step: float | None) -> Motions:
-        """Return derivatives of torques and displacements from differences of certified solves."""
+    def _differenced(self, varied: Variation, sign: float, step: float | None) -> Rates:
+        """Return derivatives from differences of certified solves."""
         count = len(self.train.meshes)
         rates, errors = differenced(self._answer, varied, sign, step)
         moved: dict[str, Array] = {}
@@ -146,16 +125,11 @@ class PositionSensitivity:
             here = slice(count + 2 * k, count + 2 * k + 2)
             moved[gear] = np.where(loose, np.nan, rates[here])
             error[gear] = np.where(loose, np.nan, errors[here])
-        return Motions(
-            rates[:count],
-            errors[:count],
-            lambda weights: np.abs(weights) @ errors[:count],
-            moved,
-            error,
-        )
+        torque = rates[:count]
+        return self._rates(torque, lambda weights: np.abs(weights) @ errors[:count], moved, error)
 
-    def _moved(self, motion: Motion) -> Motions:
-        """Return the derivatives of torques and displacements from a motion."""
+    def _moved(self, motion: Motion) -> Rates:
+        """Return the derivatives from a motion."""
         branch, size = motion.branch, motion.branch.size
         gradients = branch.torque_gradients(motion.z)
         direct_error = motion.change.error[size:]
@@ -178,43 +152,53 @@ class PositionSensitivity:
             if body.is_tilted:
                 moved[gear] = body.in_plane(moved[gear])
                 error[gear] = error[gear] @ np.abs(body.frame @ body.plane.T)
-        return Motions(torque, bound(np.eye(len(torque))), bound, moved, error)
+        return self._rates(torque, bound, moved, error)
 
-    def _rates(self, motions: Motions) -> Rates:
+    def _rates(
+        self,
+        torque: Array,
+        bound: Callable[[Array], Array],
+        moved: dict[str, Array],
+        moved_error: dict[str, Array],
+    ) -> Rates:
+        """Return derivatives with their errors.
+
+        Parameters
+        ----------
+        torque : ndarray, shape (meshes,)
+            Derivatives of the torques [N·m] per SI unit.
+        bound : callable
+            Bound on the errors of linear combinations (k, meshes) of these.
+        moved, moved_error : mapping of gear to ndarray, shape (2,)
+            Derivatives of displacements [m] per SI unit, and their errors; NaN where undetermined.
+        """
         stages = self.train.stages
         groupings = [[s.meshes for s in stages], [g for s in stages for g in s.groups]]
-        (share, share_error), (pair, pair_error) = (self._shares(motions, g) for g in groupings)
-        torque, torque_error = (
-            dict(zip(self.train.meshes, values.tolist(), strict=True))
-            for values in (motions.torque, motions.torque_error)
-        )
-        error = Rates(torque_error, share_error, pair_error, motions.displacement_error)
-        return Rates(torque, share, pair, motions.displacement, error)
+        weights = [np.eye(len(torque)), *map(self._weights, groupings)]
+        of_torque, share, pair = (self._by_mesh(w @ torque) for w in weights)
+        torque_error, share_error, pair_error = (self._by_mesh(bound(w)) for w in weights)
+        error = Rates(torque_error, share_error, pair_error, moved_error)
+        return Rates(of_torque, share, pair, moved, error)
 
-    def _shares(
-        self, motions: Motions, groups: list[tuple[str, ...]]
-    ) -> tuple[dict[str, float], dict[str, float]]:
-        """Return the derivatives of Ω = T / mean(T) of every branch, and bounds on their errors."""
+    def _by_mesh(self, values: Array) -> dict[str, float]:
+        return dict(zip(self.train.meshes, values.tolist(), strict=True))
+
+    def _weights(self, groups: list[tuple[str, ...]]) -> Array:
+        """Return the derivatives (meshes, meshes) of Ω = T / mean(T) of every branch by torques.
+
+        Rows are NaN where the group of a mesh carries no load.
+        """
         order = list(self.train.meshes)
-        value, error = dict.fromkeys(order, np.nan), dict.fromkeys(order, np.nan)
-        for group, weights in self._weights(order, groups):
-            rates, bounds = weights @ motions.torque, motions.share_error(weights)
-            value |= dict(zip(group, rates.tolist(), strict=True))
-            error |= dict(zip(group, bounds.tolist(), strict=True))
-        return value, error
-
-    def _weights(
-        self, order: list[str], groups: list[tuple[str, ...]]
-    ) -> Iterator[tuple[tuple[str, ...], Array]]:
-        """Yield the groups that carry load, and dΩ/dT (group, meshes)."""
+        found = np.full((len(order), len(order)), np.nan)
         for group in groups:
-            columns = [order.index(m) for m in group]
-            torque = self.torques.net[0, columns]
+            rows = [order.index(m) for m in group]
+            torque = self.torques.net[0, rows]
             mean = torque.mean()
             if carries(mean, self.torques.largest[0]):
-                weights = np.eye(len(order))[columns]
-                weights[:, columns] -= torque[:, None] / mean / len(group)
-                yield group, weights / mean
+                weights = np.eye(len(order))[rows]
+                weights[:, rows] -= torque[:, None] / mean / len(group)
+                found[rows] = weights / mean
+        return found
 
     def _loose(self, motion: Motion | None = None) -> dict[str, Array]:
         """Return which components of each gear's displacement are undetermined, here or on a side.

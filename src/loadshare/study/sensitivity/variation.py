@@ -41,6 +41,12 @@ class Trains:
     item : Input
     positions : sequence of int
         1-based positions that are differentiated.
+
+    Attributes
+    ----------
+    at : callable
+        Returns the train with the input at a number, in the input's unit. Raises `CaseError` if the
+        input cannot take this number.
     """
 
     def __init__(
