@@ -95,10 +95,8 @@ def read_value(given: object) -> Value | None:
     Parameters
     ----------
     given : object
-        A number, a text with a unit, a pint quantity, a `Quantity` or a `Value`.
+        A number, a text with a unit, a pint quantity or a `Quantity`.
     """
-    if isinstance(given, Value):
-        return given
     given = as_text(given)
     if isinstance(given, bool):
         return None
@@ -346,7 +344,7 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
     shown = given if isinstance(given, str) else ", ".join(map(str, items))
     known: list[Value] = []
     for item in items:
-        value = read_value(_plain(item))
+        value = read_value(item)
         if value is None:
             message = f'"{item}" cannot be read: it is not a number with a unit of an input'
             raise _unusable(place, message, allowed, given=shown)
@@ -372,11 +370,6 @@ def too_many(place: str, points: object) -> CaseError:
     most = f"up to {ALLOWED.points:,} points in all"
     hint = "solve_many and [study] of kind tolerance take any number of samples but keep less"
     return _unusable(place, "is too fine", most, hint, f"{points} points")
-
-
-def _plain(item: object) -> object:
-    """Return a NumPy number as a Python one, anything else as it is."""
-    return item.item() if hasattr(item, "item") and not hasattr(item, "units") else item
 
 
 def split_outside(text: str, sign: str) -> list[str]:

@@ -179,12 +179,12 @@ def _differentiated(of: Function, value: Value, rounding: Array, usual: float) -
     below, above = sides[-1], sides[1]
     if isinstance(below, CaseError) and isinstance(above, CaseError):
         raise above
-    steps = [s[1] for s in (below, above) if not isinstance(s, Exception)] or [usual]
-    to_si = value.factor
+    steps = [s[1] for s in (below, above) if not isinstance(s, Exception)]
+    step = min(steps, default=usual) * value.factor
     low = _forward(here, below, -1.0, value, rounding)
     high = _forward(here, above, 1.0, value, rounding)
     if isinstance(low, Exception) or isinstance(high, Exception):
-        return Derivative(low, high, True, min(steps) * to_si)
+        return Derivative(low, high, True, step)
     assert not isinstance(below, Exception)
     assert not isinstance(above, Exception)
     if below[1] == above[1]:
@@ -195,8 +195,8 @@ def _differentiated(of: Function, value: Value, rounding: Array, usual: float) -
     size = float(np.abs(both.value).max(initial=0.0))
     kinked = (apart > 3.0 * (low.error + high.error)) & (apart > SENSITIVITY.kink * size)
     if kinked.any():
-        return Derivative(low, high, True, min(steps) * to_si)
-    return Derivative(both, both, False, min(steps) * to_si)
+        return Derivative(low, high, True, step)
+    return Derivative(both, both, False, step)
 
 
 def _central(below: Points, above: Points, h: float, value: Value, rounding: Array) -> SideSlope:

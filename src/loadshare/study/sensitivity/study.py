@@ -36,6 +36,10 @@ class LargestShare(NamedTuple):
     error: float
 
 
+Slopes = dict[tuple[str, str], dict[str, float]]
+"""Figures by input and side, then by stage."""
+
+
 def sensitivity(
     case: Case | str | Path,
     inputs: str | Sequence[str] | None = None,
@@ -101,30 +105,21 @@ def sensitivity(
             skipped.append((item.key, refusal.problems[0].message))
         else:
             usable.append(item)
-    shares, pairs = (_largest(train, solved, rates, kind) for kind in ("share", "pair_share"))
+    omega, omega_error = _largest(train, solved, rates, "share")
+    pair_omega, pair_omega_error = _largest(train, solved, rates, "pair_share")
     return Sensitivity(
         inputs=tuple(usable),
         positions=tuple(chosen),
         rates=rates,
-        omega=_each(shares, "rate"),
-        pair_omega=_each(pairs, "rate"),
-        omega_error=_each(shares, "error"),
-        pair_omega_error=_each(pairs, "error"),
+        omega=omega,
+        pair_omega=pair_omega,
+        omega_error=omega_error,
+        pair_omega_error=pair_omega_error,
         kinks=tuple(Kink(c.position, elements) for c in solved if (elements := c.on_the_verge)),
         error={item.key: _error(rates, item.key, chosen) for item in usable},
         remarks=tuple(r for c in solved for r in c.remarks),
         skipped=tuple(skipped),
     )
-
-
-def _each(
-    largest: dict[tuple[str, str], dict[str, LargestShare]], what: str
-) -> dict[tuple[str, str], dict[str, float]]:
-    """Return one field of the slopes by input and side, then by stage."""
-    return {
-        at: {stage: getattr(slope, what) for stage, slope in slopes.items()}
-        for at, slopes in largest.items()
-    }
 
 
 def _error(rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequence[int]) -> float:
@@ -139,11 +134,12 @@ def _largest(
     at_positions: list[PositionSensitivity],
     rates: dict[tuple[int, str, str], Rates],
     kind: str,
-) -> dict[tuple[str, str], dict[str, LargestShare]]:
-    """Return the derivatives of the largest Ω of each stage and the system, by input and side."""
-    found: dict[tuple[str, str], dict[str, LargestShare]] = {}
+) -> tuple[Slopes, Slopes]:
+    """Return the derivatives of the largest Ω of each stage and the system, and their errors."""
+    found: Slopes = {}
+    stated: Slopes = {}
     for key, side in dict.fromkeys((key, side) for _, key, side in rates):
-        here = found[key, side] = {}
+        here: dict[str, LargestShare] = {}
         for stage in train.stages:
             near: list[LargestShare] = []
             for one in at_positions:
@@ -156,17 +152,18 @@ def _largest(
                 ]
             here[stage.name] = _steepest(near, side)
         here["system"] = _steepest(list(here.values()), side)
-    return found
+        found[key, side] = {name: one.rate for name, one in here.items()}
+        stated[key, side] = {name: one.error for name, one in here.items()}
+    return found, stated
 
 
 def _steepest(near: list[LargestShare], side: str) -> LargestShare:
     """Return the largest share with derivative and error; of equal ones, the largest beyond."""
     # Where no load is carried there are no shares.
-    near = [slope for slope in near if not np.isnan(slope.share)]
+    near = [one for one in near if not np.isnan(one.share)]
     if not near:
         return LargestShare(np.nan, np.nan, np.nan)
-    top = max(share for share, _, _ in near)
-    equal = [(slope, error) for share, slope, error in near if share >= top - SENSITIVITY.tie]
-    slopes = [slope for slope, _ in equal]
-    steepest = max(slopes) if side == "rising" else min(slopes)
-    return LargestShare(top, steepest, max(error for _, error in equal))
+    top = max(one.share for one in near)
+    equal = [one for one in near if one.share >= top - SENSITIVITY.tie]
+    steepest = (max if side == "rising" else min)(one.rate for one in equal)
+    return LargestShare(top, steepest, max(one.error for one in equal))

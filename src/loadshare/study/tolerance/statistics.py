@@ -131,9 +131,8 @@ def _mean(known: Array, deviation: float, replicates: list[Array] | None) -> Est
     value = float(known.mean())
     if replicates is not None:
         return _from_replicates(value, [float(part.mean()) for part in replicates])
-    half = (
-        float(special.ndtri(0.5 + TOLERANCE.confidence / 2.0)) * deviation / math.sqrt(len(known))
-    )
+    score = float(special.ndtri(0.5 + TOLERANCE.confidence / 2.0))
+    half = score * deviation / math.sqrt(len(known))
     return Estimate(value, value - half, value + half)
 
 
