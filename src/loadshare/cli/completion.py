@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,8 +18,12 @@ def setting_names(ctx: typer.Context, incomplete: str) -> list[str]:
 
 def key_names(ctx: typer.Context, incomplete: str) -> list[str]:
     """Return the keys of the case that hold a value."""
+    from loadshare.case.keys import dotted
+    from loadshare.study.parameter import leaves
+
     case = _case(ctx)
-    return [key for key in (_keys(case) if case else ()) if key.startswith(incomplete)]
+    keys = map(dotted, leaves(case.to_dict()) if case else ())
+    return [key for key in keys if key.startswith(incomplete)]
 
 
 def gear_names(ctx: typer.Context, incomplete: str) -> list[str]:
@@ -55,10 +58,3 @@ def _case(ctx: typer.Context) -> Case | None:
         return load_case(Path(given))
     except (LoadshareError, OSError):
         return None
-
-
-def _keys(case: Case) -> Iterator[str]:
-    from loadshare.case.keys import dotted
-    from loadshare.study.parameter import leaves
-
-    yield from (dotted(path) for path in leaves(case.to_dict()))

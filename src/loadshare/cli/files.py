@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from contextvars import ContextVar
 from pathlib import Path
-from typing import Any
 
 import typer
 
 from loadshare.cli.exits import writing
 from loadshare.cli.waiting import echo, is_hushed
-from loadshare.json_text import json_text
 from loadshare.output import STANDARD, write_whole
 
 
@@ -38,11 +36,6 @@ def kept() -> str:
     files = ", ".join(map(str, _written.get()))
     what = f"Kept: {files}." if files else "Nothing is kept."
     return f"{what} The same command starts from the beginning."
-
-
-def write_document(path: Path, document: dict[str, Any]) -> None:
-    """Write plain data as a JSON file, whole or not at all."""
-    write_whole(path, json_text(document))
 
 
 _outputs: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", default=())

@@ -97,8 +97,10 @@ def run(
     if result is not None:
         print_result(result, len(wanted), loads=loads, cycle=cycle)
         if search:
-            there = [p.position for p in result.positions]
-            _print_search(loaded, there if position else there[:1])
+            from loadshare.job.search import search as others
+
+            for at in result.positions if position else result.positions[:1]:
+                say(f"Position {at.position}: {others(loaded, at.position).text}", whole=True)
     if explain:
         _print_explanations(loaded, wanted if position else wanted[:1], how)
     if refusal is not None:
@@ -118,13 +120,6 @@ def _solved(
             return solve(case, positions=positions, progress=tick, **how), None
     except Refused as refusal:
         return refusal.partial, refusal
-
-
-def _print_search(case: Case, positions: Sequence[int]) -> None:
-    from loadshare.job.search import search
-
-    for index in positions:
-        say(f"Position {index}: {search(case, index).text}", whole=True)
 
 
 def _print_explanations(case: Case, positions: Sequence[int], how: dict[str, Any]) -> None:

@@ -164,11 +164,9 @@ class LeastSquares:
             gtol=FIT.last,
             max_nfev=200,
         )
-        return 2.0 * float(found.cost), self._snapped(np.asarray(found.x))
-
-    def _snapped(self, u: Array) -> Array:
-        """Move values that the method left just inside a bound onto it."""
-        return np.where(u < FIT.at_bound, 0.0, np.where(u > 1.0 - FIT.at_bound, 1.0, u))
+        # Values that it left just inside a bound are on it.
+        u = np.where(found.x < FIT.at_bound, 0.0, found.x)
+        return 2.0 * float(found.cost), np.where(u > 1.0 - FIT.at_bound, 1.0, u)
 
 
 def _ends(bounds: object) -> list[object]:

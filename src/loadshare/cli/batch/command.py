@@ -24,13 +24,12 @@ from loadshare.cli.batch.work import (
 from loadshare.cli.cases import find_cases, read_changes
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
-from loadshare.cli.files import write_document
 from loadshare.cli.options import CasePaths, Changes, Json, Method, Solver, Tolerance
 from loadshare.cli.stop import Stop
 from loadshare.cli.waiting import echo
 from loadshare.errors import LoadshareError
 from loadshare.json_text import json_text
-from loadshare.output import STANDARD, clear, make_folder
+from loadshare.output import STANDARD, clear, make_folder, write_whole
 
 
 def batch(
@@ -94,7 +93,7 @@ def batch(
             print_summary(ordered)
             document = summary_document(ordered, settings, waiting)
             with writing(summary):
-                write_document(summary, document)
+                write_whole(summary, json_text(document))
             if json:
                 echo(json_text(document), nl=False)
             if stop.requested:

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 from loadshare._version import __version__
 from loadshare.cli.exits import out_of_memory, unwritten
 from loadshare.errors import CaseError, Refused, ResultError
-from loadshare.output import NotWritten
+from loadshare.json_text import json_text
+from loadshare.output import NotWritten, write_whole
 from loadshare.processes import side_by_side
 
 if TYPE_CHECKING:
@@ -121,7 +122,6 @@ def work(task: Task) -> Outcome:
 
 def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     from loadshare.case import load_case
-    from loadshare.cli.files import write_document
     from loadshare.cli.refusal import refusal_lines, refused_document
     from loadshare.job import solve
     from loadshare.tooth import resolve
@@ -141,7 +141,7 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     except CaseError as error:
         return "invalid", None, tuple(map(str, error.problems))
     except Refused as refusal:
-        write_document(task.target, refused_document(refusal, task.case.stem))
+        write_whole(task.target, json_text(refused_document(refusal, task.case.stem)))
         return "refused", refusal.partial, tuple(refusal_lines(refusal))
     result.to_json(task.target)
     return "certified", result, (*notes, *_warnings(result))

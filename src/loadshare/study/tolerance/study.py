@@ -27,7 +27,7 @@ from loadshare.study.tolerance.figures import KIND_OVER, KINDS, SYSTEM
 from loadshare.study.tolerance.folder import WORST as WORST_FILE
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.inputs import read_inputs
-from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
+from loadshare.study.tolerance.job import CHUNK, INDICES, SAMPLES, Job, Part, equilibria
 from loadshare.study.tolerance.result import FloatStatistics, Tolerance
 from loadshare.study.tolerance.resume import check_part
 from loadshare.study.tolerance.statistics import (
@@ -158,7 +158,42 @@ def requested_job(
     """
     case, name = _requested(case, study, given)
     case = loaded(case, case.study[name].inputs or ())
-    return _job(case, name, chunk, engine), case.study[name]
+    block = case.study[name]
+    samples = block.samples or TOLERANCE.samples
+    sampling = block.sampling or "random"
+    rows = TOLERANCE.rows if block.indices is None else block.indices
+    problems: list[Problem] = []
+    try:
+        read = read_inputs(case, name)
+    except CaseError as error:
+        problems += error.problems
+    if sampling == "sobol":
+        for key, count in (("samples", samples), ("indices", rows)):
+            if count % TOLERANCE.sequences:
+                place = f"study.{name}.{key}"
+                message = f"{count} cannot be divided among {TOLERANCE.sequences} Sobol sequences"
+                allowed = f"a multiple of {TOLERANCE.sequences}, best with a power of 2 for each"
+                problems.append(case.problem(place, message, allowed))
+    if problems:
+        raise CaseError(problems)
+    one_of("engine", engine, ENGINES)
+    wanted = wanted_positions(build_train(case), block.positions)
+    if engine == "auto":
+        total = equilibria(samples, rows, len(read.units), len(wanted))
+        engine = chosen(total)
+    job = Job.of(
+        case,
+        read,
+        samples=samples,
+        seed=block.seed,
+        sampling=sampling,
+        indices=rows,
+        positions=wanted,
+        tolerance=CERTIFY.tolerance,
+        engine=engine,
+        chunk=whole("chunk", chunk),
+    )
+    return job, block
 
 
 @contextmanager
@@ -202,44 +237,6 @@ def _requested(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[
         raise CaseError([Problem(case.name, f"study.{name}", "", message, ", ".join(own))])
     changes = {dotted(("study", name, key)): value for key, value in settings.items()}
     return (case.replace(changes) if changes else case), name
-
-
-def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
-    block = case.study[name]
-    samples = block.samples or TOLERANCE.samples
-    sampling = block.sampling or "random"
-    rows = TOLERANCE.rows if block.indices is None else block.indices
-    problems: list[Problem] = []
-    try:
-        read = read_inputs(case, name)
-    except CaseError as error:
-        problems += error.problems
-    if sampling == "sobol":
-        for key, count in (("samples", samples), ("indices", rows)):
-            if count % TOLERANCE.sequences:
-                place = f"study.{name}.{key}"
-                message = f"{count} cannot be divided among {TOLERANCE.sequences} Sobol sequences"
-                allowed = f"a multiple of {TOLERANCE.sequences}, best with a power of 2 for each"
-                problems.append(case.problem(place, message, allowed))
-    if problems:
-        raise CaseError(problems)
-    one_of("engine", engine, ENGINES)
-    wanted = wanted_positions(build_train(case), block.positions)
-    if engine == "auto":
-        total = equilibria(samples, rows, len(read.units), len(wanted))
-        engine = chosen(total)
-    return Job.of(
-        case,
-        read,
-        samples=samples,
-        seed=block.seed,
-        sampling=sampling,
-        indices=rows,
-        positions=wanted,
-        tolerance=CERTIFY.tolerance,
-        engine=engine,
-        chunk=whole("chunk", chunk),
-    )
 
 
 def _solve(folder: Folder, scheduler: str | None, workers: int, progress: Progress | None) -> None:
@@ -358,16 +355,12 @@ def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
 
 def sought(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
     """Search for the worst case of every kind of Ω, starting from the worst samples."""
+    design = folder.job.designs[SAMPLES]
     for kind in kinds:
         values = np.nan_to_num(folder.column(f"{kind}.{SYSTEM}"), nan=-np.inf)
         worst = np.argsort(-values, kind="stable")[: TOLERANCE.worst]
-        known = _inputs_of(folder, [int(row) for row in worst if np.isfinite(values[row])])
+        rows = [row for row in worst.tolist() if np.isfinite(values[row])]
+        known = [design.values(row // JOB.block)[row % JOB.block] for row in rows]
         found = worst_case(folder.job, kind, known)
         if found is not None:
             yield found
-
-
-def _inputs_of(folder: Folder, rows: Iterable[int]) -> list[np.ndarray[Any, Any]]:
-    """Draw the inputs of some samples again."""
-    design = folder.job.designs["samples"]
-    return [design.values(row // JOB.block)[row % JOB.block] for row in rows]
