@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import reporting_problems, writing
+from loadshare.cli.exits import fail_refused, reporting_problems, writing
 from loadshare.cli.files import keep_inputs, save_text
 from loadshare.cli.forms import FOLDER, Output, outputs, write_all
-from loadshare.cli.refusal import fail_refused
 from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
 from loadshare.libraries import pd

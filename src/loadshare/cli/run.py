@@ -10,11 +10,10 @@ import typer
 
 from loadshare.cli.cases import open_case
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import reporting_problems, writing
+from loadshare.cli.exits import fail_refused, refused_document, reporting_problems, writing
 from loadshare.cli.files import print_written
 from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
-from loadshare.cli.refusal import fail_refused, refused_document
 from loadshare.errors import Refused
 from loadshare.json_text import json_text
 from loadshare.libraries import pd

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare._version import __version__
-from loadshare.cli.exits import out_of_memory, unwritten
+from loadshare.cli.exits import out_of_memory, refusal_lines, refused_document, unwritten
 from loadshare.errors import CaseError, Refused, ResultError
 from loadshare.json_text import json_text
 from loadshare.output import NotWritten, write_whole
@@ -122,7 +122,6 @@ def work(task: Task) -> Outcome:
 
 def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     from loadshare.case import load_case
-    from loadshare.cli.refusal import refusal_lines, refused_document
     from loadshare.job import solve
     from loadshare.tooth import resolve
 

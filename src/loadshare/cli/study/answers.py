@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from loadshare.cli.console import say, say_all
+from loadshare.cli.exits import ranges
 from loadshare.cli.forms import Makers, figure_of, tables_of
-from loadshare.cli.refusal import ranges as numbers_text
 from loadshare.cli.tables.sensitivity import show_sensitivity
 from loadshare.cli.tables.table import show, table
 from loadshare.cli.tables.tolerance import show_tolerance, statistics_document
@@ -62,7 +62,7 @@ def show_critical(found: Critical) -> None:
         alike.setdefault(row, []).append(e.position)
     words = ("element", "event", "below", "above", *(["confirmed"] if doubtful else []), "at")
     ordered = sorted(alike.items(), key=lambda item: float(item[0][0]))
-    rows = ((*row, numbers_text(positions)) for row, positions in ordered)
+    rows = ((*row, ranges(positions)) for row, positions in ordered)
     made = table((f"{found.parameter.name}{unit}", *words), rows, words)
     made.columns[0].no_wrap = False
     title = f"Events from {found.start:g} to {found.stop:g}{unit}"

@@ -13,7 +13,7 @@ import typer
 from loadshare.cli.cases import open_case
 from loadshare.cli.completion import study_names
 from loadshare.cli.console import print_note, progress, stand
-from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, fail_refused, reporting_problems
 from loadshare.cli.files import print_written
 from loadshare.cli.forms import FIGURES, FOLDER, TABLES, Output, outputs, write_all
 from loadshare.cli.options import (
@@ -27,7 +27,6 @@ from loadshare.cli.options import (
     ranges_of,
     settings_of,
 )
-from loadshare.cli.refusal import fail_refused
 from loadshare.cli.stop import Stop
 from loadshare.cli.study.answers import KINDS, makers_of
 from loadshare.cli.waiting import echo

@@ -11,7 +11,7 @@ from rich.text import Text
 from loadshare.case import Case
 from loadshare.certify import FloatState
 from loadshare.cli.console import say, say_all
-from loadshare.cli.refusal import places, ranges
+from loadshare.cli.exits import places, ranges
 from loadshare.cli.tables.table import fits, show, table, texts
 from loadshare.report import records
 from loadshare.report.numbers import NONE, counted, decimals, fixed, significant, small
