@@ -79,7 +79,8 @@ def test_a_case_too_large_for_memory_costs_the_others_nothing(monkeypatch, tmp_p
         raise MemoryError("Unable to allocate 8.00 GiB")
 
     monkeypatch.setattr(pool, "_attempt", fails)
-    task = pool.Task(RING, "ring", tmp_path / "ring.json", "auto", "newton", 1, 1e-9, False, {})
+    how = {"solver": "auto", "method": "newton", "tolerance": 1e-9}
+    task = pool.Task(RING, "ring", tmp_path / "ring.json", how, 1, False, {})
     found = pool.work(task)
     assert found.outcome == "crashed"
     assert found.messages[0].startswith(f"{MESSAGE} (Unable to allocate 8.00 GiB)")

@@ -73,9 +73,9 @@ def batch(
         raise typer.BadParameter(message, param_hint="--output")
     changes = read_changes(change or ())
     found = find_cases(cases)
-    how = solver, method, len(found), tolerance, force, changes
+    how = {"solver": solver, "method": method, "tolerance": tolerance}
     tasks = [
-        Task(case, name, folder / f"{name}.json", *how)
+        Task(case, name, folder / f"{name}.json", how, len(found), force, changes)
         for case, name in zip(found, result_names(found), strict=True)
     ]
     with writing(folder):
@@ -88,10 +88,9 @@ def batch(
             done = _done(tasks, min(jobs or cpu_count(), len(tasks)), stop)
             ordered = [done[task.name] for task in tasks if task.name in done]
             waiting = [str(task.case) for task in tasks if task.name not in done]
-            settings = {"solver": solver, "method": method, "tolerance": tolerance}
             # Printed first, so that it appears even if nothing can be written.
             print_summary(ordered)
-            document = summary_document(ordered, settings, waiting)
+            document = summary_document(ordered, how, waiting)
             with writing(summary):
                 write_whole(summary, json_text(document))
             if json:

@@ -39,10 +39,10 @@ class Task:
         Name of the case within the batch.
     target : Path
         Result file.
-    solver, method : str
+    how : dict
+        Solver, method and tolerance.
     together : int
         Number of cases in the batch; see `engine_for`.
-    tolerance : float
     force : bool
         Solve even if the result is there already.
     changes : dict
@@ -52,10 +52,8 @@ class Task:
     case: Path
     name: str
     target: Path
-    solver: str
-    method: str
+    how: dict[str, Any]
     together: int
-    tolerance: float
     force: bool
     changes: dict[str, Any]
 
@@ -130,13 +128,7 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
         kept, notes = (None, ()) if task.force else _kept(task, case)
         if kept is not None:
             return "kept", kept, _warnings(kept)
-        result = solve(
-            case,
-            solver=task.solver,
-            method=task.method,
-            tolerance=task.tolerance,
-            engine=engine_for(case, task.together),
-        )
+        result = solve(case, **task.how, engine=engine_for(case, task.together))
     except CaseError as error:
         return "invalid", None, tuple(map(str, error.problems))
     except Refused as refusal:
@@ -179,9 +171,9 @@ def _kept(task: Task, case: Case) -> tuple[Result | None, tuple[str, ...]]:
         return None, (f"the existing file was not kept: {first}",)
     stamp = result.stamp
     # Cases are compared, not hashes: a result also shows titles, sources and assumptions.
-    found = (result.case, stamp.version, stamp.solver, stamp.method, stamp.tolerance)
-    wanted = (case, __version__, task.solver, task.method, task.tolerance)
-    if found != wanted or not stamp.reduce:
+    how = {key: getattr(stamp, key) for key in task.how}
+    found = (result.case, stamp.version, how)
+    if found != (case, __version__, task.how) or not stamp.reduce:
         return None, ()
     whole = stamp.positions == tuple(range(1, build_train(case).count + 1))
     return (result if whole else None), ()

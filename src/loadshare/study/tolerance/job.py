@@ -141,17 +141,9 @@ class Job:
             certified, and the message if it is not.
         """
         design = self.designs[part.design]
-        pieces = [self._piece(design, block) for block in self.blocks(part.design, part.number)]
-        joined = {
-            name: np.concatenate([piece[name] for piece in pieces])
-            for name in pieces[0]
-            if name != "message"
-        }
-        messages = [text for piece in pieces for text in piece["message"]]
-        return pa.table(
-            {**joined, "message": pa.array(messages, pa.string())},
-            metadata={STAMP: self.stamp(part)},
-        )
+        blocks = self.blocks(part.design, part.number)
+        table = pa.concat_tables([self._block_table(design, block) for block in blocks])
+        return table.combine_chunks().replace_schema_metadata({STAMP: self.stamp(part)})
 
     def solve(self, values: Array) -> Figures:
         """Solve samples with the given inputs, shape (S, inputs)."""
@@ -186,18 +178,21 @@ class Job:
         how = {key: self.settings[key] for key in ("positions", "tolerance", "engine")}
         return list(solve_blocks(self.case, self.inputs.samples(values), **how, workers=1))
 
-    def _piece(self, design: Drawn, block: int) -> dict[str, Any]:
+    def _block_table(self, design: Drawn, block: int) -> pa.Table:
         """Solve one block; answers never depend on the other blocks of its part."""
         rows, values = design.rows(block), design.values(block)
         found = self.solve(values)
-        return {
-            "sample": rows,
-            **{one.column: values[:, k] for k, one in enumerate(self.inputs.every)},
-            **found.columns,
-            "residual": found.residual,
-            "certified": ~np.isnan(found.residual),
-            "message": [found.message.get(row) for row in range(len(rows))],
-        }
+        messages = [found.message.get(row) for row in range(len(rows))]
+        return pa.table(
+            {
+                "sample": rows,
+                **{one.column: values[:, k] for k, one in enumerate(self.inputs.every)},
+                **found.columns,
+                "residual": found.residual,
+                "certified": ~np.isnan(found.residual),
+                "message": pa.array(messages, pa.string()),
+            }
+        )
 
 
 @lru_cache(maxsize=4)

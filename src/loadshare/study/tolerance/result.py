@@ -17,7 +17,7 @@ from loadshare.results.dataset import unchanging
 from loadshare.study.tolerance.dataset import dataset as labelled
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.inputs import Inputs
-from loadshare.study.tolerance.statistics import OmegaStatistics, Summary
+from loadshare.study.tolerance.statistics import Estimate, OmegaStatistics, Summary
 from loadshare.study.tolerance.worst import WorstCase
 from loadshare.view import View, Viewed, figure, listed
 
@@ -170,25 +170,25 @@ class Tolerance(Viewed):
             ("worst case", ", ".join(f"Ω {w.omega:.4f} over the {w.over}" for w in self.worst)),
             ("why refused", "; ".join(f"{n} × {m}" for m, n in self.messages.items())),
         )
-        rows = []
-        for one in self.omega:
-            mean, beyond = one.summary.mean, one.exceedance
-            rows.append(
-                (
-                    one.stage,
-                    one.over,
-                    f"{mean.value:.4f} ({mean.low:.4f} to {mean.high:.4f})",
-                    figure(one.summary.spread),
-                    f"{beyond.value:.3g} ({beyond.low:.2g} to {beyond.high:.2g})"
-                    if beyond
-                    else "–",
-                )
+        rows = tuple(
+            (
+                one.stage,
+                one.over,
+                _with_ends(one.summary.mean, ".4f", ".4f"),
+                figure(one.summary.spread),
+                _with_ends(one.exceedance, ".3g", ".2g") if one.exceedance else "–",
             )
+            for one in self.omega
+        )
         limit = "limit" if self.limit is None else f"{self.limit:g}"
         columns = ("stage", "over", "mean Ω (95 %)", "deviation", f"P(Ω > {limit})")
-        return View(f"Tolerance study of {self.case}", facts, columns, tuple(rows))
+        return View(f"Tolerance study of {self.case}", facts, columns, rows)
 
     def _left_open(self) -> list[str]:
         if not self.refused:
             return []
         return [f"{count(self.refused, 'sample')} of {self.samples} not certified."]
+
+
+def _with_ends(found: Estimate, form: str, ends: str) -> str:
+    return f"{found.value:{form}} ({found.low:{ends}} to {found.high:{ends}})"
