@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from loadshare.case import Case
 from loadshare.case.reader import opened
@@ -13,10 +13,18 @@ from loadshare.errors import CaseError, Problem
 
 if TYPE_CHECKING:
     from loadshare.job import Progress
-    from loadshare.view import Viewed
+    from loadshare.study.compare import Comparison
+    from loadshare.study.critical import Critical
+    from loadshare.study.fit import Fit
+    from loadshare.study.march import March
+    from loadshare.study.sensitivity import Sensitivity
+    from loadshare.study.sweep import Sweep
+    from loadshare.study.tolerance.result import Tolerance
+
+    Found: TypeAlias = Sweep | Critical | Sensitivity | March | Comparison | Fit | Tolerance
 
 
-def run_study(case: Case | str | Path, name: str, *, progress: Progress | None = None) -> Viewed:
+def run_study(case: Case | str | Path, name: str, *, progress: Progress | None = None) -> Found:
     """Run a study that is defined in a case.
 
     Parameters
@@ -61,7 +69,7 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
     if block.kind == "tolerance":
         arguments = {"study": name}
     run = getattr(import_module("loadshare"), block.kind)
-    found: Viewed = run(case, **arguments, progress=progress)
+    found: Found = run(case, **arguments, progress=progress)
     return found
 
 
