@@ -228,10 +228,15 @@ def test_an_id_is_that_of_one_component(written) -> None:
         import_rexs(written(xml(components, relations)))
 
 
-@pytest.mark.parametrize(("second", "is_read"), [("2.0", True), ("3.0", False)])
-def test_a_number_that_is_given_as_two_is_refused(written, second, is_read) -> None:
+@pytest.mark.parametrize(
+    ("further", "is_read"),
+    [(["2.0"], True), (["3.0"], False), (["3.0", "4.0"], False), (["two", "2.0"], False)],
+)
+def test_a_number_that_is_given_as_two_is_refused(written, further, is_read) -> None:
+    """A third value used to be taken without a message."""
     one = b'<attribute id="normal_module" unit="mm">2.0</attribute>'
-    content = xml(*two_stages()).replace(one, one + one.replace(b"2.0", second.encode()))
+    every = one + b"".join(one.replace(b"2.0", value.encode()) for value in further)
+    content = xml(*two_stages()).replace(one, every)
     if is_read:
         import_rexs(written(content))
         return

@@ -128,6 +128,48 @@ def test_a_gear_for_which_a_coupling_says_nothing_is_refused(written) -> None:
         import_rexs(written(xml(*shifted([True, False], gear_shift_index=7))))
 
 
+@pytest.mark.parametrize(
+    ("part", "name", "value"),
+    [
+        (62, "radial_force_absorption", 0),
+        (62, "radial_force_absorption", "no"),
+        (31, "transmits_torque", 0),
+        (30, "defines_torque", [True, False]),
+        (70, "is_engaged", 1),
+        (70, "is_engaged", [1, 0]),
+    ],
+)
+def test_what_is_neither_true_nor_false_is_refused(written, part, name, value) -> None:
+    """A bearing that absorbs no force by the word of a ``0`` used to hold its shaft."""
+    components, relations = two_stages()
+    unit = [*components, (70, "coupling", "", {})], [*relations, joint(70, 10, 11)]
+    with pytest.raises(CaseError, match=rf"{part}, {name} = .*: is neither true nor false"):
+        import_rexs(written(xml(*changed(unit, **{f"_{part}": {name: (value, NONE)}}))))
+
+
+def test_true_and_false_may_be_texts(written) -> None:
+    unit = changed(two_stages(), _62={"radial_force_absorption": ("False", NONE)})
+    found = import_rexs(written(rexsj(*unit, "1.4")))
+    assert any("62: it takes no load across the axis" in line for line in found.left_out)
+
+
+@pytest.mark.parametrize("name", ["u_axis_vector", "w_axis_vector", "support_vector"])
+@pytest.mark.parametrize("form", ["words", "base64", "code"])
+def test_an_array_that_cannot_be_read_is_not_one_that_is_missing(written, name, form) -> None:
+    """Directions used to be assumed as if the file gave none."""
+    unit = changed(two_stages(), _21={name: ([1.0, 2.0, 3.0], MM)})
+    content = xml(*unit, coded=form != "words")
+    at = content.index(f'id="{name}"'.encode(), content.index(b'component id="21"'))
+    old, new = {
+        "words": (b"2.0</c>", b"two</c>"),
+        "base64": (b"AAAA", b"AAA"),
+        "code": (b"float64", b"float16"),
+    }[form]
+    content = content[:at] + content[at:].replace(old, new, 1)
+    with pytest.raises(CaseError, match=rf"gear 21, {name} = .*: is not"):
+        import_rexs(written(content))
+
+
 def test_a_coupling_that_resists_no_twist_joins_nothing(written) -> None:
     parts = changed(two_pinions(), _70={"rotational_stiffness": (0.0, "N mm / rad")})
     found = import_rexs(written(xml(*parts)))

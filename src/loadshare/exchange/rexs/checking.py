@@ -106,9 +106,6 @@ def unclear_couplings(path: Path, of: Gearing) -> list[Problem]:
             where = f"{coupling.type} {coupling.id}, is_engaged"
             why = f"is for {len(given)} gears, but gear_shift_index of the gear unit is {of.shift}"
             problems.append(Problem(str(path), where, "", why))
-        elif given not in (None, "") and not isinstance(given, bool | tuple):
-            where = f"{coupling.type} {coupling.id}, is_engaged"
-            problems.append(Problem(str(path), where, str(given), "is neither true nor false"))
     return problems
 
 

@@ -65,7 +65,7 @@ class Component:
 
     def holds(self, name: str) -> bool:
         """Return whether an attribute is true."""
-        return self.attributes.get(name) in (True, "true")
+        return self.attributes.get(name) is True
 
     def title(self) -> str:
         """Return type, id and name, for messages."""

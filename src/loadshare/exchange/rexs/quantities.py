@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 
 from loadshare.case.units import si_factor
+from loadshare.case.words import LONGEST
 from loadshare.exchange.rexs.model import Unread, Value
 from loadshare.settings import ALLOWED
 
@@ -70,6 +72,9 @@ QUANTITIES = {
 }
 """Attributes that the import reads, and the SI unit of what they measure."""
 
+FLAGS = ("defines_torque", "transmits_torque", "radial_force_absorption", "is_engaged")
+"""Attributes that the import reads as true or false; `is_engaged` also as a list of these."""
+
 POSITIVE = ("radial_stiffness", "rotational_stiffness", "face_width", "common_face_width", "length")
 """Quantities that are never less than zero."""
 
@@ -119,14 +124,16 @@ def in_si(name: str, value: Value, unit: str) -> Value | None:
         not use are texts.
     """
     target = QUANTITIES.get(name)
+    if isinstance(value, tuple) and len(value) == 1 and name in (*QUANTITIES, *FLAGS):
+        value = value[0]
+    if name in FLAGS:
+        return _flag(name, value)
     if target is None:
         return _scaled(value, STANDARD.get(unit, ("", None))[1], unit)
     if value in ("", ()) or (isinstance(value, float) and math.isnan(value)):
         return None
-    if isinstance(value, tuple) and len(value) == 1:
-        value = value[0]
     numbers = value if isinstance(value, tuple) else (value,)
-    text = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in numbers)
+    text = _text(numbers)
     given = text if unit in NO_UNIT else f"{text} {unit}"
     if not all(isinstance(v, float) and abs(v) <= ALLOWED.largest for v in numbers):
         return Unread(given, "is not a number of a usable size")
@@ -142,6 +149,24 @@ def in_si(name: str, value: Value, unit: str) -> Value | None:
         return _scaled(value, factor, unit)
     why = "has no unit" if unit in NO_UNIT else "is in a unit that is not known for it"
     return Unread(given, why, _usual(target))
+
+
+def _flag(name: str, value: Value) -> Value | None:
+    """Return a value that is true or false; only couplings are so for several gears of a unit."""
+    if value in ("", ()):
+        return None
+    if isinstance(value, str) and value.lower() in ("true", "false"):
+        return value.lower() == "true"
+    states = value if isinstance(value, tuple) and name == "is_engaged" else (value,)
+    if all(isinstance(state, bool) for state in states):
+        return value
+    return Unread(_text(states), "is neither true nor false", "true, false")
+
+
+def _text(values: Iterable[object]) -> str:
+    """Return values as a message shows them."""
+    text = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in values)
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
 
 
 def _scaled(value: Value, factor: float | None, unit: str) -> Value:

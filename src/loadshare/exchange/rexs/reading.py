@@ -18,7 +18,7 @@ from xml.parsers import expat
 from loadshare.exchange.imported import reading, refuse
 from loadshare.exchange.rexs.archive import unpacked
 from loadshare.exchange.rexs.model import Component, Model, Relation, Unread, Value
-from loadshare.exchange.rexs.quantities import QUANTITIES, in_si
+from loadshare.exchange.rexs.quantities import FLAGS, QUANTITIES, in_si
 from loadshare.input import read_file
 from loadshare.settings import ALLOWED
 
@@ -163,8 +163,7 @@ def _put(attributes: dict[str, Value], name: str, value: Value, unit: str) -> No
     read = in_si(name, value, unit)
     if read is None:
         return
-    before = attributes.get(name, read)
-    if name in QUANTITIES and before != read and not isinstance(before, Unread):
+    if name in attributes and name in (*QUANTITIES, *FLAGS) and attributes[name] != read:
         read = Unread("", "is given several times, with different values", "one value")
     attributes[name] = read
 
@@ -185,18 +184,18 @@ def _numbers(texts: list[Any]) -> Value:
     try:
         return tuple(float(text) for text in texts)
     except (TypeError, ValueError, OverflowError):
-        return ""
+        return "; ".join(words).strip("; ")
 
 
 def _decoded(text: str, code: str) -> Value:
     letter = CODES.get(code)
     if letter is None:
-        return ""
+        return text.strip()
     try:
         held = base64.b64decode("".join(text.split()), validate=True)
         return struct.unpack(f"<{len(held) // struct.calcsize(letter)}{letter}", held)
     except (binascii.Error, struct.error, ValueError):
-        return ""
+        return text.strip()
 
 
 def _from_json(content: bytes) -> Mapping[str, Any]:
