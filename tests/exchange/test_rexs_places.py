@@ -21,6 +21,7 @@ from tests.exchange.units import (
 )
 
 import loadshare as ls
+from loadshare.errors import CaseError
 from loadshare.exchange.rexs import export_rexs, import_rexs
 from loadshare.exchange.rexs.reading import read_model
 
@@ -163,3 +164,51 @@ def test_forces_are_written_back_with_the_levers_of_the_import(written) -> None:
     for id_, part in (("400", -1.0), ("401", 2.0)):
         exported = [found[id_].number(f"force_acting_on_outer_component_{axis}") for axis in "vw"]
         assert exported == pytest.approx(part * force, rel=1e-6)
+
+
+# References ---------------------------------------------------------------------------------------
+
+REFERENCE = "reference_component_for_position"
+
+
+def test_places_may_refer_to_others_over_any_number_of_steps(written) -> None:
+    """Beyond the seventh component, places used to be dropped without a message."""
+    components, relations = two_stages()
+    steps = range(100, 110)
+    for id_ in steps:
+        before = {REFERENCE: (id_ - 1 if id_ > steps[0] else 1, "none")}
+        components.append((id_, "side_plate", "", at(1.0, 0.0, 0.0) | before))
+    unit = changed((components, relations), _20={REFERENCE: (steps[-1], "none")})
+    found = import_rexs(written(xml(*unit))).data["gears"]["gear_20"]["centre"]
+    assert found == ["35 mm", "0 mm", "0 mm"]
+
+
+@pytest.mark.parametrize("plate", [False, True])
+def test_places_that_refer_in_a_circle_are_refused(written, plate) -> None:
+    """Each place used to be added several times."""
+    components, relations = two_stages()
+    last = 99 if plate else 21
+    components.append((98, "side_plate", "", at(1.0, 0.0, 0.0) | {REFERENCE: (99, "none")}))
+    components.append((99, "side_plate", "", at(1.0, 0.0, 0.0) | {REFERENCE: (98, "none")}))
+    both = {"_20": {REFERENCE: (last, "none")}, "_21": {REFERENCE: (1 if plate else 20, "none")}}
+    way = "20, 99, 98, 99" if plate else "20, 21, 20"
+    with pytest.raises(
+        CaseError, match=rf"gear 20, {REFERENCE} = {last}: leads in a circle: {way}"
+    ):
+        import_rexs(written(xml(*changed((components, relations), **both))))
+
+
+def test_a_reference_to_nothing_is_reported(written) -> None:
+    unit = changed(two_stages(), _20={REFERENCE: (777, "none")}, _10={REFERENCE: (777, "none")})
+    found = import_rexs(written(xml(*unit)))
+    assert [line for line in found.assumed if "777" in line] == [
+        "places of 2 components count from the unit: the file has no component '777', to which "
+        "they refer"
+    ]
+
+
+def test_a_direction_of_length_zero_is_none(written) -> None:
+    """The axis x used to be taken without a message."""
+    zero = {"u_axis_vector": ([0.0, 0.0, 0.0], "mm")}
+    found = import_rexs(written(xml(*changed(two_stages(), _20=zero, _10=zero))))
+    assert "gear_20: no direction of its axis is given; x is assumed" in found.assumed

@@ -5,7 +5,16 @@ from __future__ import annotations
 import math
 
 import pytest
-from tests.exchange.units import changed, planetary, section, teeth, two_pinions, two_stages, xml
+from tests.exchange.units import (
+    changed,
+    joint,
+    planetary,
+    section,
+    teeth,
+    two_pinions,
+    two_stages,
+    xml,
+)
 
 from loadshare.errors import CaseError
 from loadshare.exchange.rexs import import_rexs
@@ -219,6 +228,81 @@ def test_a_stage_that_joins_no_gears_is_reported(written, roles) -> None:
     assert [line for line in found.left_out if "stage" in line] == [
         "cylindrical_stage 212: it does not join two cylindrical gears"
     ]
+
+
+@pytest.mark.parametrize(
+    ("relation", "why"),
+    [
+        (joint(63, 11, 2), "bearing 63: has 2 connections: 11 and 2, 12 and 2"),
+        (joint(70, 12, 2), "coupling 70: has 2 connections: 10 and 2, 12 and 2"),
+        (("assembly", {"assembly": 11, "part": 30}), "external_load 30: is on 2 shafts: 10, 11"),
+        (("assembly", {"assembly": 11, "part": 20}), "gear 20: is on 2 shafts: 10, 11"),
+    ],
+)
+def test_a_part_is_in_one_place(written, relation, why) -> None:
+    """A bearing held two shafts, and a torque was applied twice."""
+    components, relations = two_stages()
+    components.append((70, "coupling", "", {}))
+    unit = components, [*relations, joint(70, 10, 2), relation]
+    with pytest.raises(CaseError, match=why):
+        import_rexs(written(xml(*unit)))
+
+
+@pytest.mark.parametrize(
+    ("relation", "why"),
+    [
+        (
+            ("assembly", {"assembly": 9, "part": 5}),
+            "planetary_stage 9: has 2 planet carriers: 3, 5",
+        ),
+        (
+            ("planet_shaft", {"planetary_stage": 10, "shaft": 229}),
+            "shaft 229: is part of 2 planet carriers: 3, 5",
+        ),
+        (("assembly", {"assembly": 5, "part": 4}), "shaft 4: is part of 2 planet carriers: 3, 5"),
+    ],
+)
+def test_a_part_of_a_set_is_of_one_carrier(written, relation, why) -> None:
+    """The last carrier that the file named used to have it."""
+    components, relations = planetary()
+    components += [(5, "planet_carrier", "", {}), (10, "planetary_stage", "", {})]
+    relations += [("assembly", {"assembly": 10, "part": 5}), relation]
+    with pytest.raises(CaseError, match=why):
+        import_rexs(written(xml(components, relations)))
+
+
+def test_a_planet_shaft_may_be_in_two_sets_of_one_carrier(written) -> None:
+    components, relations = planetary()
+    components.append((10, "planetary_stage", "", {}))
+    relations += [
+        ("assembly", {"assembly": 10, "part": 3}),
+        ("planet_shaft", {"planetary_stage": 10, "shaft": 229}),
+    ]
+    found = import_rexs(written(xml(components, relations)))
+    assert found.data["gears"]["gear_247"]["carrier"] == "carrier_3"
+
+
+def test_a_gear_on_no_shaft_is_reported(written) -> None:
+    """It used to be held rigidly without a message; a ring in the casing is."""
+    components, relations = planetary()
+    free = [r for r in relations if r not in [("assembly", {"assembly": 62, "part": 58})]]
+    in_casing = [*free, ("assembly", {"assembly": 2, "part": 58})]
+    said = [
+        [line for line in import_rexs(written(xml(components, r))).assumed if "no shaft" in line]
+        for r in (relations, in_casing, free)
+    ]
+    assert said == [[], [], ["gear_58: it is on no shaft, and is held rigidly across its axis"]]
+
+
+def test_an_id_is_that_of_one_component_of_a_load_case(written) -> None:
+    """The last torque used to be taken, and that of an unknown load left out, without a message."""
+    torque = [
+        (id_, "external_load", "", {"torque_around_u_axis": (50.0, "N m")}) for id_ in (30, 99)
+    ]
+    found = import_rexs(written(xml(*two_stages(), cases=[torque])))
+    assert any(line.startswith("external_load 99 of the load case") for line in found.assumed)
+    with pytest.raises(CaseError, match="load case has 2 components with the id '30'"):
+        import_rexs(written(xml(*two_stages(), cases=[torque[:1] * 2])))
 
 
 def test_an_id_is_that_of_one_component(written) -> None:

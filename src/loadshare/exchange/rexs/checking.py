@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 from loadshare.errors import Problem
@@ -75,15 +76,10 @@ def beside_axes(of: Gearing) -> list[str]:
 
 
 def contradictions(path: Path, of: Gearing) -> list[Problem]:
-    """Return problems: gears on several shafts, fractions of teeth, negative modules."""
+    """Return problems: fractions of teeth, negative modules."""
     problems = []
     for gear in of.gears:
         where = f"{gear.type} {gear.id}"
-        wholes = (whole for whole, part in of.model.parts if part is gear)
-        shafts = {whole.id for whole in wholes if whole.type == "shaft"}
-        if len(shafts) > 1:
-            why = f"is on {len(shafts)} shafts: {', '.join(sorted(shafts))}"
-            problems.append(Problem(str(path), where, "", why, "one shaft"))
         teeth = gear.number("number_of_teeth")
         if teeth is not None and abs(teeth - round(teeth)) > 1e-6:
             where = f"{where}, number_of_teeth"
@@ -95,6 +91,74 @@ def contradictions(path: Path, of: Gearing) -> list[Problem]:
             why = "is negative"
             problems.append(Problem(str(path), where, given, why, "a module above 0", hint))
     return problems
+
+
+def shared(path: Path, of: Gearing) -> list[Problem]:
+    """Return a problem for every part that relations assign to several others, not to one."""
+    owners: dict[tuple[str, str, str, str], dict[str, None]] = {}
+    for part, (verb, kind), owner in _assigned(of):
+        owners.setdefault((part.type, part.id, verb, kind), {})[owner] = None
+    return [
+        Problem(
+            str(path),
+            f"{type_} {id_}",
+            "",
+            f"{verb} {len(found)} {kind}s: {', '.join(sorted(found))}",
+            f"one {kind}",
+        )
+        for (type_, id_, verb, kind), found in owners.items()
+        if len(found) > 1
+    ]
+
+
+def _assigned(of: Gearing) -> Iterator[tuple[Component, tuple[str, str], str]]:
+    """Yield parts that may belong to one other only, in which sense, and to what."""
+    on_shaft, on_carrier = ("is on", "shaft"), ("is part of", "planet carrier")
+    for whole, part in of.model.parts:
+        if whole.type == "shaft" and part.type in (*GEARS, "external_load"):
+            yield part, on_shaft, whole.id
+        elif whole.type == "planet_carrier" and part.type == "shaft":
+            yield part, on_carrier, whole.id
+        elif whole.type == "planetary_stage" and part.type == "planet_carrier":
+            yield whole, ("has", "planet carrier"), part.id
+    for relation in ("planet_shaft", "planet_pin", "planet_carrier_shaft"):
+        for stage, shaft in of.model.related(relation, "planetary_stage", "shaft"):
+            if stage.id in of.carriers_of_stages:
+                yield shaft, on_carrier, of.carriers_of_stages[stage.id].id
+    for part, inner, outer in of.joined(*BEARINGS, *COUPLINGS):
+        yield part, ("has", "connection"), f"{inner.id} and {outer.id}"
+
+
+def circular_places(path: Path, of: Gearing) -> list[Problem]:
+    """Return a problem for every component whose position refers to others in a circle."""
+    problems = []
+    for body in placed(of):
+        ids = [part.id for part in of.places.chain(body)]
+        if ids[-1] in ids[:-1]:
+            where = f"{body.type} {body.id}, reference_component_for_position"
+            why = f"leads in a circle: {', '.join(ids)}"
+            problems.append(
+                Problem(str(path), where, ids[1], why, "references that end at the unit")
+            )
+    return problems
+
+
+def unknown_references(of: Gearing) -> list[str]:
+    """Return remarks on positions relative to components that the file does not have."""
+    known = of.model.components
+    found = Counter(
+        id_ for body in placed(of) if (id_ := of.places.reference_id(body)) and id_ not in known
+    )
+    return [
+        f"places of {count} components count from the unit: the file has no component {id_!r}, to "
+        "which they refer"
+        for id_, count in found.items()
+    ]
+
+
+def placed(of: Gearing) -> list[Component]:
+    """Return the components whose places matter."""
+    return of.model.of_type(*GEARS, *BEARINGS, *COUPLINGS, "planet_carrier", "shaft")
 
 
 def unclear_couplings(path: Path, of: Gearing) -> list[Problem]:

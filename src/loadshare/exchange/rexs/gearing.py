@@ -168,7 +168,7 @@ class Gearing:
         return {part.id: whole for whole, part in self.model.parts if whole.type == "shaft"}
 
     @cached_property
-    def _carriers_of_stages(self) -> dict[str, Component]:
+    def carriers_of_stages(self) -> dict[str, Component]:
         """Carrier of every planetary stage, by id of the stage."""
         return {
             whole.id: part
@@ -178,7 +178,7 @@ class Gearing:
 
     def _on_carriers(self, relation: str) -> dict[str, Component]:
         """Return the carriers of shafts that a relation gives to planetary stages, by shaft id."""
-        of_stage = self._carriers_of_stages
+        of_stage = self.carriers_of_stages
         related = self.model.related(relation, "planetary_stage", "shaft")
         return {shaft.id: of_stage[stage.id] for stage, shaft in related if stage.id in of_stage}
 

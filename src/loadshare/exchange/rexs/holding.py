@@ -137,6 +137,8 @@ def holding_of(of: Gearing, body: Component, assumed: list[str]) -> Holding:
         shafts = of.shafts_of(body)
         if shafts:
             assumed.append(f"{name}: no bearing holds it across its axis, so it floats")
+        elif not any(whole.id in of.casing and part is body for whole, part in of.model.parts):
+            assumed.append(f"{name}: it is on no shaft, and is held rigidly across its axis")
         return Holding({"support": "free" if shafts else "rigid"}, {}, nowhere, frozenset())
     yields = sum(_yields(level) for level in (links, seats) if level)
     stiffness = f"{1.0 / yields:.12g} N/m" if yields > 1.0 / STIFF else "rigid"

@@ -16,8 +16,12 @@ from loadshare.exchange.rexs.balance import balanced
 from loadshare.exchange.rexs.checking import (
     ON_AXIS,
     beside_axes,
+    circular_places,
     contradictions,
+    placed,
+    shared,
     unclear_couplings,
+    unknown_references,
     unplaced,
     unread_values,
     unused,
@@ -27,7 +31,7 @@ from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.holding import Holding, holding_of
 from loadshare.exchange.rexs.links import Links, links_of
 from loadshare.exchange.rexs.meshing import first_number, meshes_of, stages_of
-from loadshare.exchange.rexs.model import BEARINGS, COUPLINGS, GEARS, READ, Component
+from loadshare.exchange.rexs.model import GEARS, READ, Component
 from loadshare.exchange.rexs.quantities import torque_of
 from loadshare.exchange.rexs.reading import read_model
 from loadshare.input import stem
@@ -70,14 +74,14 @@ class _Importer:
     def imported(self) -> Imported:
         """Return the case."""
         self.assumed += self.of.model.notes
-        checks = (unread_values, unclear_couplings, contradictions)
+        checks = (unread_values, unclear_couplings, shared, circular_places, contradictions)
         if problems := [each for check in checks for each in check(self.path, self.of)]:
             raise CaseError(problems)
         self.assumed += [*unplaced(self.of), *beside_axes(self.of)]
         if self.of.shifts > 1:
             self.assumed.append(f"couplings are engaged as in gear {self.of.shift}")
-        placed = self.of.model.of_type(*GEARS, *BEARINGS, *COUPLINGS, "planet_carrier", "shaft")
-        if any(self.of.places.is_referred(body) for body in placed):
+        self.assumed += unknown_references(self.of)
+        if any(self.of.places.is_referred(body) for body in placed(self.of)):
             self.assumed.append("places taken from other components are rotated like these")
         if not self.of.stages:
             why = "whose gears are engaged" if self.of.loose else "that joins two gears"

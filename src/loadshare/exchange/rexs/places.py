@@ -10,8 +10,6 @@ import numpy as np
 from loadshare.case.place import Vector, minus
 from loadshare.exchange.rexs.model import GEARS, Component, Model
 
-LONG = 6
-"""Largest number of references, each from one place to that of another component."""
 FIRST = ("1", "1.0", "1.0.0")
 """Versions that give the beginning of a gear along its shaft, not its middle."""
 
@@ -27,24 +25,44 @@ class Places:
 
     model: Model
 
-    def of(self, body: Component, depth: int = 0) -> Vector | None:
-        """Return the place of a component [m]; that of the component it refers to is added."""
-        here, other = body.vector("support_vector"), self._reference(body)
-        if here is None or other is None:
-            return here
-        start = self.of(other, depth + 1) if depth < LONG else None
-        if start is None:
-            return here
-        return (start[0] + here[0], start[1] + here[1], start[2] + here[2])
+    def of(self, body: Component) -> Vector | None:
+        """Return the place of a component [m]; those of the components it refers to are added."""
+        found: list[Vector] = []
+        for part in self.chain(body):
+            place = part.vector("support_vector")
+            if place is None:
+                break
+            found.append(place)
+        if not found:
+            return None
+        x, y, z = (sum(parts) for parts in zip(*reversed(found), strict=True))
+        return (x, y, z)
+
+    def chain(self, body: Component) -> list[Component]:
+        """Return a component and those to which its position refers, one after the other.
+
+        The unit is not among them. The last one is a repetition if they refer in a circle.
+        """
+        found, passed = [body], {body.id}
+        while (other := self._reference(found[-1])) is not None:
+            found.append(other)
+            if other.id in passed:
+                break
+            passed.add(other.id)
+        return found
 
     def is_referred(self, body: Component) -> bool:
         """Return whether a component's position is relative to a component other than the unit."""
         return self._reference(body) is not None
 
-    def _reference(self, body: Component) -> Component | None:
-        reference = body.attributes.get("reference_component_for_position")
+    def reference_id(self, body: Component) -> str:
+        """Return the id of the component to which a position refers; empty if it gives none."""
+        reference = body.attributes.get("reference_component_for_position", "")
         number = isinstance(reference, float) and reference.is_integer()
-        other = self.model.components.get(f"{reference:.0f}" if number else str(reference))
+        return f"{reference:.0f}" if number else str(reference)
+
+    def _reference(self, body: Component) -> Component | None:
+        other = self.model.components.get(self.reference_id(body))
         return None if other is None or other is body or other.type == "gear_unit" else other
 
     def along(self, part: Component, shaft: Component, side: str = "") -> float | None:
@@ -95,7 +113,7 @@ class Places:
         """Return the unit direction u of the first component that gives one; x if none does."""
         for body in bodies:
             axis = body.vector("u_axis_vector") if body is not None else None
-            if axis is not None and any(axis):
+            if axis is not None:
                 # The unit of measurement of a direction means nothing.
                 size = math.hypot(*axis)
                 return (axis[0] / size, axis[1] / size, axis[2] / size)

@@ -142,7 +142,9 @@ def in_si(name: str, value: Value, unit: str) -> Value | None:
         return Unread(given, f"is not {'three numbers' if is_vector else 'one number'}")
     if name in POSITIVE and any(isinstance(v, float) and v < 0.0 for v in numbers):
         return Unread(given, "is less than zero")
-    if not any(numbers) or target == DIRECTION:
+    if not any(numbers):
+        return None if target == DIRECTION else value
+    if target == DIRECTION:
         return value
     factor = factor_of(unit, target)
     if factor is not None:

@@ -246,16 +246,21 @@ def _model_of(given: Mapping[str, Any]) -> Model:
     cases = tables(spectrum.get("load_cases") if isinstance(spectrum, Mapping) else None)
     every = list(map(_component, tables(given.get("components"))))
     whole = {component.id: component for component in every}
-    for id_, count in Counter(component.id for component in every).items():
-        if count > 1:
-            raise _NoRexs(f"has {count} components with the id {id_!r}: ids must be unique")
+    _check_ids(every, "has")
     notes: tuple[str, ...] = ()
     if not VERSIONS.fullmatch(version):
         lacks = f"version {version} is not known" if version else "no version is given"
         notes = (f"{lacks}: read as a version from 1.1 to 2.0",)
     if cases:
         notes += (f"loads are those of the first of {len(cases)} load cases",)
-        changes = {c.id: c for c in map(_component, tables(cases[0].get("components")))}
+        inside = list(map(_component, tables(cases[0].get("components"))))
+        _check_ids(inside, "its first load case has")
+        changes = {component.id: component for component in inside}
+        notes += tuple(
+            f"{c.title()} of the load case is left out: the file has no such component"
+            for c in inside
+            if c.id not in whole
+        )
         for id_ in changes.keys() & whole.keys():
             attributes = {**whole[id_].attributes, **changes[id_].attributes}
             whole[id_] = replace(whole[id_], attributes=attributes)
@@ -264,6 +269,12 @@ def _model_of(given: Mapping[str, Any]) -> Model:
         notes += (f"relations given more than once are used once: {repeated} left out",)
     single = tuple(once.values())
     return Model(version, whole, single, notes, _pointless(single, whole))
+
+
+def _check_ids(components: Iterable[Component], what_has: str) -> None:
+    for id_, count in Counter(component.id for component in components).items():
+        if count > 1:
+            raise _NoRexs(f"{what_has} {count} components with the id {id_!r}: ids must be unique")
 
 
 def _pointless(relations: Iterable[Relation], whole: Mapping[str, Component]) -> tuple[str, ...]:
