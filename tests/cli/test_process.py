@@ -1,10 +1,12 @@
 """The command as the user runs it: what it imports, and its output to a pipe."""
 
+import re
 import subprocess
 import sys
 
 import pytest
 from tests.cli.conftest import CASES, START
+from tests.explore.asking import ask
 
 HEAVY = (
     *("numpy", "scipy", "pint", "numba", "clarabel", "osqp", "cvxpy", "skfem"),
@@ -232,3 +234,20 @@ main()
         [sys.executable, "-c", script], capture_output=True, text=True, check=False, env=environment
     )
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_an_explorer_can_be_reached_at_once_and_stops_without_a_warning(environment, cases):
+    """A browser may connect before the server has started, and nothing is lost when it stops."""
+    case = str(cases / "star/floating_sun_3.toml")
+    words = [sys.executable, "-c", START, "explore", case, "--no-browser"]
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment
+    ) as process:
+        try:
+            address = re.search(r"http://\S+", process.stdout.readline())[0]
+            assert ask(address, "/case")[0] == 200
+        finally:
+            process.terminate()
+        assert process.communicate()[1] == "Stopped.\n"
+    assert process.returncode == 143

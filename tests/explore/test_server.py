@@ -328,6 +328,20 @@ def test_a_case_that_lacks_a_key_of_its_file_is_saved_whole(served):
     assert "does not extend the original file" in found["note"]
 
 
+def test_a_case_whose_file_is_gone_is_saved_whole(served, tmp_path):
+    """The setting used to be lost, and the message gave the path of the file."""
+    for name in ("base.toml", "limit_ring.toml"):
+        (tmp_path / name).write_text((CASES / "fgfbstts" / name).read_text())
+    file = tmp_path / "limit_ring.toml"
+    case = load_case(file)
+    file.unlink()
+    with served(case, file) as address:
+        found = ask(address, "/toml", {"changes": {FLOAT: "2 um"}})[2]
+    assert Case(tomllib.loads(found["text"])) == case.replace({FLOAT: "2 um"})
+    assert "does not extend the original file, as that cannot be read any more" in found["note"]
+    assert str(tmp_path) not in str(found)
+
+
 def test_a_case_saved_whole_needs_no_file_of_a_law(tmp_path):
     written(tmp_path, SPUR, "spur.toml")
     file = written(

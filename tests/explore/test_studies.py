@@ -226,6 +226,11 @@ def test_odd_studies_are_answered_with_a_message(seed, name, body, status):
         ("tolerance", {"ranges": {"rings.4.float": [2, 1]}}, "is not above low"),
         ("tolerance", {"ranges": {"rings.4.float": [-1, 1]}}, "negative"),
         ("tolerance", {"ranges": {"title": [0, 1]}}, "describes the case"),
+        (
+            "tolerance",
+            {"ranges": {"operating.power": [1, 2]}, "changes": {"operating.power": "5 mm"}},
+            "operating.power = .5 mm.",
+        ),
     ],
 )
 def test_a_study_that_cannot_be_is_reported(seed, name, body, why):

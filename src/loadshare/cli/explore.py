@@ -10,6 +10,7 @@ from loadshare.cli.cases import open_case
 from loadshare.cli.console import say
 from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
 from loadshare.cli.options import CaseFile, Changes
+from loadshare.cli.stop import Stop
 
 if TYPE_CHECKING:
     import socket
@@ -70,9 +71,13 @@ def explore(
     say("Press Ctrl-C to stop.")
     if host not in (LOCAL, "localhost", "::1"):
         say("Anyone who can reach this address can use it: there is no password.")
-    if browser:
-        typer.launch(address)
-    uvicorn.Server(config).run(sockets=[listening])
+    with Stop() as stop:
+        try:
+            if browser:
+                typer.launch(address)
+            uvicorn.Server(config).run(sockets=[listening])
+        except KeyboardInterrupt:
+            fail(["Stopped."], stop.code)
 
 
 def _listening(host: str, port: int) -> socket.socket:
@@ -90,6 +95,8 @@ def _listening(host: str, port: int) -> socket.socket:
         found = socket.socket(family)
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind((host, port))
+        # From here on, not only once the server has started: a browser may be faster.
+        found.listen()
     except OSError as error:
         fail([f"cannot listen on {host}:{port}: {error.strerror or error}"], UNUSABLE)
     return found

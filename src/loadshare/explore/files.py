@@ -10,6 +10,7 @@ import tomlkit
 
 from loadshare.case.reader import load_case
 from loadshare.case.writer import toml_text
+from loadshare.errors import CaseError
 from loadshare.explore.inputs import Inputs
 from loadshare.job.positions import prepared
 from loadshare.tooth import written_in
@@ -38,9 +39,12 @@ def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) ->
     name = f"{inputs.case.name or 'case'}_explored.toml"
     if file is None:
         return {"name": name, "text": written_in(changed).to_toml(), "note": ""}
-    apart = _apart(load_case(file).to_dict(), changed.to_dict())
+    try:
+        apart, why = _apart(load_case(file).to_dict(), changed.to_dict()), "keys were removed"
+    except CaseError:
+        apart, why = None, "that cannot be read any more"
     if apart is None:
-        note = "It does not extend the original file, as keys were removed."
+        note = f"It does not extend the original file, as {why}."
         return {"name": name, "text": written_in(changed).to_toml(), "note": note}
     head = tomlkit.document()
     head.add("extends", tomlkit.item(file.name))

@@ -97,18 +97,16 @@ def _of_shown(
         raise RequestError(
             400, f"only counts and geometry are shown ({', '.join(left)}); add an input that varies"
         )
+    varied = {name: inputs.keys(name) for name in ranges if name not in left}
+    # First, because it checks the values of the setting.
+    case = with_keys_written(inputs, [key for keys in varied.values() for key in keys], given)
     spreads: dict[str, Any] = {}
-    every: list[str] = []
-    for name, ends in ranges.items():
-        if name in left:
-            continue
-        keys = inputs.keys(name)
+    for name, keys in varied.items():
+        ends = ranges[name]
         if not isinstance(ends, list) or len(ends) != 2:
             raise RequestError(400, f"the range of {name} is not [low, high]")
         low, high = (finite({name: end}, name) for end in ends)
         spreads["=".join(keys)] = _spread(inputs.every[keys[0]], given, low, high)
-        every += keys
-    case = with_keys_written(inputs, every, given)
     table: dict[str, Any] = {"kind": "tolerance", "inputs": spreads}
     if prepared(case)[1].train.count > EXPLORE.together:
         table["positions"] = [place(body)]
