@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import math
+import re
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -200,6 +201,17 @@ def test_what_is_wrong_is_named(small, path, value, message):
     if path[-1] == "4-6 drive":
         path = (*path[:-1], next(n for n in at(document, path[:-1]) if n.startswith("4-6")))
     assert message in refusal_of(changed(document, path, value))
+
+
+@pytest.mark.parametrize("field", ["rotation", "displacement", "flank_force", "support_force"])
+@pytest.mark.parametrize("value", [1e41, -1e200, 10**308])
+def test_a_claim_whose_square_overflows_is_refused(small, field, value):
+    """It used to print warnings of overflows in the certificate."""
+    document = json.loads(small.to_json())
+    name, given = next(iter(document["positions"][0]["claim"][field].items()))
+    new = [value, *given[1:]] if isinstance(given, list) else value
+    found = refusal_of(changed(document, ("positions", 0, "claim", field, name), new))
+    assert re.search(rf"positions\[0\]\.claim\.{field}\..* = .*: is too large", found)
 
 
 def test_a_position_left_out_is_missed(small):

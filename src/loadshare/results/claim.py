@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from loadshare.case.table import Table
+from loadshare.settings import ALLOWED
 from loadshare.train.equilibria import Names, carried
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.train import Train
@@ -98,6 +99,15 @@ def misnamed(train: Train, claim: Claim) -> Iterator[tuple[str, str, str]]:
         there: Mapping[str, object] = getattr(claim, name) or {}
         yield from ((name, key, "is missing") for key in known[name] if key not in there)
         yield from ((name, key, "is not known") for key in there if key not in known[name])
+
+
+def oversized(claim: Claim) -> Iterator[tuple[str, str, float]]:
+    """Yield figures whose products may overflow: field, name, value."""
+    for field in fields(Claim):
+        for name, given in (getattr(claim, field.name) or {}).items():
+            value = max(given, key=abs) if isinstance(given, tuple) else given
+            if not abs(value) <= ALLOWED.largest:
+                yield field.name, name, value
 
 
 def _names(train: Train, *, memory: bool) -> dict[str, tuple[str, ...]]:

@@ -25,7 +25,7 @@ from loadshare.certify.tolerance import checked_tolerance
 from loadshare.certify.validity import refusal_text
 from loadshare.errors import CaseError, Problem, ResultError
 from loadshare.later import known
-from loadshare.results.claim import Claim, misnamed
+from loadshare.results.claim import Claim, misnamed, oversized
 from loadshare.results.derive import positions_of, result_from
 from loadshare.results.differences import DIGITS, ROUND_OFF, differences
 from loadshare.results.digest import DIGEST, digest_of
@@ -101,7 +101,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     document = _parsed(text, file)
     given = _read(text, file)
     case, train = _machine(given, file)
-    problems = [*_wrong_positions(given, train), *_wrong_names(given, train)]
+    problems = [*_wrong_positions(given, train), *_wrong_claims(given, train)]
     _raise(problems, file)
     tolerance = _tolerance(given, file)
     positions = _positions(train, given.positions, tolerance)
@@ -253,11 +253,14 @@ def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
         yield from ((("positions",), "", f"position {k} {what}", "") for k in some)
 
 
-def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
+def _wrong_claims(given: _File, train: Train) -> Iterator[Wrong]:
     for at, p in enumerate(given.positions):
         for field, name, message in misnamed(train, p.claim):
             path: Path = ("positions", at, "claim", field, name)
             yield path if name else path[:-1], "", message, ""
+        for field, name, value in oversized(p.claim):
+            largest = f"numbers up to {ALLOWED.largest:g}"
+            yield ("positions", at, "claim", field, name), f"{value:g}", "is too large", largest
 
 
 def _positions(train: Train, given: Sequence[_Position], tolerance: float) -> list[Position]:
