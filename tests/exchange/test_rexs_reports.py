@@ -237,13 +237,18 @@ def test_a_stage_that_joins_no_gears_is_reported(written, roles) -> None:
         (joint(70, 12, 2), "coupling 70: has 2 connections: 10 and 2, 12 and 2"),
         (("assembly", {"assembly": 11, "part": 30}), "external_load 30: is on 2 shafts: 10, 11"),
         (("assembly", {"assembly": 11, "part": 20}), "gear 20: is on 2 shafts: 10, 11"),
+        (
+            ("reference", {"origin": 50, "referenced": 89}),
+            "shaft_section 50: has 2 materials: 88, 89",
+        ),
     ],
 )
 def test_a_part_is_in_one_place(written, relation, why) -> None:
     """A bearing held two shafts, and a torque was applied twice."""
     components, relations = two_stages()
-    components.append((70, "coupling", "", {}))
-    unit = components, [*relations, joint(70, 10, 2), relation]
+    components += [(70, "coupling", "", {}), (88, "material", "", {}), (89, "material", "", {})]
+    steel = ("reference", {"origin": 50, "referenced": 88})
+    unit = components, [*relations, joint(70, 10, 2), steel, relation]
     with pytest.raises(CaseError, match=why):
         import_rexs(written(xml(*unit)))
 

@@ -125,6 +125,9 @@ def _assigned(of: Gearing) -> Iterator[tuple[Component, tuple[str, str], str]]:
         for stage, shaft in of.model.related(relation, "planetary_stage", "shaft"):
             if stage.id in of.carriers_of_stages:
                 yield shaft, on_carrier, of.carriers_of_stages[stage.id].id
+    for origin, material in of.model.related("reference", "origin", "referenced"):
+        if material.type == "material" and origin.type in (*GEARS, "shaft", "shaft_section"):
+            yield origin, ("has", "material"), material.id
     for part, inner, outer in of.joined(*BEARINGS, *COUPLINGS):
         yield part, ("has", "connection"), f"{inner.id} and {outer.id}"
 
