@@ -22,6 +22,7 @@ from tests.explore.walks import opened, settled, whole
 from tests.support import shipped
 
 import loadshare as ls
+from loadshare.explore import workers
 from loadshare.explore.answer import plain
 from loadshare.explore.inputs import Inputs
 from loadshare.explore.questions import Along
@@ -251,6 +252,23 @@ def test_a_study_that_is_broken_off_is_stopped(seed):
         line.close()
     (found,) = study(seed, "sweep", FLOAT | {"points": 3})
     assert len(found["x"]) == 3
+
+
+def test_a_study_that_has_begun_is_not_refused_when_many_wait(seed, monkeypatch):
+    """It used to end with what it had found, if others came between two of its parts."""
+    parts = urlsplit(seed)
+    line = http.client.HTTPConnection(parts.hostname, parts.port, timeout=300)
+    keys = ["gears.*.base_radius", "rings.*.float", "errors.9.installation.amount"]
+    body = json.dumps({"keys": keys})
+    line.request("POST", "/study/slopes", body, {"Content-Type": "application/json"})
+    reply = line.getresponse()
+    first = json.loads(reply.readline())
+    monkeypatch.setattr(workers, "EXPLORE", EXPLORE._replace(waiting=0))
+    assert ask(seed, "/study/slopes", {"keys": keys})[0] == 503
+    found = [first, *map(json.loads, reply)]
+    line.close()
+    assert all("rows" in one for one in found)
+    assert found[-1]["done"] == found[-1]["of"] > 2 * len(first["rows"])
 
 
 @pytest.mark.slow

@@ -135,7 +135,7 @@ class Explorer:
         question = await self.solved(partial(along, self.inputs, body))
         stretches = question.stretches(finite(body, "at", question.low))
         for done, stretch in enumerate(stretches, start=1):
-            found = await self.workers.done(request, criticals, stretch)
+            found = await self.workers.done(request, criticals, stretch, done > 1)
             if "events" not in found:
                 gap = [stretch.low, stretch.high, " ".join(found["messages"])]
                 found = {"events": [], "gaps": [gap], "confirmed": True}
@@ -151,7 +151,7 @@ class Explorer:
         question = await self.solved(partial(slopes, self.inputs, body))
         done = 0
         for batch in question.batches():
-            found = await self.workers.done(request, rates, batch)
+            found = await self.workers.done(request, rates, batch, done > 0)
             done += len(batch.keys)
             yield found | {"done": done, "of": len(question.keys)}
 
@@ -166,7 +166,7 @@ class Explorer:
         growing = Growing(study)
         while growing.done < study["samples"]:
             part = SampleRange(study["job"], growing.done, study["rows"])
-            found = await self.workers.done(request, samples, part)
+            found = await self.workers.done(request, samples, part, True)
             growing.take(found)
             yield await asyncio.to_thread(growing.statistics)
 

@@ -30,7 +30,9 @@ class Workers:
         self.free = [Worker() for _ in range(count)]
         self.turn = asyncio.Semaphore(count)
 
-    async def done(self, request: Request, work: Callable[[Item], Found], item: Item) -> Found:
+    async def done(
+        self, request: Request, work: Callable[[Item], Found], item: Item, begun: bool = False
+    ) -> Found:
         """Return the answer of a worker, as long as somebody waits for it.
 
         Parameters
@@ -39,13 +41,16 @@ class Workers:
             A request whose body has been read; if its sender disconnects, the worker is killed.
         work : callable
         item : object
+        begun : bool
+            Whether it continues a study, which then waits, however many others do: refused, it
+            would lose what it has found.
 
         Raises
         ------
         RequestError
             If too many are waiting already, or the sender has disconnected.
         """
-        if self.waiting >= self.count * EXPLORE.waiting:
+        if not begun and self.waiting >= self.count * EXPLORE.waiting:
             raise RequestError(503, "too many studies are waiting; try again in a while")
         # A task of its own: the worker is put back in order even if who waits is cancelled.
         lent = asyncio.create_task(self._lent(request, work, item))
