@@ -553,7 +553,7 @@ def energy_gap(state: ClaimedState) -> dict[str, float]:
         primal.append(-work - moment * state.answer.rotation[gear])
     for push in state.pushes:
         primal.append(push.law.energy(push.approach))
-        dual += [-push.law.complementary(max(push.force, 0.0)), push.force * push.at_rest]
+        dual += [-released(push.law, max(push.force, 0.0)), push.force * push.at_rest]
     for name, wind, torque in state.winds():
         shaft = state.train.shafts[name]
         if not math.isinf(shaft.stiffness):
@@ -689,6 +689,14 @@ def interval(law: RadialLaw, radius: float, band: float = 0.0) -> tuple[float, f
     if radius >= begin - band:
         low, high = min(low, law.pieces[-1].end_force), math.inf
     return low, high
+
+
+def released(law: Law, force: float) -> float:
+    """Return the complementary energy ∫δ dF [J] of a contact; a table's, by trapezoids."""
+    if isinstance(law, PowerLaw):
+        return 0.5 * law.b * force**2 + 0.6 * law.c * math.cbrt(force) ** 5
+    forces = [*(f for f in law.forces if f < force), force]
+    return float(np.trapezoid([law.compression(f) for f in forces], forces))
 
 
 def complementary(law: RadialLaw, force: float) -> float:

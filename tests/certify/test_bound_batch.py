@@ -67,7 +67,7 @@ bound."""
 
 def relative_bounds(columns: Columns, here: Situations, claim: Equilibria) -> np.ndarray:
     """Return the bounds of compiled code."""
-    return judged(columns, here, claim).relative
+    return judged(columns, here, claim)[1]
 
 
 def disturbed(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria:

@@ -15,7 +15,7 @@ from tests.support import answer, loaded, shipped
 
 import loadshare as ls
 from loadshare.certify import Judge, certify
-from loadshare.certify.validity import Measuring, validity
+from loadshare.certify.validity import Measuring, Validity, measuring
 from loadshare.report.words import advice
 from loadshare.settings import CERTIFY
 from loadshare.train import build_train
@@ -44,6 +44,12 @@ def pair(kind: str, teeth: int | None = None) -> ls.Case:
     mesh = {"pressure_angle": f"{ALPHA!r} rad", "stiffness": "1e6 N*m/rad"}
     operating = {"input": "1", "output": "2", "running": "counter-clockwise", "torque": "100 N*m"}
     return ls.Case({"gears": gears, "meshes": {"1-2": mesh}, "operating": operating})
+
+
+def validity(train, answer: Equilibrium, deflection: float) -> Validity:
+    """Measure the displacements of an answer to a case of some deflection [m]."""
+    here, claimed = situation_of(train, answer.index), Equilibria.of(train, answer)
+    return Validity(measuring(train).each(here, claimed, np.array([deflection]))[0])
 
 
 def claim(train, moved) -> Equilibrium:

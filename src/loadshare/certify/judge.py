@@ -88,9 +88,9 @@ class Judge:
     def _compiled(
         self, situations: Situations, answers: Equilibria, tolerance: float, bounded: bool
     ) -> Verdicts:
-        found = judged(self.columns, situations, answers)
+        found, relative = judged(self.columns, situations, answers)
         # In very soft springs the energy gap does not follow from forces that are in balance.
-        found.worst[_is_soft(situations, found.load, found.deflection, tolerance)] = np.nan
+        found.worst[_is_soft(situations, found.scale, found.deflection, tolerance)] = np.nan
         if self.measuring.uncertain:
             # Compiled code does not measure how far these meshes are open.
             found.displaced[:] = np.nan
@@ -100,10 +100,11 @@ class Judge:
                 some = situations.take(left), answers.take(left)
                 figure[left] = getattr(self._by_numpy(*some, tolerance), name)
         # Answers that are out of balance are refused in any case.
-        wanted, relative = bounded & (found.worst <= tolerance), found.relative
+        wanted = bounded & (found.worst <= tolerance)
         limits = completed(self.columns, situations, answers, relative, tolerance, wanted)
-        load, deflection = found.load, found.deflection
-        return Verdicts(found.worst, tolerance, load, deflection, found.displaced, limits)
+        return Verdicts(
+            found.worst, tolerance, found.scale, found.deflection, found.displaced, limits
+        )
 
     def _by_numpy(
         self,

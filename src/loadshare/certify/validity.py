@@ -44,10 +44,9 @@ from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import first_of_largest
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import cross
 from loadshare.train.mesh import Mesh
-from loadshare.train.situations import Situations, situation_of
+from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 NEITHER = "neither"
@@ -333,20 +332,6 @@ class Measuring:
                 if name != APART or figures.max() > CERTIFY.apart:
                     found[row][name] = self._largest(name, figures)
         return found
-
-
-def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
-    """Measure the displacements of an answer.
-
-    Parameters
-    ----------
-    train : Train
-    answer : Equilibrium
-    deflection : float
-        Deflection of the case [m], as in its certificate.
-    """
-    here, claimed = situation_of(train, answer.index), Equilibria.of(train, answer)
-    return Validity(measuring(train).each(here, claimed, np.array([deflection]))[0])
 
 
 @lru_cache(maxsize=16)

@@ -35,9 +35,6 @@ class Law(Protocol):
     def tangent(self, force: float) -> tuple[float, float]:
         """Return the tangent compliance [m/N] and the offset [m] of the tangent line at `force`."""
 
-    def complementary(self, force: float) -> float:
-        """Return the complementary energy ∫δ dF [J]."""
-
     def energy(self, compression: float) -> float:
         """Return the strain energy ∫F dδ [J]; 0 for an open contact."""
 
@@ -120,10 +117,6 @@ class PowerLaw:
         if root <= 0.0:
             return math.inf, 0.0
         return self.b + 2.0 / 3.0 * self.c / root, self.c * root**2 / 3.0
-
-    def complementary(self, force: float) -> float:
-        """Return ½bF² + ⅗cF^(5/3) [J]."""
-        return 0.5 * self.b * force**2 + 0.6 * self.c * math.cbrt(force) ** 5
 
     def energy(self, compression: float) -> float:
         """Return the conjugate of the complementary energy, Fδ − U*(F) [J]."""
@@ -210,20 +203,15 @@ class TableLaw:
         f0, d0, slope = self._piece(self.forces, force)
         return slope, d0 - slope * f0
 
-    def complementary(self, force: float) -> float:
-        """Return ∫δ dF [J], exact for the straight pieces."""
-        total = 0.0
-        for f0, f1 in pairwise((*self.forces[:-1], math.inf)):
-            upper = min(force, f1)
-            if upper <= f0:
-                break
-            total += 0.5 * (self.compression(f0) + self.compression(upper)) * (upper - f0)
-        return total
-
     def energy(self, compression: float) -> float:
-        """Return Fδ − U*(F) [J]."""
-        force = self.force(compression)
-        return force * max(compression, 0.0) - self.complementary(force)
+        """Return ∫F dδ [J], exact for the straight pieces."""
+        total = 0.0
+        for d0, d1 in pairwise((*self.compressions[:-1], math.inf)):
+            upper = min(compression, d1)
+            if upper <= d0:
+                break
+            total += 0.5 * (self.force(d0) + self.force(upper)) * (upper - d0)
+        return total
 
     def scaled(self, force_unit: float, length_unit: float) -> TableLaw:
         """Return the law with forces in `force_unit` [N] and lengths in `length_unit` [m]."""

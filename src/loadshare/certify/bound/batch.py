@@ -6,7 +6,6 @@ is remembered are not covered. Source: formulation, section 16.
 
 from __future__ import annotations
 
-from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -15,6 +14,7 @@ from loadshare.array_types import Array
 from loadshare.certify.arrays import arrays_of
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
+from loadshare.certify.bound.figures import ClaimFigures
 from loadshare.certify.bound.groups import SharedData
 from loadshare.certify.bound.layout import springs_of
 from loadshare.train.equilibria import Equilibria
@@ -26,30 +26,18 @@ def is_covered(columns: Columns) -> bool:
     return columns.train.slip is None
 
 
-class BatchFigures(NamedTuple):
-    """Figures of S claims; NaN where they are left to NumPy.
+def judged(
+    columns: Columns, situations: Situations, answers: Equilibria
+) -> tuple[ClaimFigures, Array]:
+    """Judge S claims with compiled code.
 
-    Attributes
-    ----------
-    relative : ndarray, shape (S,)
+    Returns
+    -------
+    ClaimFigures
+        With NaN where a figure is left to NumPy.
+    ndarray, shape (S,)
         Largest error of a torque over the largest torque; infinite if none is shown.
-    worst : ndarray, shape (S,)
-        Largest scaled residual.
-    load, deflection : ndarray, shape (S,)
-        Scales [N], [m].
-    displaced : ndarray, shape (S,)
-        How close displacements come to a warning (see `Measuring.worst`).
     """
-
-    relative: Array
-    worst: Array
-    load: Array
-    deflection: Array
-    displaced: Array
-
-
-def judged(columns: Columns, situations: Situations, answers: Equilibria) -> BatchFigures:
-    """Judge S claims with compiled code."""
     from loadshare.certify.bound import kernel
 
     (spring, arm), pushed = springs_of(columns, situations), bool(situations.push.any())
@@ -65,8 +53,7 @@ def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Bat
     groups = plan.groups(acts, sets.least[:count], sets.most[:count])
     kernel.bound_all(plan.layout, here, claim, found, groups, errors)
     with np.errstate(invalid="ignore"):
-        relative = np.where(errors < np.inf, errors / found.largest + 2.0 * EPS, np.inf)
-    return BatchFigures(relative, found.worst, found.scale, found.deflection, found.displaced)
+        return found, np.where(errors < np.inf, errors / found.largest + 2.0 * EPS, np.inf)
 
 
 _plans: WeakKeyDictionary[Columns, SharedData] = WeakKeyDictionary()

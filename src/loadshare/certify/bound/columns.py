@@ -167,11 +167,7 @@ class Columns:
     @cached_property
     def moments(self) -> Array:
         """Torque that each spline transmits to its gear per flank force, (splines, flanks) [m]."""
-        found = np.zeros((len(self.train.splines), self.flanks.stop))
-        for k, gear in enumerate(self.train.splines):
-            for e, to in enumerate(self.train.approaches.values()):
-                found[k, e] = to.turning.get(gear, 0.0)
-        return found
+        return mechanics_of(self.train).spline_moment
 
     @cached_property
     def splined(self) -> Array:
