@@ -15,6 +15,7 @@ CHANGES = [
     ("fgfbstts/limit_ring", {"rings.4.float": "7 um", "operating.power": "1500 kW"}),
     ("fgfbstts/limit_ring", {"rings.5.float": "0 um"}),
     ("fgfbstts/all_elements", {"splines.4.clearance": "80 um", "rings.5.float.up": "3 um"}),
+    ("fgfbstts/all_elements", {'meshes."6-10".backlash': "40 um"}),
     ("fgfbstts/both_errors", {"errors.6.installation.amount": "12 um"}),
     ("fgfbstts/full_float", {"operating.power": "900 kW", "title": "another"}),
     ("planetary/four_planets", {"operating.torque": "700 N*m"}),

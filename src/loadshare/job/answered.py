@@ -211,7 +211,7 @@ def _part(
     for k in np.flatnonzero(~(found.passed & solved.small)).tolist():
         p, row = divmod(k, len(rows))
         try:
-            train = train_at(build_train(resolve(samples.one(row))), positions[p])
+            train = train_at(samples.train_of_one(row), positions[p])
             if found.passed[k]:
                 (answer,) = solved.answers([k], [positions[p]], train)
             else:

@@ -19,7 +19,6 @@ from loadshare.job.machine import Answers, Machine
 from loadshare.settings import JOB
 from loadshare.solver import Options
 from loadshare.solver.hot.exchange import Engine
-from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import Samples
 from loadshare.train.situations import Situations
@@ -230,7 +229,7 @@ def solve_block(
             block.displaced[:, chunk.columns][open_.by_sample(loose)] = np.nan
     for row, p in np.argwhere(~block.certified).tolist():
         try:
-            train = build_train(samples.one(row))
+            train = samples.train_of_one(row)
             open_.answer(row, p, climb(train, positions[p], Options(), tolerance, JOB.steps))
         except (CaseError, Refused) as refusal:
             open_.refuse(row, p, str(refusal))

@@ -67,10 +67,7 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
             # Without a Hertz part the law is linear, and the machine another one.
             return column.is_positive or not column.has_numbers
         case ("meshes", _, "backlash" | "normal_backlash"):
-            words = not column.has_numbers and "teeth" in column.values
-            return not words and not any(
-                isinstance(r.float_, spec.Backlashes) for r in case.rings.values()
-            )
+            return column.has_numbers or "teeth" not in column.values
         case ("shafts", shaft, "stiffness"):
             words = isinstance(case.shafts[str(shaft)].stiffness, str)
             return column.has_numbers and not words

@@ -24,7 +24,7 @@ from loadshare.settings import JOB
 from loadshare.tooth import with_own_laws
 from loadshare.train.alike import train_alike
 from loadshare.train.array_keys import array_unit
-from loadshare.train.build import train_of, with_laws
+from loadshare.train.build import build_train, train_of, with_laws
 from loadshare.train.columns import Column, columns_of
 from loadshare.train.geometry import Geometry, geometry_of
 from loadshare.train.placed import train_at
@@ -64,6 +64,17 @@ class Samples:
     def one(self, sample: int) -> spec.Case:
         """Return a sample as a case."""
         return self.case.replace({dotted(c.path): c.text(sample) for c in self.columns})
+
+    def train_of_one(self, sample: int) -> Train:
+        """Return the train of a sample alone.
+
+        Raises
+        ------
+        CaseError
+            If the sample cannot be made into a train.
+        """
+        case = self.one(sample)
+        return train_alike(case, (self.case, self.geometry, self.train)) or build_train(case)
 
     def take(self, rows: Numbers | slice) -> Samples:
         """Return some of the samples."""
