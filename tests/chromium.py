@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import socket
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -22,6 +23,8 @@ FLAGS = (
     "--disable-sync",
     "--window-size=1280,1000",
 )
+LONGEST = 120.0
+"""Time [s] after which a browser that does not answer fails the test."""
 FRACTION = 0.25
 """Fraction of the letter height by which the boxes of two lines may overlap: a box includes the
 space above and below the letters."""
@@ -168,7 +171,12 @@ def chromium(profile: Path, offline: bool = True) -> Iterator[Any]:
     for flag in (*FLAGS, f"--user-data-dir={profile}"):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    found = webdriver.Chrome(options=options, service=Service(driver))
+    # The driver waits for a browser without end, unless sockets have a limit when it is made.
+    socket.setdefaulttimeout(LONGEST)
+    try:
+        found = webdriver.Chrome(options=options, service=Service(driver))
+    finally:
+        socket.setdefaulttimeout(None)
     yield as_new(found, offline)
     found.quit()
 
