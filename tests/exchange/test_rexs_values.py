@@ -121,6 +121,14 @@ def test_a_brake_is_engaged_as_in_the_gear_of_the_unit(written, form, engaged, u
     assert any("engaged as in gear" in line for line in found.assumed) is (len(engaged) > 1)
 
 
+def test_a_key_beside_the_value_of_an_attribute_is_not_its_value(written) -> None:
+    plain = rexsj(*planetary(), "1.4")
+    noted = plain.replace(b'"unit": ', b'"comment": "measured", "unit": ')
+    assert noted != plain
+    one, other = (import_rexs(written(content)) for content in (plain, noted))
+    assert other.data == one.data
+
+
 def test_a_gear_for_which_a_coupling_says_nothing_is_refused(written) -> None:
     with pytest.raises(
         CaseError, match="is for 2 gears, but gear_shift_index of the gear unit is 7"

@@ -22,6 +22,11 @@ from loadshare.exchange.rexs.quantities import FLAGS, QUANTITIES, in_si
 from loadshare.input import read_file
 from loadshare.settings import ALLOWED
 
+VALUES = (
+    *("boolean", "date_time", "enum", "file_reference", "floating_point", "integer"),
+    *("reference_component", "string"),
+)
+"""How keys begin under which JSON holds the value of an attribute."""
 CODES = {"float64": "d", "float32": "f"}
 """Formats of arrays as bytes, by the code in the file."""
 
@@ -217,7 +222,8 @@ def tables(given: Any) -> list[dict[str, Any]]:
 def _component(given: Mapping[str, Any]) -> Component:
     attributes: dict[str, Value] = {}
     for attribute in tables(given.get("attributes")):
-        values = [v for k, v in attribute.items() if k not in ("id", "unit")]
+        others = {k: v for k, v in attribute.items() if k not in ("id", "unit")}
+        values = [v for k, v in others.items() if k.startswith(VALUES)] or list(others.values())
         value = _value(values[0]) if len(values) == 1 else ""
         _put(attributes, str(attribute.get("id", "")), value, str(attribute.get("unit") or ""))
     return Component(
