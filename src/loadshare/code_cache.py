@@ -169,8 +169,9 @@ class CodeCache(FunctionCache):
         found = self._read(sig, target_context)
         if found is None and self._ready():
             file = Path(self._cache_file._index_path).with_suffix(".lock")
-            if self._alone.enter_context(one_after_another(file, watch.waiting)):
-                return self._read(sig, target_context)
+            self._alone.enter_context(one_after_another(file, watch.waiting))
+            # Another process may have compiled it since, whether it was waited for or not.
+            return self._read(sig, target_context)
         return found
 
     def _ready(self) -> bool:

@@ -60,7 +60,7 @@ def alone_in(folder: Path) -> Iterator[None]:
 @contextmanager
 def one_after_another(
     file: Path, waiting: Callable[[], AbstractContextManager[object]] = nullcontext
-) -> Iterator[bool]:
+) -> Iterator[None]:
     """Take a lock in turn, once the processes that took it before have released it.
 
     Where nothing can be written, or the file system has no locks, nobody waits.
@@ -71,28 +71,23 @@ def one_after_another(
         The lock file, in an existing folder.
     waiting : callable, optional
         Returns a context in which to wait; not called if there is nobody to wait for.
-
-    Yields
-    ------
-    bool
-        Whether another process was waited for.
     """
-    waited = False
+    waits = False
     with ExitStack() as context:
         while True:
             try:
                 handle = _acquired(file, logging.DEBUG)
                 break
             except LoadshareError:
-                if not waited:
+                if not waits:
                     context.enter_context(waiting())
-                waited = True
+                waits = True
                 time.sleep(AGAIN)
     if handle is None:
-        yield waited
+        yield
         return
     with _held(file, handle):
-        yield waited
+        yield
 
 
 @contextmanager

@@ -265,6 +265,25 @@ print(sum(twice.stats.cache_misses.values()))
     assert not list((tmp_path / "__pycache__").glob("*.lock"))
 
 
+def test_what_another_process_has_just_compiled_is_not_compiled_again(tmp_path, monkeypatch):
+    """It may end between the look for kept code and the lock."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    file = tmp_path / "kept.py"
+    file.write_text(MODULE, encoding="utf-8")
+    twice, other = loaded(file), loaded(file)
+
+    def late(*words: Any) -> Any:
+        with monkeypatch.context() as patch:
+            patch.setattr("loadshare.code_cache.one_after_another", one_after_another)
+            assert other(2.0) == 4.0
+        return one_after_another(*words)
+
+    monkeypatch.setattr("loadshare.code_cache.one_after_another", late)
+    assert twice(2.0) == 4.0
+    assert other.stats.cache_misses
+    assert not twice.stats.cache_misses
+
+
 def test_what_another_process_compiles_is_waited_for(tmp_path, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     file = tmp_path / "kept.py"
