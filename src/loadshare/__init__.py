@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from loadshare.job.search import search
     from loadshare.report.figure import Figure
     from loadshare.report.plot import plot
-    from loadshare.results import Result, load_result
+    from loadshare.results import Result
+    from loadshare.results.files import load_result
     from loadshare.study.compare import Comparison, compare
     from loadshare.study.critical import Critical, critical
     from loadshare.study.fit import Fit, fit
@@ -56,7 +57,7 @@ _LAZY = {
     "fit": "loadshare.study.fit",
     "formulate": "loadshare.job.formulation",
     "load_case": "loadshare.case",
-    "load_result": "loadshare.results",
+    "load_result": "loadshare.results.files",
     "march": "loadshare.study.march",
     "plot": "loadshare.report.plot",
     "run_study": "loadshare.study.named",

@@ -78,7 +78,7 @@ def _print_teeth(path: Path, change: list[str] | None) -> None:
 
 
 def _result(path: Path) -> str:
-    from loadshare.results import load_result
+    from loadshare.results.files import load_result
 
     result = load_result(path)
     return f"  {counted(len(result.positions), 'position')} certified again"

@@ -105,7 +105,8 @@ def run(
     if refusal is not None:
         _end_refused(refusal, loaded.name, file or ())
     assert result is not None
-    _write(file, result, loaded, str(case), picture)
+    if file:
+        _write(file, result, loaded, str(case), picture)
 
 
 def _solved(
@@ -142,9 +143,7 @@ def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoRetu
     fail_refused(refusal, (f"{file}: not written, as there is no answer" for file in others))
 
 
-def _write(
-    files: Sequence[Output] | None, result: Result, given: Case, case: str, picture: str
-) -> None:
+def _write(files: Sequence[Output], result: Result, given: Case, case: str, picture: str) -> None:
     from loadshare.exchange.spreadsheet import write_tables
     from loadshare.results.document import netcdf_content
 
@@ -156,7 +155,7 @@ def _write(
     def changed() -> str:
         from loadshare.tooth import written_in
 
-        folders = [output.file.parent for output in files or () if output.form == "toml"]
+        folders = [output.file.parent for output in files if output.form == "toml"]
         return written_in(given, folders).to_toml()
 
     made = cache(partial(_tables, result))
@@ -166,8 +165,8 @@ def _write(
 
         return workbook_of(made())
 
-    single = [output for output in files or () if output.form != FOLDER]
-    for output in files or ():
+    single = [output for output in files if output.form != FOLDER]
+    for output in files:
         if output.form == FOLDER:
             with writing(output.file):
                 write_tables(output.file, made())

@@ -1,6 +1,5 @@
 """Results: immutable, labelled, stamped, saved and loaded bit for bit."""
 
-from loadshare.results.files import load_result
 from loadshare.results.result import Effort, Position, Result, Stamp
 
-__all__ = ["Effort", "Position", "Result", "Stamp", "load_result"]
+__all__ = ["Effort", "Position", "Result", "Stamp"]

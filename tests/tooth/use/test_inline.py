@@ -8,7 +8,7 @@ from tests.tooth.use.pairs import written
 import loadshare as ls
 from loadshare.case import load_case
 from loadshare.errors import CaseError
-from loadshare.results import load_result
+from loadshare.results.files import load_result
 from loadshare.tooth import resolve
 from loadshare.tooth.law.inline import inline_pair
 from loadshare.tooth.pair.file import PairFile

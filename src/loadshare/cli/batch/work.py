@@ -154,7 +154,7 @@ def _kept(task: Task, case: Case) -> tuple[Result | None, tuple[str, ...]]:
     tuple of str
         What is wrong with a file that claims to be this result but is not.
     """
-    from loadshare.results import load_result
+    from loadshare.results.files import load_result
     from loadshare.train import build_train
 
     try:
