@@ -119,8 +119,14 @@ class Bound(NamedTuple):
     """Cosine above which two arcs are opposed."""
     in_line: float = 1e-12
     """Angle [rad] between two arcs' lines that is rounding: the arcs can hold a squeezed float."""
+    angle: float = 0.02
+    """Angle [rad] between two lines that still count as nearly the same."""
+    references: int = 16
+    """Claims whose lines are tried for all claims whose elements act alike."""
     operators: int = 1 << 21
     """Numbers in the operators of claims that are found together, so that memory is bounded."""
+    few: int = 8
+    """Number of claims up to which each is bounded separately where lines turn."""
     gain: float = 0.5
     """Largest share of an error that may be fed back by friction that follows the torque."""
     wider: float = 2.0

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from loadshare.array_types import Array, Numbers
+from loadshare.array_types import Array, Flags, Numbers
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.twofold import Twofold, exact, minus, plus, product, quotient
 from loadshare.certify.graphs import spline_graphs, wall
@@ -226,9 +226,19 @@ class Claim:
         return np.asarray(self.answers.flank_force @ self.columns.moments.T)
 
     @cached_property
+    def rolling(self) -> Flags:
+        """Which arcs and radial elements are bearings with a power law, shape (pairs,)."""
+        columns = self.columns
+        found = np.zeros(columns.pairs, dtype=bool)
+        first = columns.pairs - len(columns.claims.radials)
+        powers = self.situations.round_power
+        found[first : first + powers.shape[1]] = (powers != 1.0).any(axis=0)
+        return found
+
+    @cached_property
     def rolls(self) -> bool:
-        """Whether there are bearings with a power law."""
-        return bool((self.situations.round_power != 1.0).any())
+        """Whether there is such a bearing."""
+        return bool(self.rolling.any())
 
     @cached_property
     def graphs(self) -> Array:
