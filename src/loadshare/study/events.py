@@ -7,8 +7,8 @@ from functools import partial
 
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import switch_names
+from loadshare.study.follow.changes import Change, Gap, PathPoint, change_between
 from loadshare.study.follow.line import Line
-from loadshare.study.follow.search import Change, Gap, PathPoint, change_between
 
 _STATES = {
     at.OPEN: "slip",
