@@ -38,7 +38,7 @@ def test_hard_cases_and_marches_have_one_thread(monkeypatch) -> None:
         return solve_scene(*given, **more)
 
     monkeypatch.setattr("loadshare.job.ladder.solve_scene", solved)
-    monkeypatch.setattr("loadshare.study.memory.methods.solve_scene", solved)
+    monkeypatch.setattr("loadshare.study.memory.held.solve_scene", solved)
     with threadpool_limits(2, "blas"):
         before = _threads()
         ls.solve(shipped("fgfbstts/limit_ring"), positions=[1], solver="clarabel")

@@ -15,14 +15,8 @@ from loadshare.errors import Refused
 from loadshare.job.answer import Answer
 from loadshare.job.ladder import rungs
 from loadshare.settings import MARCH
-from loadshare.study.memory.methods import (
-    alternating,
-    if_certified,
-    negligible_friction,
-    searched,
-    slip_at_end,
-    with_slips_held,
-)
+from loadshare.study.memory.fallbacks import alternating, negligible_friction, searched
+from loadshare.study.memory.held import if_certified, slip_at_end, with_slips_held
 from loadshare.study.positions import BACKEND, certified
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
