@@ -62,7 +62,9 @@ def states_by_name(
         j = next(i for i, r in enumerate(radials) if r.name == name)
         given = np.broadcast_to(numbers.radial[:, j], (len(values), numbers.radial.shape[2]))
         frame = train.gears[gear].frame
-        moved = answers.displacement[:, names.gears.index(gear)] @ frame.T - radials[j].centre
+        column = line.structure.radial_column(j)
+        centre = numbers.gap[:, column : column + 2] * length
+        moved = answers.displacement[:, names.gears.index(gear)] @ frame.T - centre
         radius = np.linalg.norm(moved, axis=1) / length
         law = at.graph(given, torque[:, k] / push, radius)
         force = np.linalg.norm(answers.radial_reaction[:, k], axis=1) / push

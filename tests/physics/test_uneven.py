@@ -99,6 +99,22 @@ def test_every_step_is_the_set_placed_anew(load: str, output: str, held: str) ->
             assert position.loads.bearings[name] == pytest.approx(seen, abs=1e-6)
 
 
+@pytest.mark.parametrize("engine", ["vectorised", "compiled"])
+def test_places_of_bearings_vary_in_a_batch_as_in_cases_solved_alone(engine: str) -> None:
+    """One bearing is fixed in the housing, the other on the carrier."""
+    case = marched(mounted())
+    samples = {
+        "bearings.carrier.offset[0] [um]": [4.0, -5.0, 1.0],
+        "bearings.p2.offset[1] [um]": [-1.0, 2.0, 1.5],
+    }
+    many = ls.solve_many(case, samples, engine=engine)
+    for k in range(3):
+        changes = {key[:-5]: f"{values[k]} um" for key, values in samples.items()}
+        alone = ls.solve(case.replace(changes))
+        assert many.torque[k].values == pytest.approx(alone.torque.values, rel=1e-9)
+    assert np.ptp(many.torque.values, axis=0).max() > 1e-3 * many.torque.values.max()
+
+
 def test_even_surroundings_placed_anew_are_those_seen_from_the_carrier() -> None:
     """Both methods agree where both apply, including thin rim and clearances."""
     case = marched(

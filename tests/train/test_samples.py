@@ -65,6 +65,30 @@ def derived() -> ls.Case:
     return shipped("fgfbstts/all_elements")
 
 
+def seated() -> ls.Case:
+    """Return a case with a load per position, a support of two stiffnesses and a bearing."""
+    return plain().replace(
+        {
+            "operating.torque": [f"{torque} N*m" for torque in (700, 900, 800, 600, 750)],
+            "gears.10.support": ["5e8 N/m", "3e8 N/m"],
+            "bearings.4": {
+                "clearance": "5 um",
+                "stiffness": "500 N/um",
+                "offset": ["0.5 um", "-1 um"],
+            },
+        }
+    )
+
+
+def stepped() -> ls.Case:
+    """Return a case with a shaft of two sections, and one of one."""
+    sections = {"diameter": ["40 mm", "44 mm"], "length": ["30 mm", "50 mm"], "bore": "20 mm"}
+    simple = {"diameter": "40 mm", "length": "100 mm"}
+    return shipped("two_path/nasa").replace(
+        {'shafts."wheel1-pinion1"': sections, 'shafts."wheel2-pinion2"': simple}
+    )
+
+
 def rigid() -> ls.Case:
     """A rigid shaft, whose clocking shifts the flanks of the gears on it."""
     return everything().replace({'shafts."2-4".stiffness': "rigid"})
@@ -91,6 +115,16 @@ FAST: dict[str, tuple] = {
     "rings.4.stiffness [N/um]": (everything, 100.0, 900.0),
     "rings.sun.radius [um]": (round_ring, 0.0, 9.0),
     "rings.sun.stiffness [N/um]": (round_ring, 100.0, 900.0),
+    "rings.sun.offset[0] [um]": (round_ring, -2.0, 2.0),
+    "bearings.4.offset[1] [um]": (seated, -2.0, 2.0),
+    "bearings.4.clearance [um]": (seated, 0.0, 9.0),
+    "bearings.4.stiffness [N/um]": (seated, 100.0, 900.0),
+    "operating.torque[1] [N*m]": (seated, 100.0, 1500.0),
+    "gears.10.support[1] [N/m]": (seated, 1e8, 9e8),
+    'shafts."wheel1-pinion1".diameter[1] [mm]': (stepped, 30.0, 60.0),
+    'shafts."wheel1-pinion1".length[0] [mm]': (stepped, 20.0, 60.0),
+    'shafts."wheel2-pinion2".diameter [mm]': (stepped, 30.0, 60.0),
+    'shafts."wheel2-pinion2".shear_modulus [GPa]': (stepped, 70.0, 90.0),
     "splines.4.bending_stiffness [N/um]": (splined, 5.0, 50.0),
     "splines.4.stick_limit [um]": (splined, 0.0, 2.0),
     "splines.4.clearance [um]": (splined, 5.0, 90.0),
@@ -169,7 +203,9 @@ def test_it_makes_a_difference(key):
     assert any(not np.array_equal(getattr(some, n)[0], getattr(some, n)[1]) for n in varying)
 
 
-@pytest.mark.parametrize("make", [everything, plain, splined], ids=lambda make: make.__name__)
+@pytest.mark.parametrize(
+    "make", [everything, plain, splined, seated, stepped], ids=lambda make: make.__name__
+)
 def test_all_keys_together(make):
     keys = [k for k, (case, *_) in FAST.items() if case is make and "clearance[1]" not in k]
     samples = {key: drawn(key, 3, seed) for seed, key in enumerate(keys)}

@@ -230,17 +230,6 @@ class Mechanics:
         return -self.moment[[self.order[g] for g in self.train.splines]]
 
     @cached_property
-    def centres(self) -> Array:
-        """Centres of the radial elements [m], shape (radials, 3)."""
-        found = np.zeros((len(self.pulls), 3))
-        for q, ring in enumerate(self.train.rounds):
-            found[q] = ring.offset
-        if self.train.slip is not None:
-            for q, gear in enumerate(self.train.splines, self.claims.splines.start):
-                found[q] = self.train.slip[gear]
-        return found
-
-    @cached_property
     def contacts(self) -> tuple[str, ...]:
         """Names of all contacts."""
         flanks = (m.flank_name(d) for m, d in self.flanks)

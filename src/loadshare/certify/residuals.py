@@ -220,7 +220,7 @@ def energy_gap(state: ClaimedState) -> Blocks:
         force = np.minimum(size(state.reaction), strength(state.graph))
         stored.append(energy(state.graph, state.radius))
         stored.append(complementary(state.graph, force))
-        work.append((state.reaction * of.centres[..., None]).sum(axis=1))
+        work.append((state.reaction * state.centres).sum(axis=1))
     if of.train.slip:
         stored.append(here.spline[:, 0] * (state.bend**2).sum(axis=1))
     held_in = sum(map(total, stored))

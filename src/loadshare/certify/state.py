@@ -215,13 +215,24 @@ class ClaimedState:
         return np.asarray(-pushed / self.here.spline[:, :1])
 
     @cached_property
+    def centres(self) -> Array:
+        """Centre of every radial element [m], shape (radials, 3, S or 1)."""
+        rounds, train = self.here.round_offset, self.of.train
+        found = np.zeros((len(self.of.pulls), 3, rounds.shape[-1]))
+        found[self.of.claims.rounds] = rounds
+        if train.slip is not None:
+            for q, gear in enumerate(train.splines, self.of.claims.splines.start):
+                found[q] = train.slip[gear][:, None]
+        return found
+
+    @cached_property
     def offset(self) -> Array:
         """Vector from the centre of every radial element [m], shape (radials, 3, S)."""
         place = self.claim.displacement[self.of.pulled]
         if self.of.train.slip is not None:
             for part in (self.of.claims.splines, self.of.claims.spline_stops):
                 place[part] -= self.bend
-        return np.asarray(place - self.of.centres[..., None])
+        return np.asarray(place - self.centres)
 
     @cached_property
     def graph(self) -> Graph:

@@ -46,6 +46,7 @@ def scene_of(structure: Structure, situation: Situations, loading: Loading | Non
     laws = [_law(structure, loading, column) for column in range(len(structure.names))]
     rows = range(columns.flat.start, columns.flat.stop)
     levers, turned = structure.train.levers, structure.turned(situation)[0].tolist()
+    centres = structure.centres(situation)[0]
     return Scene(
         train=structure.train,
         situation=situation,
@@ -65,12 +66,12 @@ def scene_of(structure: Structure, situation: Situations, loading: Loading | Non
             GearRadial(
                 r.name,
                 r.matrix,
-                r.centre,
+                centre,
                 source := _source(structure, situation, r),
                 {} if isinstance(source, RadialLaw | RollingLaw) else levers(r.gear),
                 gear=r.gear,
             )
-            for r in structure.radials
+            for r, centre in zip(structure.radials, centres, strict=True)
         ),
         rotation=structure.coordinates.rotation,
         turned=dict(zip(structure.train.gears, turned, strict=True)),

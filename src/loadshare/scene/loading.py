@@ -141,7 +141,8 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
     gaps.append((columns.stops, situations.stop.reshape(len(situations.stop), -1)))
     walls = np.repeat(situations.wall, 2, axis=1)
     bends += [(columns.stops, walls), (columns.arcs, walls)]
-    gaps.append((columns.radials, structure.centres))
+    centres = structure.centres(situations)
+    gaps.append((columns.radials, centres.reshape(len(centres), -1)))
     tabulated = np.full(len(structure.names), -1)
     if situations.table.shape[-1]:
         has = situations.table[0, :, 0, 1] > 0.0

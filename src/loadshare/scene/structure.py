@@ -120,8 +120,6 @@ class RadialElement:
         Of the round ring or spline.
     matrix : ndarray, shape (2, n)
         P.
-    centre : ndarray, shape (2,)
-        m [m].
     """
 
     name: str
@@ -129,7 +127,6 @@ class RadialElement:
     kind: str
     number: int
     matrix: Array
-    centre: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,11 +267,6 @@ class Structure:
         return np.array([self.coordinates.turned((gear, 1.0)) for gear in self.train.gears])
 
     @cached_property
-    def centres(self) -> Array:
-        """Centres of the radial elements, side by side, shape (1, 2 radials) [m]."""
-        return np.array([c for r in self.radials for c in r.centre])[None]
-
-    @cached_property
     def nominal(self) -> Array:
         """Vectors from the neighbours' centres to the arcs' own, at rest, shape (arcs, 3) [m]."""
         gears, rings = self.train.gears, [(a.ring, a.ring.neighbours[a.side]) for a in self.arcs]
@@ -312,6 +304,18 @@ class Structure:
         if self._lags:
             near = near + self.turned(situations) @ self.turning.T
         return np.asarray(situations.gap - near)
+
+    def centres(self, situations: Situations) -> Array:
+        """Return the centres m of the radial elements, shape (S or 1, radials, 2) [m]."""
+        train, offset = self.train, situations.round_offset
+        found = np.zeros((len(offset), len(self.radials), 2))
+        for j, radial in enumerate(self.radials):
+            frame = train.gears[radial.gear].frame
+            if radial.kind == "ring":
+                found[:, j] = offset[:, radial.number] @ frame.T
+            elif radial.kind == "friction" and train.slip is not None:
+                found[:, j] = frame @ train.slip[radial.gear]
+        return found
 
     @cached_property
     def _approach_per_offset_sparse(self) -> Any:
@@ -459,17 +463,14 @@ def _flank(at: Coordinates, train: Train, mesh: Mesh, drive: bool) -> tuple[str,
 
 def _radials(train: Train, at: Coordinates) -> Iterator[RadialElement]:
     """Yield round rings, then splines, each as one element or, with memory, as two."""
-    origin = np.zeros(2)
     for k, ring in enumerate(train.rounds):
         moved = at.components(at.displacement[ring.gear])
-        centre = train.gears[ring.gear].frame @ ring.offset
-        yield RadialElement(ring.name, ring.gear, "ring", k, moved, centre)
+        yield RadialElement(ring.name, ring.gear, "ring", k, moved)
     for k, (gear, spline) in enumerate(train.splines.items()):
         if train.slip is None:
             moved = at.components(at.displacement[gear])
-            yield RadialElement(spline.name, gear, "spline", k, moved, origin)
+            yield RadialElement(spline.name, gear, "spline", k, moved)
             continue
         slipped = at.components(at.slip[gear])
-        before = train.gears[gear].frame @ train.slip[gear]
-        yield RadialElement(spline.name, gear, "friction", k, slipped, before)
-        yield RadialElement(spline.stop_name, gear, "clearance", k, slipped, origin)
+        yield RadialElement(spline.name, gear, "friction", k, slipped)
+        yield RadialElement(spline.stop_name, gear, "clearance", k, slipped)

@@ -35,6 +35,8 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
     match column.path:
         case ("operating", "torque" | "power" | "speed") | ("operating", "external", _):
             return True
+        case ("operating", "torque" | "power", int()):
+            return True
         case ("operating", "forces", _, int()) | ("operating", "gravity", int()):
             return True
         case ("errors", gear, "installation", "amount" | "direction"):
@@ -50,7 +52,7 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
             return not isinstance(case.rings[str(gear)].float_, spec.Backlashes)
         case ("rings", _, "clearance") | ("rings", _, "clearance", int()) | ("rings", _, "radius"):
             return True
-        case ("bearings", _, "clearance"):
+        case ("bearings", _, "clearance") | ("rings" | "bearings", _, "offset", int()):
             return True
         case ("rings", ring, "stiffness"):
             return column.is_positive and not isinstance(case.rings[str(ring)].stiffness, str)
@@ -73,7 +75,10 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
             return column.has_numbers and not words
         case ("shafts", _, "clocking"):
             return True
-        case ("gears", gear, "support"):
+        case ("shafts", _, "diameter" | "length" | "shear_modulus", *_):
+            # Bores are left out: only with its own diameter can each be judged.
+            return column.is_positive
+        case ("gears", gear, "support") | ("gears", gear, "support", int()):
             return column.is_positive and not isinstance(case.gears[str(gear)].support, str)
         case ("gears", _, "support", "radial" | "tangential"):
             return True

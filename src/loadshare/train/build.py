@@ -7,7 +7,7 @@ both.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -124,7 +124,7 @@ def train_of(
         return made.closer(flank_growth(case, pair)) if warm else made
 
     def bearing_of(name: str, bearing: spec.Bearing) -> Bearing:
-        offset = np.array([q.si for q in bearing.offset]) @ gears[name].plane
+        offset = _side_by_side(bearing.offset) @ gears[name].plane
         made = Bearing(name, bearing.clearance.si, offset, *bearing.wall)
         return fitted(case, made, gears[name]) if warm else made
 
@@ -167,12 +167,11 @@ def _supported(case: spec.Case, gears: Mapping[str, Gear], name: str) -> Gear:
         return replace(gear, support=np.zeros(2) if given == "free" else None)
     if isinstance(given, spec.PinSupport):
         outwards = gear.frame @ (gear.centre - gears[str(gear.carrier)].centre)
-        both = np.broadcast_arrays(given.radial.si, given.tangential.si)
-        stiffness = np.stack(both, axis=-1)
+        stiffness = _side_by_side((given.radial, given.tangential))
         return _seen_along(gear, math.atan2(outwards[1], outwards[0]), stiffness)
     rows = given if isinstance(given, tuple) else (given, given)
-    if alike := [k.si for k in rows if isinstance(k, spec.Quantity)]:
-        return replace(gear, support=np.stack(alike, axis=-1))
+    if alike := [k for k in rows if isinstance(k, spec.Quantity)]:
+        return replace(gear, support=_side_by_side(alike))
     matrix = np.array([[k.si for k in row] for row in rows if isinstance(row, tuple)])
     stiffness, _ = np.linalg.eigh(0.5 * (matrix + matrix.T))
     twice = math.atan2(matrix[0, 1] + matrix[1, 0], matrix[0, 0] - matrix[1, 1])
@@ -186,6 +185,11 @@ def _seen_along(gear: Gear, angle: float, support: Array) -> Gear:
     """Return a gear with its frame turned by an angle, and its stiffnesses along the new frame."""
     ways = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     return replace(gear, support=support, frame=ways @ gear.frame)
+
+
+def _side_by_side(numbers: Sequence[spec.Quantity]) -> Array:
+    """Return numbers in SI units as one array, (…, numbers)."""
+    return np.stack(np.broadcast_arrays(*(number.si for number in numbers)), axis=-1)
 
 
 def _each(value: spec.Quantity | tuple[spec.Quantity, ...] | None) -> tuple[spec.Quantity, ...]:
@@ -270,7 +274,7 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
     gear = gears[name]
     stiffness = math.inf if isinstance(ring.stiffness, str) else ring.stiffness.si
     if ring.radius is not None:
-        offset = np.array([q.si for q in ring.offset]) @ gear.plane
+        offset = _side_by_side(ring.offset) @ gear.plane
         return RoundRing(name, ring.radius.si, offset, stiffness)
     first, second = (gears[n] for n in ring.neighbours or ())
     along = transverse(second.centre - first.centre, gear.axis)

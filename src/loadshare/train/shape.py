@@ -93,7 +93,7 @@ def _ring(ring: Ring) -> tuple[Any, ...]:
         play = tuple(p > 0.0 for p in (*ring.clearances, ring.up, ring.down))
         drum = (ring.neighbours, _bytes(ring.across), rigid, ring.with_errors)
         return (ring.gear, *drum, *play)
-    round_ = (_bytes(ring.offset), rigid, ring.power, ring.radius > 0.0)
+    round_ = (rigid, ring.power, ring.radius > 0.0)
     return (ring.gear, isinstance(ring, Bearing), *round_)
 
 

@@ -63,6 +63,8 @@ class Situations:
         c_x towards each neighbour; h1 and h2 [m].
     wall : ndarray, shape (S or 1, drums)
         Compliance of a drum's contacts [m/N]; 0 for a rigid ring.
+    round_offset : ndarray, shape (S or 1, rounds, 3)
+        Centres of round rings, bearings included, relative to O [m].
     round_radius, round_stiffness, round_power : ndarray, shape (S or 1, rounds)
         [m], [N/m^power], [-].
     spline : ndarray, shape (S or 1, splines, 5)
@@ -87,6 +89,7 @@ class Situations:
     arc_clearance: Array
     stop: Array
     wall: Array
+    round_offset: Array
     round_radius: Array
     round_stiffness: Array
     round_power: Array
@@ -213,6 +216,7 @@ def _lasting(train: Train) -> dict[str, Array]:
         "arc_clearance": _rows([r.clearances for r in drums], 2),
         "stop": _rows([(r.up, r.down) for r in drums], 2),
         "wall": _table([1.0 / r.stiffness for r in drums]),
+        "round_offset": _table([r.offset for r in rounds], 3),
         "round_radius": _table([r.radius for r in rounds]),
         "round_stiffness": _table([r.stiffness for r in rounds]),
         "round_power": _table([r.power for r in rounds]),

@@ -113,12 +113,12 @@ class Claim:
     def _gaps(self) -> Array:
         """Return gaps, limits and centres, shape (S or 1, m) [m]."""
         columns, train, here = self.columns, self.columns.train, self.situations
-        rows = max(len(here.gap), len(here.stop), len(here.offset))
+        rows = max(map(len, (here.gap, here.stop, here.offset, here.round_offset)))
         gaps = np.zeros((rows, len(columns.names)))
         gaps[:, columns.flanks] = here.gap
         gaps[:, columns.stops] = here.stop.reshape(len(here.stop), -1)
         for q, ring in enumerate(train.rounds):
-            gaps[:, columns.both(q)] = train.gears[ring.gear].frame @ ring.offset
+            gaps[:, columns.both(q)] = here.round_offset[:, q] @ train.gears[ring.gear].frame.T
         if train.slip is not None:
             for q, gear in enumerate(train.splines, columns.claims.splines.start):
                 gaps[:, columns.both(q)] = train.gears[gear].frame @ train.slip[gear]

@@ -35,7 +35,6 @@ class Layout(NamedTuple):
     spring: Numbers  # (springs, 3): column, shaft or gear, axis (2 for a shaft)
     spring_arm: Array
     pull_gear: Numbers  # (q,)
-    centre: Array  # (q, 2)
     moment: Array  # (k, e): torque over a spline per force
     rounds: int
     turn: Numbers  # (turns, 2): coordinate, gear
@@ -155,9 +154,6 @@ def layout_of(columns: Columns, spring: Numbers, spring_arm: Array, pushed: bool
         spring,
         spring_arm,
         of.pulled,
-        np.array([frames[g] @ c for g, c in zip(of.pulled, of.centres, strict=True)]).reshape(
-            -1, 2
-        ),
         columns.moments,
         len(train.rounds),
         pairs([t[:2] for t in turns]),

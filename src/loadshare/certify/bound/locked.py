@@ -153,7 +153,7 @@ def _held(here: Situations, held: Train, gears: Iterable[str], moved: Array) -> 
     splines = [gear not in gears for gear in train.splines]
     kept = {
         **dict.fromkeys(("arc_shift", "arc_clearance", "stop", "wall"), drums),
-        **dict.fromkeys(("round_radius", "round_stiffness", "round_power"), rounds),
+        **dict.fromkeys(("round_offset", "round_radius", "round_stiffness", "round_power"), rounds),
         "spline": splines,
     }
     arrays = {name: getattr(here, name)[:, keep] for name, keep in kept.items()}

@@ -16,6 +16,7 @@ from loadshare.certify.bound.kernel.abreast import (
     put_rows,
     put_sizes,
     put_sum,
+    row_of,
 )
 from loadshare.certify.bound.kernel.laws import (
     law_of,
@@ -226,8 +227,13 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
     longest, lawful, covered = 0.0, True, True
     for q in range(len(of.pull_gear)):
         g, j, rate = of.pull_gear[q], of.first_pull + 2 * q, 0.0
-        x, y = work.length[j, v] - of.centre[q, 0], work.length[j + 1, v] - of.centre[q, 1]
-        fx, fy, lifting = 0.0, 0.0, 0.0
+        fx, fy, lifting, off_x, off_y = 0.0, 0.0, 0.0, 0.0, 0.0
+        if q < of.rounds:
+            r = row_of(here.round_offset, s)
+            for i in range(3):
+                off_x += of.frame[g, 0, i] * here.round_offset[r, q, i]
+                off_y += of.frame[g, 1, i] * here.round_offset[r, q, i]
+        x, y = work.length[j, v] - off_x, work.length[j + 1, v] - off_y
         for i in range(3):
             fx -= of.frame[g, 0, i] * claim.radial_reaction[s, q, i]
             fy -= of.frame[g, 1, i] * claim.radial_reaction[s, q, i]
@@ -273,7 +279,7 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
         else:
             fx, fy = 0.0, 0.0
             work.room[v] = min(work.room[v], reach - distance)
-        longest = max(longest, abs(of.centre[q, 0]) + abs(of.centre[q, 1]) + distance)
+        longest = max(longest, abs(off_x) + abs(off_y) + distance)
         work.force[j, v], work.force[j + 1, v] = fx, fy
         work.excess[2 * q, v], work.excess[2 * q + 1, v] = claimed_x - fx, claimed_y - fy
         for k in range(len(law)):
