@@ -15,11 +15,12 @@ from tests.tooth.ltca.hertz import compression
 from loadshare.errors import Refused
 from loadshare.tooth.analysis.ltca import PairCompliance, ltca
 from loadshare.tooth.compliance.block import Divisions
-from loadshare.tooth.compliance.finite import FiniteElements
+from loadshare.tooth.compliance.finite import FiniteElements, default_divisions
 from loadshare.tooth.compliance.interface import Flank
 from loadshare.tooth.compliance.middle import MiddleSurface
 from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.contact.strips import contact_modulus, half_width
+from loadshare.tooth.cylindrical.body import HelicoidBody
 from loadshare.tooth.cylindrical.build import helicoid_pair
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 
@@ -160,6 +161,21 @@ def test_mesh_refinement():
 
 def test_a_deeper_rim_yields_more():
     assert even(thin(), 0.8) < even(finite(), 0.8)
+
+
+@pytest.mark.parametrize("heights", [8.0, pytest.param(20.0, marks=pytest.mark.slow)])
+def test_deep_rims_have_as_many_elements_as_they_need(heights):
+    """A ring gear held at 8 and 20 tooth heights, against twice as many elements into the rim: the
+    default is within 2 %. With three elements it would be 4 and 11 % too stiff.
+    """
+    ring = HelicoidGear(5e-3, 80, 20e-3, tip_radius=0.25, addendum=0.8, internal=True)
+    body = HelicoidBody(replace(ring, rim=ring.root + heights * (ring.root - ring.tip)))
+    usual = default_divisions(body)
+    finer = replace(usual, rim=2 * usual.rim, growth=math.sqrt(usual.growth))
+    found = [
+        even(FiniteElements(body, -1, divisions=replace(n, width=2)), 0.8) for n in (usual, finer)
+    ]
+    assert found[0] == pytest.approx(found[1], rel=0.02)
 
 
 RIMS = {"thin": (0.045, thin), "middling": (0.035, finite), "deep": (0.02, deep)}

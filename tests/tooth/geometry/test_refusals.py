@@ -95,6 +95,7 @@ def test_tips_that_find_no_room_for_want_of_distance(distance, told):
         (lambda: helicoid_pair(gear(module=-1.0), gear(3)), {"driver.module", "driven.teeth"}),
         (lambda: face_pair(inner=0.44, outer=0.60), {"driven.inner", "driven.outer"}),
         (lambda: face_pair(inner=0.515), {"driven.inner"}),
+        (lambda: face_gear_pair(PINION, replace(face_gear(), rim=300.0)), {"driven.rim"}),
         (lambda: face_pair(29), {"driver.teeth"}),
         (lambda: face_gear_pair(PINION, FaceGear(160, Shaper(6.35e-3, 28, math.radians(25.0)),
                                                  0.48, 0.53, addendum=1.3)),

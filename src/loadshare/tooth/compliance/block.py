@@ -20,7 +20,7 @@ involute and fillet closely.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -33,8 +33,6 @@ from loadshare.tooth.geometry.body import Array, turned
 
 Index = NDArray[np.int64]
 
-GROWTH = 2.0
-"""Ratio of the depths of neighbouring elements, from the root into the rim."""
 ONE_PLACE = 1e-7
 """Distance, over the size of a section, within which nodes of neighbouring blocks are merged."""
 
@@ -55,6 +53,8 @@ class Divisions:
         Into the rim.
     width : int
         Over the face width.
+    growth : float
+        Ratio of the depths of neighbouring elements, from the root into the rim.
     """
 
     across: int = 4
@@ -63,10 +63,11 @@ class Divisions:
     root: int = 2
     rim: int = 3
     width: int = 10
+    growth: float = 2.0
 
     def coarser(self) -> Divisions:
         """Return the divisions of a tooth that carries no load; rim and width must fit."""
-        return Divisions(2, max(2, self.flank // 2), 1, 1, self.rim, self.width)
+        return replace(self, across=2, flank=max(2, self.flank // 2), fillet=1, root=1)
 
     def heights(self, middle: MiddleSurface) -> Array:
         """Return the z of a tooth's nodes, from the rim's free side to the tip."""
@@ -81,7 +82,7 @@ class Divisions:
 
     def depths(self) -> Array:
         """Return the places of the nodes between root (0) and free side of the rim (1)."""
-        ends = np.concatenate([[0.0], np.cumsum(GROWTH ** np.arange(self.rim))])
+        ends = np.concatenate([[0.0], np.cumsum(self.growth ** np.arange(self.rim))])
         ends /= ends[-1]
         nodes = np.arange(2 * self.rim + 1)
         return np.asarray(np.interp(nodes, nodes[::2], ends))

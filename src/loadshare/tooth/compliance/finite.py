@@ -16,6 +16,9 @@ from loadshare.tooth.geometry.body import Array, ToothBody, turned
 
 REACH = 4.0
 """Distance from the loaded tooth to the cut, in rim depths."""
+COARSEST, STEEP = 0.65, 3.0
+"""Largest depth of the rim's elements next to the root, over the height of a flank; growth of the
+elements' depths where more than the usual number would be required."""
 
 
 class FiniteElements(Compliance):
@@ -125,10 +128,8 @@ def most_teeth(teeth: int) -> int:
 
 def _bare_rim(body: ToothBody, teeth: int) -> list[int]:
     """Return lengths of the rim's elements, growing by a pitch, to the cut four rim depths away."""
-    space = np.stack([body.outline(0.0, 0.5, side) for side in (-1, 1)])
-    pitch = float(np.linalg.norm(space[1] - space[0]))
-    depth = float(np.linalg.norm(under(body, space)[0] - space[0]))
-    wanted = int(np.ceil(REACH * depth / pitch)) - teeth // 2
+    pitch = float(np.linalg.norm(body.outline(0.0, 0.5, 1) - body.outline(0.0, 0.5, -1)))
+    wanted = int(np.ceil(REACH * _rim_depth(body) / pitch)) - teeth // 2
     left = max(0, min(wanted, (body.gear.teeth - teeth - 1) // 2))
     lengths: list[int] = []
     while left > 0:
@@ -140,9 +141,22 @@ def _bare_rim(body: ToothBody, teeth: int) -> list[int]:
 
 
 def default_divisions(body: ToothBody) -> Divisions:
-    """Return divisions with 5 to 12 layers, each about as deep as a flank is high."""
+    """Return divisions with 5 to 12 layers, each about as deep as a flank is high.
+
+    A deep rim has more elements than a shallow one: with too deep an element next to the root, the
+    body would be too stiff.
+    """
     w = np.array([0.0, 1.0])
     ends = body.outline(np.full(2, body.foot), w, 1)
     height = np.linalg.norm(body.outline(1.0, 0.5, 1) - body.outline(body.foot, 0.5, 1))
     layers = int(np.clip(np.ceil(1.2 * np.linalg.norm(ends[1] - ends[0]) / height), 5, 12))
-    return replace(Divisions(), width=layers)
+    n = Divisions()
+    while n.depths()[2] * _rim_depth(body) > COARSEST * height:
+        n = replace(n, rim=n.rim + 1, growth=STEEP)
+    return replace(n, width=layers)
+
+
+def _rim_depth(body: ToothBody) -> float:
+    """Return how deep the body is below the middle of a root space [m]."""
+    space = body.outline(0.0, 0.5, 1)[None]
+    return float(np.linalg.norm(under(body, space) - space))

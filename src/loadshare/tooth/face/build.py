@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from loadshare.errors import Problem
 from loadshare.involute import inv
-from loadshare.settings import TEETH
+from loadshare.settings import ALLOWED, TEETH
 from loadshare.tooth.cylindrical.checks import (
     elasticity_checks,
     gear_problems,
@@ -84,7 +84,9 @@ def _values(gear: FaceGear) -> Iterator[Check]:
     yield "outer", gear.outer, gear.outer > gear.inner, beyond
     yield "shaft_angle", gear.shaft_angle, low < gear.shaft_angle < high, "between 30 and 150 deg"
     yield "addendum", gear.addendum, shaper.addendum > -gear.addendum, "a tip above the root"
-    yield "rim", rim, rim > 0.0, "more than 0"
+    # The deeper a body, the more harmonics its model sums.
+    deepest = ALLOWED.shape * shaper.module
+    yield "rim", rim, 0.0 < rim <= deepest, f"more than 0, up to {millimetres(deepest, down)}"
     yield from elasticity_checks(gear.youngs_modulus, gear.poisson)
     yield "shaper.module", shaper.module, shaper.module > 0.0, "more than 0"
     yield "shaper.teeth", shaper.teeth, shaper.teeth >= 4, "a whole number, 4 or more"

@@ -66,7 +66,7 @@ ROUNDED = 1e-3
 SIDEWAYS = 11.4
 """How much more helical teeth yield than slices, over (sin β_b m/b)² (docs/ltca.md)."""
 SLICES = 0.05
-"""Amount from which that is reported: slices have an error of 2 to 6 % anyway."""
+"""Amount from which that is reported: slices have an error of 2 to 7 % anyway."""
 
 
 class Stamp(Element):
