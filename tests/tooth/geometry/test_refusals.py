@@ -63,6 +63,11 @@ def test_tips_that_find_no_room_for_want_of_distance(distance, told):
     assert hints == {"Without backlash, the centre distance would be 77 mm." if told else ""}
 
 
+def test_teeth_that_are_too_far_apart_are_told_the_distance_that_fits():
+    with pytest.raises(CaseError, match=r"Without backlash, the centre distance would be 77 mm\."):
+        helicoid_pair(gear(), gear(53), 0.77)
+
+
 @pytest.mark.parametrize(
     ("build", "expected"),
     [

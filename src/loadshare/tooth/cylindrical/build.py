@@ -174,7 +174,7 @@ def _mesh_problems(pair: HelicoidPair) -> Iterator[Problem]:
         yield problem("misalignment.axial_shift", millimetres(shift), apart, allowed)
     elif not found:
         hint = "Larger addenda, a smaller centre distance or a wider helical gear raise it."
-        yield from ratio_problems(pair, hint)
+        yield from ratio_problems(pair, f"{hint} {_apart(pair, -1)}".strip())
 
 
 def _tip_problems(
@@ -189,20 +189,23 @@ def _tip_problems(
         largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
         cuts = f"the tip of this gear cuts into the root fillet of the {name}"
         allowed = f"at most {digits(down(largest))}"
-        yield problem(key, other.addendum, cuts, allowed, _too_near(pair))
+        yield problem(key, other.addendum, cuts, allowed, _apart(pair, 1))
     clearance = root_clearance(gear, other, pair.actual_distance)
     if clearance <= 0.0:
         allowed = f"less than {digits(down(other.addendum + clearance / other.module))}"
         runs = f"the tip of this gear runs into the root of the {name}"
-        yield problem(key, other.addendum, runs, allowed, _too_near(pair))
+        yield problem(key, other.addendum, runs, allowed, _apart(pair, 1))
 
 
-def _too_near(pair: HelicoidPair) -> str:
-    """Return a hint with the distance without backlash if the gears are closer than that."""
+def _apart(pair: HelicoidPair, way: int) -> str:
+    """Return a hint with the distance without backlash, if the teeth are on one side of it.
+
+    `way` is 1 for teeth that are too near to each other, −1 for teeth that are too far apart.
+    """
     gears = pair.driver_gear, pair.driven_gear
     with suppress(ValueError):  # there may be no distance without backlash
         fits = distance_without_backlash(*gears)
-        if pair.kind * (fits - pair.actual_distance) > TEETH.fits * fits:
+        if way * pair.kind * (fits - pair.actual_distance) > TEETH.fits * fits:
             return f"Without backlash, the centre distance would be {millimetres(fits)}."
     return ""
 
