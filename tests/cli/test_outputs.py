@@ -231,6 +231,18 @@ def test_a_dash_is_stdout_and_messages_go_to_stderr():
     assert not Path(STANDARD).exists()
 
 
+def test_a_file_that_cannot_be_written_does_not_keep_others_from_being_written(tmp_path):
+    (tmp_path / "taken").write_text("")
+    lost = [tmp_path / "taken" / name for name in ("a.csv", "b.json")]
+    kept = [tmp_path / name for name in ("c.csv", "d.json")]
+    files = [word for file in (lost[0], kept[0], lost[1], kept[1]) for word in ("-o", file)]
+    done = call("sweep", CASE, "--over", "operating.torque=1 N*m, 2 N*m", "--position", 1, *files)
+    assert done.exit_code == 2
+    assert all(file.stat().st_size for file in kept)
+    said = [line for line in done.stderr.splitlines() if "cannot be written" in line]
+    assert [line.partition(": ")[0] for line in said] == [str(file) for file in lost]
+
+
 EVERY = ("base.toml", "case.toml", "link.html")
 
 

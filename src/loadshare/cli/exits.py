@@ -122,9 +122,14 @@ def writing(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        # For a folder, the file in it.
-        file = error.filename if isinstance(error, NotWritten) else path
-        fail([f"{file}: {unwritten(error)}"], UNUSABLE)
+        fail([unwritten_line(path, error)], UNUSABLE)
+
+
+def unwritten_line(path: Path, error: OSError) -> str:
+    """Return the message for a file that could not be written, with its name."""
+    # For a folder, the file in it.
+    file = error.filename if isinstance(error, NotWritten) else path
+    return f"{file}: {unwritten(error)}"
 
 
 def unwritten(error: OSError) -> str:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from loadshare.cli.exits import UNUSABLE, fail, writing
+from loadshare.cli.exits import UNUSABLE, fail, unwritten_line
 from loadshare.cli.files import print_written
 from loadshare.cli.options import OUTPUT
 from loadshare.cli.waiting import erase_line
@@ -162,25 +162,32 @@ def outputs(*forms: str, what: str = "Write the answer") -> Any:
 def write_all(wanted: Iterable[Output] | None, makers: Makers, *, err: bool = True) -> None:
     """Write the files asked for, each whole or not at all, and report them on stderr or stdout.
 
+    A file that cannot be written does not keep the others from being written.
+
     Raises
     ------
     typer.Exit
-        If one cannot be made or written.
+        If one cannot be made or written; the message names each of them.
     """
+    lost = []
     for output in wanted or ():
         try:
-            with writing(output.file):
-                content = makers[output.form]()
-                erase_line()
-                write_whole(output.file, content)
+            content = makers[output.form]()
+            erase_line()
+            write_whole(output.file, content)
         except LoadshareError as error:
-            fail([f"{output.file}: not written: {error}"], UNUSABLE)
+            lost.append(f"{output.file}: not written: {error}")
         except ModuleNotFoundError as error:
             if error.name != "openpyxl":
                 raise
             hint = "Install it with: pip install 'loadshare[spreadsheet]'."
-            fail([f"{output.file}: a workbook needs openpyxl to be written. {hint}"], UNUSABLE)
-        print_written(output.file, "" if err else ".", err=err)
+            lost.append(f"{output.file}: a workbook needs openpyxl to be written. {hint}")
+        except OSError as error:
+            lost.append(unwritten_line(output.file, error))
+        else:
+            print_written(output.file, "" if err else ".", err=err)
+    if lost:
+        fail(lost, UNUSABLE)
 
 
 def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:

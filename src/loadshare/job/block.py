@@ -55,7 +55,7 @@ class Block:
     rung : ndarray of int8, shape (S, positions)
         Number in `RUNGS` of the rung that answered.
     message : dict of (row, position) to str
-        Why there is no answer.
+        Why there is no answer; the position is not repeated in the text.
     """
 
     rows: Numbers
@@ -189,7 +189,8 @@ class _Open:
         for name in ("certified", "rung", "residual", "bound", "displaced"):
             getattr(block, name)[row, p] = UNANSWERED[name]
         self.equilibria[p].forget(row)
-        block.message[int(block.rows[row]), block.positions[p]] = why
+        position = block.positions[p]
+        block.message[int(block.rows[row]), position] = why.removeprefix(f"position {position}: ")
 
 
 def solve_block(
@@ -234,7 +235,7 @@ def solve_block(
         except (CaseError, Refused) as refusal:
             open_.refuse(row, p, str(refusal))
     for (row, p), why in _too_far(open_).items():
-        open_.refuse(row, p, f"position {positions[p]}: {why}")
+        open_.refuse(row, p, why)
     for chunk in open_.chunks:
         train, answers = chunk.machine.train, chunk.equilibria
         block.arc_curvature[:, chunk.columns] = open_.by_sample(arc_curvature(train, answers))

@@ -88,8 +88,7 @@ EACH = {
 def _refused(where: tuple[int, int], why: str) -> str:
     """Return a line that says why a sample has no answer at a position."""
     sample, position = where
-    reason = " ".join(why.splitlines()).removeprefix(f"position {position}: ")
-    return f"sample {sample}, position {position}: {reason}"
+    return f"sample {sample}, position {position}: {' '.join(why.splitlines())}"
 
 
 def _displacements(answers: Equilibria, gears: list[str]) -> Array:

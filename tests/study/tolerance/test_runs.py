@@ -309,6 +309,7 @@ def test_other_settings_are_reported(tmp_path):
     message = str(caught.value)
     for part in ("seed: 3 there, 4 requested", "case_hash", "normal mean 0 deviation 1 mrad there"):
         assert part in message, part
+    assert '  operating.torque: "367 N*m" there, "300 N*m" requested' in message.splitlines()
     assert "samples:" not in message
     about = json.loads((out / "study.json").read_text(encoding="utf-8"))
     assert about["settings"]["seed"] == 3
@@ -392,6 +393,22 @@ def test_what_a_worker_cannot_write_is_reported(tmp_path, processes):
     )
     with pytest.raises(ls.LoadshareError, match=message):
         run(out, samples=64)
+
+
+def test_a_refused_sample_names_each_position_once():
+    far = {"distribution": "uniform", "low": "60 mm", "high": "80 mm"}
+    found = ls.tolerance(
+        shipped("fgfbstts/limit_ring"),
+        {"errors.6.installation[0]": far},
+        samples=1,
+        indices=0,
+        worst=False,
+        positions=[2, 3],
+    )
+    (message,) = found.to_frame()["message"]
+    lines = message.splitlines()
+    assert [line.partition(": ")[0] for line in lines] == ["position 2", "position 3"]
+    assert all(line.count("position") == 1 for line in lines)
 
 
 @pytest.mark.slow

@@ -6,11 +6,16 @@ import hashlib
 import json
 import logging
 import os
+import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from loadshare.case.content import ABOUT
+from loadshare.case.keys import dotted
+from loadshare.case.revise import differing as differences
+from loadshare.case.words import as_given, count
 from loadshare.errors import LoadshareError, Problem, ResultError
 from loadshare.libraries import pa, parquet, pd
 from loadshare.lock import LOCK
@@ -25,6 +30,8 @@ log = logging.getLogger("loadshare")
 
 STUDY = "study.json"
 WORST = "worst.json"
+KEYS = 10
+"""Number of keys in which two cases differ that are listed one by one."""
 PART_DIGEST = b"loadshare.sha256"
 """Key of a part's metadata for the digest of its content."""
 
@@ -62,6 +69,7 @@ class Folder:
             known = json.loads((path / STUDY).read_text(encoding="utf-8"))
             whole = known.get(DIGEST) == digest_of(known)
             apart = differing(known["settings"], json.loads(json.dumps(job.settings)))
+            apart += _differing_keys(known["text"], job.text) if apart else []
         except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise LoadshareError(
                 f"{path / STUDY}: is damaged or cannot be read ({error}). Put the original file "
@@ -240,6 +248,19 @@ def differing(known: dict[str, Any], wanted: dict[str, Any]) -> list[str]:
         else:
             lines.append(f"  {key}: {_short(one)} there, {_short(other)} requested")
     return lines
+
+
+def _differing_keys(known: str, wanted: str) -> list[str]:
+    """Return a line for each of the first keys in which the texts of two cases differ."""
+    every = differences(tomllib.loads(known), tomllib.loads(wanted))
+    found = [
+        f"  {dotted(path)}: {as_given(there) or 'nothing'} there, "
+        f"{as_given(here) or 'nothing'} requested"
+        for path, there, here in every
+        if path[0] not in ABOUT
+    ]
+    more = len(found) - KEYS
+    return found[:KEYS] + ([f"  and {count(more, 'further key')}"] if more > 0 else [])
 
 
 def _differing_inputs(known: Iterable[Any], wanted: Iterable[Any]) -> list[str]:
