@@ -80,7 +80,14 @@ class Refused(LoadshareError):  # noqa: N818 -- an answer is refused; nothing we
         The figures that failed, by name.
     partial : object, optional
         The result of what was certified nevertheless, such as the other positions of a case.
+
+    Attributes
+    ----------
+    study : object
+        What a study found before, such as the steps of a march; None if it found nothing.
     """
+
+    study: Any = None
 
     def __init__(
         self,

@@ -1,6 +1,7 @@
 """The commands of studies: their output and files, and how they end."""
 
 import csv
+import json
 import re
 from pathlib import Path
 
@@ -167,6 +168,41 @@ def test_march(command, tmp_path):
     with table.open(encoding="utf-8") as lines:
         turned = {row["position"]: float(row["revolutions"]) for row in csv.DictReader(lines)}
     assert turned == {"1": 0.0, "2": 0.25, "3": 0.5, "4": 0.75}
+
+
+@pytest.mark.parametrize("words", [("march",), ("study", "way")], ids=["march", "study"])
+def test_a_refused_step_of_a_march_keeps_those_before_it(command, tmp_path, words):
+    """The third torque presses the teeth further than they are high."""
+    shipped = (CASES / "fgfbstts/full_float.toml").as_posix()
+    case = tmp_path / "case.toml"
+    case.write_text(
+        f"""extends = "{shipped}"
+remove = ["operating.power", "operating.speed", "operating.positions"]
+[operating]
+torque = ["1000 N*m", "2000 N*m", "4000 kN*m", "1000 N*m"]
+[march]
+gear = "4"
+revolutions = 1.0
+steps = 4
+[study.way]
+kind = "march"
+""",
+        encoding="utf-8",
+    )
+    kind, *name = words
+    files = [tmp_path / file for file in ("march.csv", "march.json")]
+    result = command(kind, case, *name, "--allow-outside", "-o", files[0], "-o", files[1])
+    assert result.exit_code == 1
+    assert "REFUSED  2 of 4 positions certified" in result.stdout
+    assert "dissipated [J]" in result.stdout
+    refused, last = result.stderr.splitlines()[-2:]
+    assert refused.startswith("REFUSED  position 3: the displacements are too large")
+    assert last == "2 steps of 4 certified; each needs the one before."
+    with files[0].open(encoding="utf-8") as lines:
+        assert {row["position"] for row in csv.DictReader(lines)} == {"1", "2"}
+    document = json.loads(files[1].read_text(encoding="utf-8"))
+    assert f"REFUSED  {document['refused']}" == refused
+    assert {row["position"] for row in document["rows"]} == {1, 2}
 
 
 def test_compare_and_fit(command, measured, tmp_path):

@@ -163,10 +163,17 @@ def test_a_refused_step_leaves_those_before_it(monkeypatch):
             raise ls.Refused(f"position {index}: for the test")
         return stepped(train, index, ways)
 
+    complete = ls.march(floating())
     monkeypatch.setattr(room, "stepped", fails)
     with pytest.raises(ls.Refused, match="position 3") as caught:
         ls.march(floating())
     assert [p.position for p in caught.value.partial.positions] == [1, 2]
+    left, whole = caught.value.study, complete
+    assert (left.revolutions, left.gear) == (whole.revolutions[:2], whole.gear)
+    assert left.slips == whole.slips[:2]
+    assert list(left.dataset.position) == [1, 2]
+    assert left.refused == "position 3: for the test"
+    assert whole.refused == ""
 
 
 def test_what_solved_the_step_before_does_not_change_a_step(monkeypatch):

@@ -17,6 +17,7 @@ import numpy as np
 
 from loadshare.case import Case
 from loadshare.case.reader import opened
+from loadshare.case.words import count
 from loadshare.equality import Comparable
 from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
@@ -76,12 +77,15 @@ class March(Viewed):
         Reference gear.
     slips : tuple of mapping of gear to Slip
         One per step.
+    refused : str
+        Why the step after the last one was refused; empty if the march is complete.
     """
 
     result: Result
     revolutions: tuple[float, ...]
     gear: str
     slips: tuple[dict[str, Slip], ...]
+    refused: str = ""
 
     @property
     def dissipated(self) -> float:
@@ -119,9 +123,10 @@ class March(Viewed):
         """Show how far the march went, how load was shared, and what the splines dissipated."""
         result, steps = self.result, len(self.revolutions)
         last = self.revolutions[-1] if steps else 0.0
+        which = f"{steps} of {len(result.stamp.positions)}" if self.refused else "all"
         facts = (
             ("way", f"{steps} steps, {last:g} revolutions of gear {self.gear}"),
-            ("certified", f"all steps, worst residual {result.certificate.worst:.1e}"),
+            ("certified", f"{which} steps, worst residual {result.certificate.worst:.1e}"),
             ("largest Ω", by_name(result.omega)),
             ("dissipated", f"{self.dissipated:.4g} J"),
         )
@@ -136,6 +141,12 @@ class March(Viewed):
         )
         columns = ("spline", "steps", "dissipated [J]")
         return View(f"March of {result.stamp.case}", facts, columns, rows)
+
+    def _left_open(self) -> list[str]:
+        lines = [f"REFUSED  {line}" for line in self.refused.splitlines()]
+        total = len(self.result.stamp.positions)
+        more = f"{count(len(self.slips), 'step')} of {total} certified; each needs the one before."
+        return [*lines, more] if lines else []
 
 
 def march(
@@ -171,7 +182,7 @@ def march(
         If the case has no march and none is given, or cannot be used.
     Refused
         If a step has no certified equilibrium, or its displacements are too large for the geometry.
-        ``partial`` of the exception holds the steps before it.
+        ``partial`` of the exception holds the result of the steps before it, ``study`` their march.
 
     Examples
     --------
@@ -200,9 +211,17 @@ def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) 
     slips: list[dict[str, Slip]] = []
     before: dict[str, Vector] = {gear: np.zeros(3) for gear in train.splines}
     steps, history = range(1, train.count + 1), StepHistory()
+    assert train.march is not None
+    reference, revolutions, total = train.march
 
-    def result() -> Result:
-        return result_of(case, solved, train, answers, BACKEND, CERTIFY.tolerance, steps)
+    def found(refused: str = "") -> March:
+        return March(
+            result=result_of(case, solved, train, answers, BACKEND, CERTIFY.tolerance, steps),
+            revolutions=tuple(revolutions * k / total for k in range(len(answers))),
+            gear=reference,
+            slips=tuple(slips),
+            refused=refused,
+        )
 
     for index in steps:
         remembering = train_at(train.remembering(before), index)
@@ -213,7 +232,8 @@ def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) 
                 raise refused
         except Refused as refusal:
             if answers:
-                refusal.partial = result()
+                refusal.study = found(str(refusal))
+                refusal.partial = refusal.study.result
             raise
         after = {g: _slipped(answer, s, before[g]) for g, s in train.splines.items()}
         slips.append({g: _slip(answer, g, before[g], after[g]) for g in after})
@@ -221,14 +241,7 @@ def _marched(case: Case, solved: Case, train: Train, progress: Progress | None) 
         before = {g: train.slip_seen_next(g, slip, index) for g, slip in after.items()}
         if progress is not None:
             progress(index, train.count)
-    assert train.march is not None
-    reference, revolutions, count = train.march
-    return March(
-        result=result(),
-        revolutions=tuple(revolutions * k / count for k in range(count)),
-        gear=reference,
-        slips=tuple(slips),
-    )
+    return found()
 
 
 def _slipped(answer: Answer, spline: Spline, before: Vector) -> Vector:

@@ -123,7 +123,7 @@ def show_march(found: March) -> None:
     """Print load sharing over the march, and what every spline did."""
     from loadshare.cli.tables.result import print_result
 
-    print_result(found.result, len(found.slips))
+    print_result(found.result, len(found.result.stamp.positions))
     if not found.slips or not found.slips[0]:
         say("\nNo gear is on a spline, so no slip carries over from step to step.")
         return
@@ -195,7 +195,11 @@ KINDS = {
     ),
     "critical": Kind(show_critical, lambda found: found.to_dataframe(), _about_critical),
     "fit": Kind(show_fit, _unknowns, lambda found: {"chi_square": found.comparison.chi_square}),
-    "march": Kind(show_march, lambda found: found.to_dataframe()),
+    "march": Kind(
+        show_march,
+        lambda found: found.to_dataframe(),
+        lambda found: {"refused": found.refused} if found.refused else {},
+    ),
     # Tables hold the derivatives of torques.
     "sensitivity": Kind(
         show_sensitivity, lambda found: found.dataset["torque"].to_dataframe().reset_index()

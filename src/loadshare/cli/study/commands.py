@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -61,7 +62,18 @@ def run(
     with answered():
         case = open_case(file, change)
         with progress(what, total, rated=total is None) as tick:
-            return getattr(import_module("loadshare"), kind)(case, **asked, progress=tick)
+            ask = getattr(import_module("loadshare"), kind)
+            return _found(partial(ask, case, **asked, progress=tick))
+
+
+def _found(ask: Callable[[], Any]) -> Any:
+    """Return the answer of a study, or what it found before an equilibrium was refused."""
+    try:
+        return ask()
+    except Refused as refusal:
+        if refusal.study is None:
+            raise
+        return refusal.study
 
 
 @contextmanager
@@ -342,7 +354,7 @@ def study(
             loaded = _varied(loaded, name, kind, varied)
         rated = kind == "tolerance"
         with progress(*(("samples", None) if rated else (name, 1)), rated=rated) as tick:
-            found = run_study(loaded, name, progress=tick)
+            found = _found(partial(run_study, loaded, name, progress=tick))
     makers = makers_of(kind, found)
     for output in file or ():
         if output.form not in makers:
