@@ -458,3 +458,10 @@ def test_flanks_that_change_at_one_value_are_one_event() -> None:
     (value,) = {e.value for e in found.events}
     assert value == 0.0
     assert {e.together for e in found.events} == {len(found.events)}
+
+
+def test_keys_that_can_be_read_only_once_are_tied():
+    keys = ["rings.4.float", "rings.5.float"]
+    ends = {"start": "9 um", "stop": "10 um", "positions": [1]}
+    once = ls.critical(shipped("fgfbstts/limit_ring"), iter(keys), **ends)
+    assert once.parameter.keys == tuple(keys)

@@ -181,13 +181,14 @@ def critical(
     >>> {event.gear: f"{event.value:.2f} um" for event in found.of("leaves boundary")}
     {'5': '2.98 um', '4': '8.35 um'}
     """
-    case = loaded(case, [named(key)])
+    name = named(key)
+    case = loaded(case, [name])
     numbers, unit = grid([start, stop], "start, stop", RANGE)
     low, high = numbers
     if not low < high:
         message = f"start {low:g} {unit} is not below stop {high:g} {unit}"
-        raise CaseError([Problem(STUDY, named(key), "", message, "start below stop")])
-    parameter = read_parameter(case, key, unit)
+        raise CaseError([Problem(STUDY, name, "", message, "start below stop")])
+    parameter = read_parameter(case, name, unit)
     check_smooth(parameter)
     line = Line(case, parameter, low, high)
     events: list[Event] = []
