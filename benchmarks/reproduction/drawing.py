@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from loadshare.numbers import decimals
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import (
@@ -18,7 +19,6 @@ from loadshare.report.figures.marks import (
     rimmed,
     rules,
 )
-from loadshare.report.numbers import decimals
 from loadshare.report.palette import FAINT, INK, Look
 from loadshare.report.vega_lite import OWN_LEGENDS, Channel, Drawing, Row, channel, joined, layer
 from loadshare.report.vega_lite import panel as one_panel

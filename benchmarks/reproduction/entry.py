@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from loadshare.report.numbers import NONE, fixed
+from loadshare.numbers import NONE, fixed
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,81 +1,88 @@
-"""Short displays of cases and results: a few lines in a console, a small table in a notebook.
+"""What cases, results and studies show of themselves: a title, facts, tables.
 
-Both are written from one `View`, so that they cannot differ; rows that are left out are counted.
+A console, a notebook, the command and a page are all written from one `View`, so that they cannot
+differ; rows that are left out are counted.
 """
 
 from __future__ import annotations
 
 import html
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from loadshare.equality import Comparable
+from loadshare.table import Table
 
 ROWS = 8
 """Rows of a table that are shown."""
 WIDTH = 88
 """Most characters of a line."""
 
-_CELL = 'style="text-align:left;padding:.1em .8em .1em 0"'
+_LEFT, _RIGHT = (
+    f'style="text-align:{side};padding:.1em .8em .1em 0"' for side in ("left", "right")
+)
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """A title, facts, and the first rows of a table.
+    """A title, facts and tables.
+
+    A console and a notebook show the first rows of the first table; the command and a page show all
+    tables.
 
     Attributes
     ----------
     title : str
     facts : tuple of (str, str)
         Names and values; empty values are left out.
-    columns : tuple of str
-    rows : tuple of tuple of str
-        As many cells as there are columns.
+    tables : tuple of Table
+        The command says of those without rows that there is none.
     """
 
     title: str
     facts: tuple[tuple[str, str], ...] = ()
-    columns: tuple[str, ...] = ()
-    rows: tuple[tuple[str, ...], ...] = ()
+    tables: tuple[Table, ...] = ()
 
     @property
     def text(self) -> str:
         """Lines for a console."""
         lines = [self.title, *(f"{name}: {value}" for name, value in self.facts if value)]
-        shown = [self.columns, *self.rows[:ROWS]] if self.rows else []
-        widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
-        for row in shown:
-            cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-            lines.append(("  " + "  ".join(cells)).rstrip())
-        if self._left:
-            lines.append(f"  {self._left}")
+        if table := self._first:
+            heads = [column.title for column in table.columns]
+            shown = [heads, *table.texts[:ROWS]]
+            columns = [
+                _justified(texts, column.figures)
+                for texts, column in zip(zip(*shown, strict=True), table.columns, strict=True)
+            ]
+            lines += [table.title] if table.title != self.title else []
+            lines += [f"  {'  '.join(row)}".rstrip() for row in zip(*columns, strict=True)]
+            lines += [f"  {left}"] if (left := _left(table)) else []
         return "\n".join(_cut(" ".join(line.split("\n"))) for line in lines)
 
     @property
     def html(self) -> str:
         """The same for a notebook; every text is escaped, and no script, style or link is used."""
         facts = "".join(
-            f"<tr><th {_CELL}>{_escaped(name)}</th><td {_CELL}>{_escaped(value)}</td></tr>"
+            f"<tr><th {_LEFT}>{_escaped(name)}</th><td {_LEFT}>{_escaped(value)}</td></tr>"
             for name, value in self.facts
             if value
         )
         parts = [f"<div><strong>{_escaped(self.title)}</strong>"]
         parts += [f"<table><tbody>{facts}</tbody></table>"] if facts else []
-        if self.rows:
-            head = "".join(f"<th {_CELL}>{_escaped(name)}</th>" for name in self.columns)
-            body = "".join(
-                f"<tr>{''.join(f'<td {_CELL}>{_escaped(cell)}</td>' for cell in row)}</tr>"
-                for row in self.rows[:ROWS]
-            )
-            table = f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody>"
-            parts.append(f"<table>{table}</table>")
-        parts += [f"<p>{_escaped(self._left)}</p>"] if self._left else []
+        if table := self._first:
+            sides = [_RIGHT if column.figures else _LEFT for column in table.columns]
+            head = _html_row("th", sides, (column.title for column in table.columns))
+            body = "".join(_html_row("td", sides, row) for row in table.texts[:ROWS])
+            parts += [f"<p>{_escaped(table.title)}</p>"] if table.title != self.title else []
+            parts.append(f"<table><thead>{head}</thead><tbody>{body}</tbody></table>")
+            parts += [f"<p>{left}</p>"] if (left := _left(table)) else []
         return "".join([*parts, "</div>"])
 
     @property
-    def _left(self) -> str:
-        return f"… and {len(self.rows) - ROWS} more" if len(self.rows) > ROWS else ""
+    def _first(self) -> Table | None:
+        """The first table that has rows."""
+        return next((table for table in self.tables if table.rows), None)
 
 
 class Viewed(Comparable):
@@ -111,6 +118,23 @@ def listed(values: Sequence[object]) -> str:
     """Return values as a list in text; of many, only the first ones and the last."""
     words = [str(value) for value in values]
     return ", ".join(words if len(words) <= ROWS else [*words[: ROWS - 1], "…", words[-1]])
+
+
+def _left(table: Table) -> str:
+    """Return a line that counts the rows that are left out; empty if all are shown."""
+    left = len(table.rows) - ROWS
+    return f"… and {left} more" if left > 0 else ""
+
+
+def _justified(texts: Sequence[str], right: bool) -> list[str]:
+    width = max(map(len, texts))
+    return [text.rjust(width) if right else text.ljust(width) for text in texts]
+
+
+def _html_row(tag: str, sides: Iterable[str], texts: Iterable[str]) -> str:
+    cells = zip(sides, texts, strict=True)
+    inner = "".join(f"<{tag} {side}>{_escaped(text)}</{tag}>" for side, text in cells)
+    return f"<tr>{inner}</tr>"
 
 
 def _cut(line: str) -> str:

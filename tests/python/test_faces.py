@@ -12,6 +12,7 @@ import pytest
 
 import loadshare as ls
 from loadshare.contact import ContactProblem, solve_contact
+from loadshare.table import text_table
 from loadshare.view import ROWS, WIDTH, View
 
 HOSTILE = '"><script>alert(1)</script><img src=x onerror=alert(2)>'
@@ -175,7 +176,8 @@ def test_hostile_titles_and_names_inject_nothing():
 
 def test_a_view_counts_what_it_leaves_out():
     rows = tuple((str(k), "x" * 200) for k in range(ROWS + 3))
-    view = View("T", (("left out", ""), ("kept", "a\nb")), ("n", "x"), rows)
+    made = text_table("", ("n", "x"), rows)
+    view = View("T", (("left out", ""), ("kept", "a\nb")), (made,))
     assert "… and 3 more" in view.text
     assert "… and 3 more" in view.html
     assert "left out" not in view.text

@@ -98,12 +98,16 @@ def test_the_page_tells_the_studies_own_figures(case, scatter, page):
     text = Reader(page.read_text(encoding="utf-8")).text
     swept = ls.run_study(case, "clearance")
     for point in swept.points:
-        assert f"system {point.result.omega['system']:.4f}" in text
+        shares = " ".join(f"{omega:.4f}" for omega in point.result.omega.values())
+        assert f" {point.values[0]:.6g} {shares} " in text
     for event in ls.run_study(case, "changes").events:
-        assert f"{event.value:.6g} um" in text
+        states = f"{event.before} {event.after} {event.position}"
+        assert f" {event.value:.9g} {event.element} {event.kind} {states} " in text
     (unknown,) = ls.run_study(case, "fitted").unknowns
-    assert f"{unknown.value:.5g} ± {unknown.deviation:.2g} um" in text
-    assert f"{scatter.of().summary.mean.value:.4f}" in text
+    fitted = f"{unknown.start:.6g} {unknown.value:.6g} {unknown.deviation:.3g} -50 … 50"
+    assert f"errors.6.installation[0] um {fitted}" in text
+    mean = scatter.of().summary.mean
+    assert f" system {mean.value:.4f} ({mean.low:.4f} … {mean.high:.4f}) " in text
 
 
 def test_studies_come_after_the_inputs(page):

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loadshare.report.numbers import NUMBER, Unit, engineering, significant
+from loadshare.numbers import NUMBER, Unit, engineering, significant
 
 
 @pytest.mark.parametrize(

@@ -128,7 +128,7 @@ def test_critical(command, tmp_path):
 
 
 def test_inputs_that_are_not_shown_are_counted(command, monkeypatch):
-    monkeypatch.setattr("loadshare.cli.tables.sensitivity.SHOWN", 1)
+    monkeypatch.setattr("loadshare.study.sensitivity.view.SHOWN", 1)
     monkeypatch.setattr("loadshare.report.figures.sensitivity.MOST", 1)
     keys = ("rings.5.float", "rings.4.float")
     printed = command("sensitivity", RING, *keys, "--position", 1).stdout

@@ -11,13 +11,13 @@ import loadshare as ls
 from benchmarks.random_trains.draw import draw
 from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from loadshare.case.starter import starter_case
-from loadshare.cli.tables.sensitivity import good
 from loadshare.errors import CaseError
 from loadshare.job import ways
 from loadshare.study.parameter import Value
 from loadshare.study.positions import certified
 from loadshare.study.sensitivity import SIDES, Sensitivity, sensitivity
 from loadshare.study.sensitivity.differences import differentiate
+from loadshare.study.sensitivity.view import good
 
 
 def about_to_leave() -> ls.Case:

@@ -23,6 +23,7 @@ from loadshare.case.revise import differing, revise
 from loadshare.case.table import fixed
 from loadshare.errors import CaseError
 from loadshare.output import write_whole
+from loadshare.table import text_table
 from loadshare.view import View
 
 if TYPE_CHECKING:
@@ -274,8 +275,10 @@ def _view(case: Case) -> View:
         ("assumed", ", ".join(case.assumed)),
         ("studies", ", ".join(case.study)),
     )
-    rows = tuple((name, gear.type, _held(case, name, gear)) for name, gear in case.gears.items())
-    return View(f"Case {case.name or 'unnamed'}", facts, ("gear", "type", "held by"), rows)
+    rows = ((name, gear.type, _held(case, name, gear)) for name, gear in case.gears.items())
+    heads = ("gear", "type", "held by")
+    gears = text_table("Gears", heads, rows, words=heads)
+    return View(f"Case {case.name or 'unnamed'}", facts, (gears,))
 
 
 def _operating(case: Case) -> str:

@@ -15,7 +15,7 @@ from loadshare.cli.options import CasePaths, Changes, Json
 from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError, Problem, ResultError
 from loadshare.json_text import json_text
-from loadshare.report.numbers import counted
+from loadshare.numbers import counted
 
 RESULTS = (".json", ".nc")
 """Endings of result files; all others are cases."""
@@ -68,13 +68,11 @@ def _case(path: Path, change: list[str] | None) -> str:
 
 
 def _print_teeth(path: Path, change: list[str] | None) -> None:
-    from loadshare.cli.tables.table import show, table
+    from loadshare.cli.tables.table import show_table
     from loadshare.report.teeth import teeth_tables
 
     for found in teeth_tables(open_case(path, change)):
-        words = [column.title for column in found.columns if not column.figures]
-        rows = ([cell.text for cell in row] for row in found.rows)
-        show(found.title, table([column.title for column in found.columns], rows, words))
+        show_table(found)
 
 
 def _result(path: Path) -> str:

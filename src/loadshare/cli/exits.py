@@ -17,8 +17,8 @@ import typer
 from loadshare._version import __version__
 from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError, Problem, Refused
+from loadshare.numbers import counted, runs
 from loadshare.output import NotWritten
-from loadshare.report.numbers import counted, runs
 
 REFUSED = 1
 """An answer was refused, or one case of many failed."""

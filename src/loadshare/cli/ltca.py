@@ -122,8 +122,8 @@ def _print_heading(pair: PairFile, file: Path) -> None:
 
 def _print_positions(found: Ltca, law: MeshLaw) -> None:
     """Print law and stiffness by position, in units that keep the figures short."""
+    from loadshare.numbers import decimals, fixed
     from loadshare.report.figures.ltca_cycle import stiffness_unit
-    from loadshare.report.numbers import decimals, fixed
     from loadshare.tooth.analysis.tables import STIFFNESS_LOADS
 
     rows = (

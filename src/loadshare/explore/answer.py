@@ -15,16 +15,16 @@ from loadshare.explore.inputs import Inputs
 from loadshare.explore.pictures import float_shapes, force_shapes, train_shapes
 from loadshare.job import solve
 from loadshare.job.positions import prepared
+from loadshare.numbers import decimals, fixed, omega, small
 from loadshare.report.flanks import carrying
-from loadshare.report.numbers import decimals, fixed, omega, small
 from loadshare.report.palette import palette_of
-from loadshare.report.records import Cell, Record, Table, table
 from loadshare.report.verdict import measure_of, trust, verdict_tables
 from loadshare.report.words import boundary_name
 from loadshare.results import Position, Result
 from loadshare.results.share import largest
 from loadshare.settings import ALLOWED, EXPLORE
 from loadshare.study.parameter import read_value
+from loadshare.table import Cell, Record, Table, table
 
 CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
 Plain = dict[str, Any]
@@ -160,7 +160,7 @@ def plain(found: Table) -> Plain:
     return {
         "title": found.title,
         "columns": [[column.title, column.figures] for column in found.columns],
-        "rows": [[cell.text for cell in row] for row in found.rows],
+        "rows": found.texts,
         "values": [[cell.value for cell in row] for row in found.rows],
         "notes": list(found.notes),
     }

@@ -10,11 +10,11 @@ import numpy as np
 
 from loadshare.case import Case
 from loadshare.errors import CaseError
+from loadshare.numbers import MICROMETRE, MILLIMETRE, read_best
 from loadshare.report.figures.layout import Body, Layout, layout_of
 from loadshare.report.figures.paths import Point, circle
 from loadshare.report.figures.region import Journey
 from loadshare.report.flanks import carrying, reaction_size
-from loadshare.report.numbers import MICROMETRE, MILLIMETRE, read_best
 from loadshare.report.palette import Palette, palette_of
 from loadshare.report.words import direction_name
 from loadshare.results import Position, Result

@@ -23,14 +23,13 @@ from loadshare.explore.request import RequestError, number, setting, text
 from loadshare.explore.studies import Plain, reporting_errors
 from loadshare.job.engines import is_available
 from loadshare.job.positions import prepared
-from loadshare.report.numbers import interval
-from loadshare.report.records import Cell, Column, Table
 from loadshare.settings import EXPLORE, JOB, TOLERANCE
 from loadshare.study.parameter import Value, read_value
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.job import SAMPLES, known_job
 from loadshare.study.tolerance.statistics import OmegaStatistics, apart_kinds, omega_statistics
 from loadshare.study.tolerance.study import requested_job
+from loadshare.table import Cell, Column, Table
 
 SHOWN = "explorer"
 """Name of a study in which the inputs shown by the page scatter."""
@@ -233,19 +232,19 @@ def omega_table(every: Sequence[OmegaStatistics], limit: float | None) -> Table:
     """Return a table with a column for each Ω, as `loadshare tolerance` prints its figures."""
     form = ".5f"
     rows = [
-        ["mean", *(interval(one.summary.mean, form) for one in every)],
+        ["mean", *(one.summary.mean.text(form) for one in every)],
         ["standard deviation", *(f"{one.summary.spread:.2g}" for one in every)],
         *(
             [
                 f"{100.0 * level:g} % quantile",
-                *(interval(one.summary.quantiles[level], form) for one in every),
+                *(one.summary.quantiles[level].text(form) for one in every),
             ]
             for level in every[0].summary.quantiles
         ),
         ["largest", *(f"{one.summary.highest:{form}}" for one in every)],
     ]
     if limit is not None:
-        above = (interval(one.exceedance) if one.exceedance else "" for one in every)
+        above = (one.exceedance.text(".4g") if one.exceedance else "" for one in every)
         rows.append([f"P(Ω > {limit:g})", *above])
     names = [f"{one.stage}, group" if one.over == "group" else one.stage for one in every]
     columns = [Column("Ω"), *(Column(name, figures=True) for name in names)]

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from loadshare.errors import CaseError, LoadshareError
 from loadshare.explore.questions import Along, Slopes
-from loadshare.report.numbers import MICROMETRE, NONE, omega, significant
+from loadshare.numbers import MICROMETRE, NONE, omega, significant
 from loadshare.report.words import boundary_name
 from loadshare.study.events import Event
 

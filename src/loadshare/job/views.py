@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from loadshare.results.view import rest_facts
 from loadshare.settings import JOB
+from loadshare.table import text_table
 from loadshare.view import View, figure, listed
 
 if TYPE_CHECKING:
@@ -18,8 +19,9 @@ def answer_view(found: Answer) -> View:
     """Show how an answer was found, how good it is, where floats rest, and the forces."""
     facts = (("found by", found.rung), *rest_facts(found.certificate, found.equilibrium))
     forces = {**found.equilibrium.flank_force, **found.equilibrium.ring_force}
-    rows = tuple((name, figure(force)) for name, force in forces.items() if force > 0.0)
-    return View(f"Answer of position {found.index}", facts, ("contact", "force [N]"), rows)
+    rows = ((name, figure(force)) for name, force in forces.items() if force > 0.0)
+    made = text_table("Forces", ("contact", "force [N]"), rows, words=("contact",))
+    return View(f"Answer of position {found.index}", facts, (made,))
 
 
 def formulation_view(found: Formulation) -> View:
@@ -33,7 +35,8 @@ def formulation_view(found: Formulation) -> View:
         ("units", f"{units.force:.6g} N, {units.length:.6g} m"),
     )
     title = f"Formulation of position {found.answer.index}"
-    return View(title, facts, ("left out", "why"), found.removed)
+    heads = ("left out", "why")
+    return View(title, facts, (text_table("Left out", heads, found.removed, words=heads),))
 
 
 def search_view(found: Search) -> View:
@@ -51,4 +54,5 @@ def search_view(found: Search) -> View:
         most = max(apart, key=lambda name: abs(apart[name]))
         rows.append((str(number), most, f"{apart[most]:+.4g}"))
     columns = ("answer", "most changed contact", "change [N]")
-    return View(f"Search at position {found.answer.index}", facts, columns, tuple(rows))
+    made = text_table("Other answers", columns, rows, words=columns[1:2])
+    return View(f"Search at position {found.answer.index}", facts, (made,))

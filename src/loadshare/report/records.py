@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Literal
 
 from loadshare.case import Case
 from loadshare.certify.validity import LABELS
-from loadshare.report.numbers import (
+from loadshare.numbers import (
     ALIKE,
     NONE,
     decimals,
@@ -22,101 +21,9 @@ from loadshare.report.numbers import (
 from loadshare.results import Position, Result
 from loadshare.results.laws import law_lines
 from loadshare.settings import CERTIFY, JOB
+from loadshare.table import Cell, Record
 
-FOLDED = 24
-"""Number of rows above which a table is shown only when asked for."""
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """One cell.
-
-    Attributes
-    ----------
-    text : str
-    value : float or None
-        Value by which it is sorted; the text if there is none.
-    assumed : bool
-        Whether it shows an input that is an assumption.
-    link : str
-        Place on the page that it leads to, such as "#case-2".
-    """
-
-    text: str
-    value: float | None = None
-    assumed: bool = False
-    link: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """One column.
-
-    Attributes
-    ----------
-    title : str
-        Title, with its unit.
-    figures : bool
-        Whether it holds figures, which are aligned to the right.
-    """
-
-    title: str
-    figures: bool = False
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table that can be sorted.
-
-    Attributes
-    ----------
-    title : str
-    columns : list of Column
-    rows : list of list of Cell
-    notes : list of str
-        Sentences below it.
-    folded : bool
-        Whether it is shown only when asked for.
-    """
-
-    title: str
-    columns: list[Column]
-    rows: list[list[Cell]]
-    notes: list[str] = field(default_factory=list)
-    folded: bool = False
-
-
-Record = dict[str, Cell]
 Shares = Sequence[tuple[int, Mapping[str, float | None]]]
-
-
-def table(
-    title: str,
-    rows: Iterable[Record],
-    words: Iterable[str],
-    figures: Iterable[str],
-    heads: Mapping[str, str] | None = None,
-    notes: Iterable[str] = (),
-    most: float = math.inf,
-) -> Table:
-    """Return a table of some fields of records.
-
-    Parameters
-    ----------
-    title : str
-    rows : iterable of Record
-    words, figures : iterable of str
-        Fields that hold words, and after them those that hold figures.
-    heads : mapping of field to str, optional
-        Titles of columns that are not called like their field.
-    notes : iterable of str
-    most : float
-        Number of rows up to which the table is shown without being asked for.
-    """
-    fields = dict.fromkeys(words, False) | dict.fromkeys(figures, True)
-    columns = [Column((heads or {}).get(name, name), right) for name, right in fields.items()]
-    cells = [[r[n] if r[n].text else Cell(NONE) for n in fields] for r in rows]
-    return Table(title, columns, cells, list(notes), folded=len(cells) > most)
 
 
 def load_text(case: Case) -> str:

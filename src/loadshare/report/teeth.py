@@ -16,8 +16,8 @@ from loadshare.involute import (
     normal_backlash,
     working_angle,
 )
-from loadshare.report.numbers import NONE, fixed, significant
-from loadshare.report.records import Cell, Record, Table, table
+from loadshare.numbers import NONE, fixed, significant
+from loadshare.table import Cell, Record, Table, table
 
 WORDS = ("gear", "mesh", "shaft")
 GEARS = ("gear", "x", "y", "z", "reference", "base", "tip", "root", "mass", "inertia")

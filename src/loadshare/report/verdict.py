@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
+from loadshare.numbers import NONE, engineering, read_best, significant, small
 from loadshare.report import records
 from loadshare.report.flanks import carrying, least_force, reaction_size
-from loadshare.report.numbers import NONE, engineering, read_best, significant, small
-from loadshare.report.records import Cell, Record, Table, table
 from loadshare.report.words import advice, rest_lines, spline_lines, undetermined_lines
 from loadshare.results import Result
 from loadshare.results.laws import law_lines
 from loadshare.results.share import is_load_factor
+from loadshare.table import Cell, Record, Table, table
 
 K_GAMMA, OMEGA = "Kγ", "Ω"
 DIGITS = 4

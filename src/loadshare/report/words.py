@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from loadshare.certify import FloatState
 from loadshare.certify.validity import APART, LABELS, NEITHER
-from loadshare.report.numbers import counted, engineering, read_best, runs, significant
+from loadshare.numbers import counted, engineering, read_best, runs, significant
 from loadshare.results import Position, Result
 from loadshare.results.differences import ROUND_OFF
 from loadshare.train.period import Period

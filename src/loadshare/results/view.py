@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from loadshare.table import text_table
 from loadshare.view import View, by_name, figure, listed
 
 if TYPE_CHECKING:
@@ -35,13 +36,14 @@ def result_view(result: Result) -> View:
         largest = figure(max(shares, default=None), ".4f")
         rows.append((mesh, figure(min(torques), ".2f"), figure(max(torques), ".2f"), largest))
     columns = ("mesh", "least torque [N·m]", "largest torque [N·m]", "largest Ω")
-    return View(f"Result of {stamp.case}", facts, columns, tuple(rows))
+    made = text_table("Torque on the driver of every mesh", columns, rows, words=("mesh",))
+    return View(f"Result of {stamp.case}", facts, (made,))
 
 
 def position_view(found: Position) -> View:
     """Show how good a position's answer is, where floats rest, and how load is shared."""
     facts = rest_facts(found.certificate, found.equilibrium)
-    rows = tuple(
+    rows = (
         (
             mesh,
             figure(torque, ".2f"),
@@ -51,7 +53,8 @@ def position_view(found: Position) -> View:
         for mesh, torque in found.torque.items()
     )
     columns = ("mesh", "torque [N·m]", "Ω over the stage", "Ω over the group")
-    return View(f"Position {found.position}", facts, columns, rows)
+    made = text_table("Torque on the driver of every mesh", columns, rows, words=("mesh",))
+    return View(f"Position {found.position}", facts, (made,))
 
 
 def rest_facts(certificate: Certificate, found: Equilibrium) -> tuple[tuple[str, str], ...]:

@@ -12,12 +12,14 @@ import numpy as np
 from loadshare.case import Case
 from loadshare.case.keys import dotted
 from loadshare.case.measured import COEFFICIENTS, Measurement
+from loadshare.case.words import count
 from loadshare.errors import CaseError
 from loadshare.job import Progress, solve
 from loadshare.libraries import pd
 from loadshare.pictures import Figure, picture
 from loadshare.results import Position, Result
 from loadshare.study.positions import loaded
+from loadshare.table import text_table
 from loadshare.view import View, Viewed
 
 MEANS = ("torque", "share", "pair_share")
@@ -124,19 +126,26 @@ class Comparison(Viewed):
 
     def _view(self) -> View:
         """Show the measured figures next to the computed ones."""
-        chi = f"{self.chi_square:.4g} of {len(self.deviations)} figures"
-        rows = tuple(
+        rows = (
             (
-                d.target.key + (f" at {d.target.position}" if d.target.position else ""),
-                f"{d.target.value:g} ± {d.target.uncertainty:g} {d.target.unit}".rstrip(),
-                f"{d.computed:.5g}",
+                d.target.measurement,
+                f"{d.target.quantity} {d.target.where}"
+                + (f" [{d.target.unit}]" if d.target.unit else ""),
+                "all" if d.target.position is None else str(d.target.position),
+                f"{d.target.value:.6g}",
+                f"{d.target.uncertainty:.3g}",
+                f"{d.computed:.6g}",
+                f"{d.difference:+.3g}",
                 f"{d.deviations:+.2f}",
             )
             for d in self.deviations
         )
-        columns = ("figure", "measured", "computed", "in deviations")
-        title = f"Measured against computed, {self.result.stamp.case}"
-        return View(title, (("χ²", chi),), columns, rows)
+        words = ("measured", "of", "at")
+        heads = (*words, "figure", "±", "computed", "difference", "in ±")
+        title = "Measured against computed"
+        chi = f"χ² = {self.chi_square:.4g} over {count(len(self.deviations), 'figure')}"
+        made = text_table(title, heads, rows, words, [chi])
+        return View(title, (("case", self.result.stamp.case),), (made,))
 
 
 def compare(case: Case | str | FilePath, *, progress: Progress | None = None) -> Comparison:

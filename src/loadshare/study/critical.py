@@ -18,6 +18,7 @@ from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
 from loadshare.libraries import pd
+from loadshare.numbers import runs
 from loadshare.pictures import Figure, picture
 from loadshare.study.events import Event, events_of, flanks_changed
 from loadshare.study.follow.line import Line
@@ -32,6 +33,7 @@ from loadshare.study.parameter import (
     read_parameter,
 )
 from loadshare.study.positions import alike, loaded
+from loadshare.table import text_table
 from loadshare.view import View, Viewed
 
 SHOWN = 5
@@ -107,18 +109,29 @@ class Critical(Viewed):
         return picture(self)
 
     def _view(self) -> View:
-        """Show the interval, what is not proved, and the events."""
-        unit = self.parameter.unit
+        """Show the interval, what is not proved, and the events, alike positions in one row."""
+        name, unit = self.parameter.name, self.parameter.unit
+        doubtful = not all(e.confirmed for e in self.events)
         facts = (
-            (self.parameter.name, f"{self.start:g} to {self.stop:g} {unit}".rstrip()),
+            (name, f"{self.start:g} to {self.stop:g} {unit}".rstrip()),
             ("events", f"{len(self.events)}, {sum(e.confirmed for e in self.events)} confirmed"),
             ("not proved", f"{len(self.unproved)} intervals" if self.unproved else "nothing"),
         )
-        rows = tuple(
-            (f"{e.value:.6g} {e.unit}".rstrip(), str(e.position), e.element, e.kind)
-            for e in self.events
+        alike: dict[tuple[str, ...], list[int]] = {}
+        for e in sorted(self.events, key=lambda e: float(f"{e.value:.9g}")):
+            confirmed = ["yes" if e.confirmed else "NO"] if doubtful else []
+            row = (f"{e.value:.9g}", e.element, e.kind, e.before, e.after, *confirmed)
+            alike.setdefault(row, []).append(e.position)
+        words = ("element", "event", "below", "above", *(["confirmed"] if doubtful else []), "at")
+        proved = "Proved: there are no other events between the certified solves."
+        events = text_table(
+            f"Events from {self.start:g} to {self.stop:g}" + (f" [{unit}]" if unit else ""),
+            (self.parameter.column, *words),
+            ((*row, ", ".join(runs(positions, "-"))) for row, positions in alike.items()),
+            words,
+            [] if doubtful or self.unproved else [proved],
         )
-        return View("Critical values", facts, ("value", "position", "element", "event"), rows)
+        return View("Critical values", facts, (events,))
 
     def _left_open(self) -> list[str]:
         doubtful = sum(not event.confirmed for event in self.events)

@@ -22,7 +22,8 @@ from loadshare.settings import FIT
 from loadshare.study.compare import Comparison, Deviation, computed
 from loadshare.study.least_squares import LeastSquares
 from loadshare.study.parameter import Parameter, applied
-from loadshare.view import View, Viewed
+from loadshare.table import text_table
+from loadshare.view import View, Viewed, figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,15 +122,32 @@ class Fit(Viewed):
             ("starts", f"{len(self.starts)}, {self.evaluations} sets of equilibria"),
             ("mind", " ".join(self.warnings)),
         )
-        rows = tuple(
+        rows = (
             (
                 u.parameter.name,
-                f"{u.value:.5g} ± {u.deviation:.2g} {u.parameter.unit}".rstrip(),
-                f"{u.low:g} to {u.high:g}",
+                u.parameter.unit,
+                f"{u.start:.6g}",
+                f"{u.value:.6g}",
+                "not determined" if math.isinf(u.deviation) else f"{u.deviation:.3g}",
+                f"{u.low:g} … {u.high:g}",
             )
             for u in self.unknowns
         )
-        return View(f"Fit of {self.case.name}", facts, ("input", "value", "between"), rows)
+        heads: tuple[str, ...] = ("unknown", "unit", "start", "fitted", "±", "bounds")
+        notes = []
+        if len(self.starts) > 1:
+            reached = ", ".join(f"{chi:.4g}" if chi == chi else "failed" for chi in self.starts)
+            notes = [f"χ² from each starting point: {reached}"]
+        tables = [text_table("Fitted inputs", heads, rows, heads[:2], notes)]
+        if len(self.unknowns) > 1:
+            names = [u.parameter.name for u in self.unknowns]
+            correlations = (
+                (name, *(figure(c, "+.3f") for c in row))
+                for name, row in zip(names, self.correlation, strict=True)
+            )
+            heads = ("correlation", *names)
+            tables.append(text_table("Correlations", heads, correlations, heads[:1]))
+        return View(f"Fit of {self.case.name}", facts, (*tables, *self.comparison._view().tables))
 
 
 def fit(

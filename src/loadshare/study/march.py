@@ -32,6 +32,7 @@ from loadshare.settings import CERTIFY, MARCH
 from loadshare.study.memory.step import StepHistory, stepped
 from loadshare.study.positions import BACKEND
 from loadshare.study.tables import march_dataset
+from loadshare.table import text_table
 from loadshare.train import Train, build_train
 from loadshare.train.build import with_laws
 from loadshare.train.elements import Spline
@@ -130,17 +131,22 @@ class March(Viewed):
             ("largest Ω", by_name(result.omega)),
             ("dissipated", f"{self.dissipated:.4g} J"),
         )
-        rows = tuple(
-            (
-                gear,
-                ", ".join(f"{n} {stage}" for stage, n in Counter(s.stage for s in every).items()),
-                f"{sum(s.dissipated for s in every):.4g}",
+        rows = []
+        for gear in self.slips[0] if self.slips else ():
+            every = [step[gear] for step in self.slips]
+            stages = Counter(s.stage for s in every).most_common()
+            sizes = [float((s.slip @ s.slip) ** 0.5) * 1e6 for s in every]
+            rows.append(
+                (
+                    gear,
+                    ", ".join(f"{stage} {n}×" for stage, n in stages),
+                    f"{min(sizes):.3f} … {max(sizes):.3f}",
+                    f"{sum(s.dissipated for s in every):.4g}",
+                )
             )
-            for gear in (self.slips[0] if self.slips else ())
-            for every in ([step[gear] for step in self.slips],)
-        )
-        columns = ("spline", "steps", "dissipated [J]")
-        return View(f"March of {result.stamp.case}", facts, columns, rows)
+        heads = ("spline", "stages", "slip [µm]", "dissipated [J]")
+        tables = (text_table("Splines", heads, rows, heads[:2]),) if rows else ()
+        return View(f"March of {result.stamp.case}", facts, tables)
 
     def _left_open(self) -> list[str]:
         lines = [f"REFUSED  {line}" for line in self.refused.splitlines()]

@@ -24,6 +24,7 @@ from loadshare.job import Progress
 from loadshare.job.answered import SampleAnswers, answer_samples
 from loadshare.later import known
 from loadshare.libraries import pd, xr
+from loadshare.numbers import omega
 from loadshare.output import csv_of, netcdf_of, write_whole
 from loadshare.pictures import Figure, picture
 from loadshare.results import Result
@@ -42,12 +43,15 @@ from loadshare.study.parameter import (
 )
 from loadshare.study.positions import loaded
 from loadshare.study.tables import largest_shares, sweep_dataset, sweep_frame
+from loadshare.table import Cell, Table, text_table
 from loadshare.train import build_train
-from loadshare.view import View, Viewed, by_name
+from loadshare.view import View, Viewed
 
 CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
 MOST = 2
 """Largest number of parameters of a sweep."""
+MEANS = {"stage": "omega", "group": "pair_omega"}
+"""Variables of the largest Ω, by whose mean it is over."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,18 +195,27 @@ class Sweep(Viewed):
             facts.append((p.name, f"{ends}, {len(values)} values"))
         counts = Counter(p.status for p in self.points)
         facts.append(("points", ", ".join(f"{count} {status}" for status, count in counts.items())))
-        rows = tuple(
+        facts.append(("mind", " ".join(self._left_open())))
+        tables = [self._table(mean, kind) for mean, kind in MEANS.items()]
+        if tables[0].texts == tables[1].texts:
+            tables = [self._table("stage and group alike", MEANS["stage"])]
+        return View(f"Sweep of {self.case}", tuple(facts), tuple(tables))
+
+    def _table(self, mean: str, kind: str) -> Table:
+        """Return the largest Ω of every stage at every point."""
+        stages = self.largest(kind, 0)
+        # Where every point is certified, a column that says so would only take room.
+        status = [] if self.passed else ["status"]
+        rows = (
             (
-                *(f"{v:g}" for v in point.values),
-                point.status,
-                by_name(self.largest("omega", k))
-                if point.status in ("certified", "partly refused")
-                else point.message.partition("\n")[0],
+                *(Cell(f"{value:.6g}", value) for value in point.values),
+                *(Cell(omega(value), value) for value in self.largest(kind, k).values()),
+                *([Cell(point.status)] if status else []),
             )
             for k, point in enumerate(self.points)
         )
-        columns = (*(p.column for p in self.parameters), "status", "largest Ω")
-        return View(f"Sweep of {self.case}", tuple(facts), columns, rows)
+        heads = [*(p.column for p in self.parameters), *(f"Ω {stage}" for stage in stages), *status]
+        return text_table(f"Sweep of {self.case}: largest Ω, by {mean}", heads, rows, status)
 
     def _left_open(self) -> list[str]:
         failed = [p for p in self.points if p.status != CERTIFIED]

@@ -134,7 +134,7 @@ def print_summary(outcomes: Sequence[Outcome]) -> None:
     from rich.text import Text
 
     from loadshare.cli.tables.table import show, table
-    from loadshare.report.numbers import NONE, omega, small
+    from loadshare.numbers import NONE, omega, small
 
     if not outcomes:
         return

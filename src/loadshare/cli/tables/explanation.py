@@ -10,7 +10,7 @@ from loadshare.cli.console import say
 from loadshare.cli.tables.table import show, table
 from loadshare.contact.plan import Role
 from loadshare.job.answer import Answer
-from loadshare.report.numbers import counted, fixed, small
+from loadshare.numbers import counted, fixed, small
 from loadshare.report.words import range_text
 from loadshare.solver import Record
 

@@ -13,11 +13,11 @@ from loadshare.certify import FloatState
 from loadshare.cli.console import say, say_all
 from loadshare.cli.exits import places, ranges
 from loadshare.cli.tables.table import fits, show, table, texts
+from loadshare.numbers import NONE, counted, decimals, fixed, significant, small
 from loadshare.report import records
-from loadshare.report.numbers import NONE, counted, decimals, fixed, significant, small
-from loadshare.report.records import Cell
 from loadshare.report.words import advice, undetermined_lines
 from loadshare.results import Position, Result
+from loadshare.table import Cell
 
 MOST = 6
 """Largest number of positions that are shown side by side."""

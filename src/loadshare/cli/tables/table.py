@@ -7,16 +7,20 @@ from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from loadshare.cli.console import console, say
+from loadshare.cli.console import console, say, say_all
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
-    from rich.table import Column, Table
+    from rich.table import Column
+    from rich.table import Table as Rich
 
-    from loadshare.report.records import Record
+    from loadshare.table import Record, Table
+    from loadshare.view import Viewed
 
 GAP = 2
 """Width between columns."""
+LONGEST = 20
+"""Length above which a header, such as a key with its unit, may be folded over its figures."""
 FOLDED = 12
 """Width to which words and headers may be folded."""
 
@@ -25,7 +29,7 @@ def table(
     columns: Iterable[str],
     rows: Iterable[Iterable[RenderableType]] = (),
     words: Iterable[str] = (),
-) -> Table:
+) -> Rich:
     """Return a table.
 
     Parameters
@@ -49,13 +53,14 @@ def table(
         if column in words:
             made.add_column(column, overflow="fold")
         else:
-            made.add_column(column, justify="right", no_wrap=True, overflow="fold")
+            whole = len(column) <= LONGEST
+            made.add_column(column, justify="right", no_wrap=whole, overflow="fold")
     for row in rows:
         made.add_row(*row)
     return made
 
 
-def show(title: str, made: Table) -> None:
+def show(title: str, made: Rich) -> None:
     """Print a table under its title; if it is too wide, in parts, so that no figure is cut."""
     for k, part in enumerate(_parts(made, console().width)):
         say()
@@ -63,7 +68,24 @@ def show(title: str, made: Table) -> None:
         say(part)
 
 
-def _parts(made: Table, width: int) -> list[Table]:
+def show_table(found: Table) -> None:
+    """Print a table, the number of rows that are left out, and its notes."""
+    if not found.rows:
+        say(f"\n{found.title}: none")
+    else:
+        words = [column.title for column in found.columns if not column.figures]
+        heads = [column.title for column in found.columns]
+        show(found.title, table(heads, found.texts[: found.most], words))
+    say_all([*([found.left] if found.left else []), *found.notes])
+
+
+def show_view(found: Viewed) -> None:
+    """Print all tables of what was found."""
+    for one in found._view().tables:
+        show_table(one)
+
+
+def _parts(made: Rich, width: int) -> list[Rich]:
     """Return a table as tables of at most some width, each with the first column."""
     least = [_least(column) for column in made.columns]
     for column, need in zip(made.columns[1:], least[1:], strict=True):
@@ -91,20 +113,20 @@ def _least(column: Column) -> int:
     return max(cells, header if column.no_wrap else min(header, FOLDED))
 
 
-def _of_columns(made: Table, some: list[int]) -> Table:
+def _of_columns(made: Rich, some: list[int]) -> Rich:
     """Return a table of some columns of another."""
     part = copy(made)
     part.columns = [replace(made.columns[k], _index=at) for at, k in enumerate(some)]
     return part
 
 
-def fits(made: Table) -> bool:
+def fits(made: Rich) -> bool:
     """Return whether a table fits the console without squeezing a column."""
     screen = console()
     endless = screen.options.update(max_width=10_000)
     return screen.measure(made, options=endless).maximum <= screen.width
 
 
-def texts(records: Iterable[Record], fields: Collection[str], words: Iterable[str]) -> Table:
+def texts(records: Iterable[Record], fields: Collection[str], words: Iterable[str]) -> Rich:
     """Return a table of some fields of records, each under its name."""
     return table(fields, ([record[f].text for f in fields] for record in records), words)

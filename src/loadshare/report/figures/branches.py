@@ -12,10 +12,10 @@ from typing import Any, Literal, get_args
 
 from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
+from loadshare.numbers import ALIKE, Unit, decimals, engineering, fixed
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, heading
-from loadshare.report.numbers import ALIKE, Unit, decimals, engineering, fixed
 from loadshare.report.palette import SOFT, Look, palette_of
 from loadshare.report.vega_lite import Channel, Drawing, Row, channel, layer, panel
 from loadshare.results import Result

@@ -7,6 +7,7 @@ from typing import Any
 
 from loadshare.certify import Touch
 from loadshare.errors import LoadshareError
+from loadshare.numbers import MICROMETRE, engineering, read_best
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
@@ -14,7 +15,6 @@ from loadshare.report.figures.marks import Panel, hover, path_rows
 from loadshare.report.figures.paths import Point, arrow, circle
 from loadshare.report.figures.region import Journey, Region
 from loadshare.report.flanks import reaction_size
-from loadshare.report.numbers import MICROMETRE, engineering, read_best
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
 from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.report.words import boundary_name, direction_name, places_text

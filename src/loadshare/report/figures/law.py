@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from loadshare.numbers import Unit, engineering
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.branches import stages_of
 from loadshare.report.figures.marks import axis, channels, heading, hover
 from loadshare.report.flanks import Flank, carrying
-from loadshare.report.numbers import Unit, engineering
 from loadshare.report.palette import SOFT, palette_of
 from loadshare.report.vega_lite import Drawing, Row, channel, layer, panel
 from loadshare.results import Result

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from loadshare.numbers import MICRORADIAN, Unit, significant
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, curves, hover, padded
-from loadshare.report.numbers import MICRORADIAN, Unit, significant
 from loadshare.report.palette import look
 from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.tooth.analysis.result import Ltca

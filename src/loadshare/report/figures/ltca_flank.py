@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from loadshare.numbers import MILLIMETRE, significant
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, heading, hover
 from loadshare.report.figures.paths import Point
-from loadshare.report.numbers import MILLIMETRE, significant
 from loadshare.report.palette import FAINT, SOFT
 from loadshare.report.vega_lite import Channel, Row, channel, joined, layer, panel
 from loadshare.tooth.analysis.result import LineLoad, Ltca

@@ -16,9 +16,9 @@ import numpy as np
 
 from loadshare.certify import FloatState
 from loadshare.contact.radial import spline_law
+from loadshare.numbers import MICROMETRE, significant
 from loadshare.report.figures.paths import Point, circle
 from loadshare.report.flanks import least_force
-from loadshare.report.numbers import MICROMETRE, significant
 from loadshare.report.words import boundary_name, rest_lines, spline_lines
 from loadshare.results import Position, Result
 from loadshare.train import Train

@@ -6,10 +6,10 @@ import math
 
 from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
+from loadshare.numbers import counted
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import hover
-from loadshare.report.numbers import counted
 from loadshare.report.palette import COLOURS
 from loadshare.report.vega_lite import Row, channel, layer
 from loadshare.study.sensitivity import Sensitivity

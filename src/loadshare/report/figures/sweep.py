@@ -12,6 +12,7 @@ import numpy as np
 
 from loadshare.errors import LoadshareError
 from loadshare.libraries import xr
+from loadshare.numbers import Unit, engineering
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import (
@@ -25,7 +26,6 @@ from loadshare.report.figures.marks import (
     padded,
     rules,
 )
-from loadshare.report.numbers import Unit, engineering
 from loadshare.report.palette import WARNING, Look, Palette, ends_from_names, look
 from loadshare.report.vega_lite import Drawing, Row, channel, joined, layer, panel
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from loadshare.errors import LoadshareError
 from loadshare.libraries import xr
+from loadshare.numbers import significant
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks as drawn
 from loadshare.report.figures.marks import axis, heading, hover, rules
-from loadshare.report.numbers import significant
 from loadshare.report.palette import COLOURS, INK
 from loadshare.report.vega_lite import Channel, Drawing, Row, channel, joined, layer, panel
 

@@ -10,6 +10,7 @@ import numpy as np
 from loadshare.case import Case
 from loadshare.case.content import Sections
 from loadshare.errors import CaseError, LoadshareError
+from loadshare.numbers import MILLIMETRE, significant
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
@@ -17,7 +18,6 @@ from loadshare.report.figures.layout import ELASTIC, FIXED, FLOATS, Body, Layout
 from loadshare.report.figures.marks import Panel, heading, hover, path_rows
 from loadshare.report.figures.paths import Point, arrow, corners
 from loadshare.report.flanks import carrying
-from loadshare.report.numbers import MILLIMETRE, significant
 from loadshare.report.palette import INK, SOFT, WARNING
 from loadshare.report.vega_lite import Drawing, Row, joined, panel
 from loadshare.report.words import direction_name

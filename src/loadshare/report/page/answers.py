@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from loadshare.numbers import small
 from loadshare.report import records
-from loadshare.report.numbers import small
-from loadshare.report.records import FOLDED, Cell, Table, table
 from loadshare.report.words import advice, places_text, rest_lines, undetermined_lines
 from loadshare.results import Result
+from loadshare.table import FOLDED, Cell, Record, Table, table
 
 OMEGAS = dict.fromkeys(("over stage", "Ω stage"), "Ω over stage mean") | dict.fromkeys(
     ("over group", "Ω pair"), "Ω over group mean"
@@ -84,9 +84,9 @@ def yield_table(result: Result) -> Table:
 def float_table(result: Result) -> Table:
     """Return where every float rests; positions at which nothing differs share a row."""
     places = records.reaction_places(result.positions)
-    rows: list[records.Record] = []
+    rows: list[Record] = []
     for gear in result.positions[0].floats:
-        alike: dict[tuple[str, ...], tuple[records.Record, list[int]]] = {}
+        alike: dict[tuple[str, ...], tuple[Record, list[int]]] = {}
         for p in result.positions:
             (rests, *_) = rest_lines([p.floats[gear]], [p.position])
             row = {"gear": Cell(gear), "rests": Cell(rests), **records.rest(p, gear, places)}

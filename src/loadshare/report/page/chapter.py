@@ -12,17 +12,17 @@ from loadshare.case import Case, load_case
 from loadshare.case.reader import load_draft
 from loadshare.errors import CaseError, LoadshareError, Refused
 from loadshare.job import Progress, solve
+from loadshare.numbers import NONE, omega, small
 from loadshare.report import records
 from loadshare.report.figure import Figure
 from loadshare.report.figures.train import train as draw
-from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
 from loadshare.report.plots import Plots
-from loadshare.report.records import Cell, Table, table
 from loadshare.report.teeth import teeth_tables
 from loadshare.report.verdict import trust, verdict_tables
 from loadshare.results import Result
+from loadshare.table import Cell, Table, table
 
 if TYPE_CHECKING:
     from loadshare.report.page.studies import StudyPart

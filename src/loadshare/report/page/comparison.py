@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from loadshare.case import Case
 from loadshare.case.content import ABOUT
 from loadshare.case.keys import dotted, values_in
-from loadshare.report.numbers import NONE, engineering, omega, significant
+from loadshare.numbers import NONE, engineering, omega, significant
 from loadshare.report.page.inputs import written
-from loadshare.report.records import FOLDED, Cell, Column, Table
 from loadshare.report.words import rest_lines
 from loadshare.results import Result
+from loadshare.table import FOLDED, Cell, Column, Table
 
 SAME = 1e-9
 """Difference of two figures that is round-off, as a part of the largest figure in their unit."""

@@ -8,7 +8,7 @@ from typing import Any
 from loadshare.case import Case
 from loadshare.case.content import ABOUT, Content
 from loadshare.case.keys import dotted
-from loadshare.report.records import Cell, Column, Table
+from loadshare.table import Cell, Column, Table
 
 
 def input_tables(case: Case) -> Iterator[Table]:

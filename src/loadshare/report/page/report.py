@@ -15,7 +15,7 @@ from loadshare.output import write_whole
 from loadshare.report.page.answers import effort_text
 from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
 from loadshare.report.page.offline import render
-from loadshare.report.records import Table
+from loadshare.table import Table
 from loadshare.view import Viewed
 
 PACKAGES = ("numpy", "scipy", "clarabel", "altair", "vl-convert-python")

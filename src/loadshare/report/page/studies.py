@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from loadshare.case import Case
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
-from loadshare.report.records import FOLDED, Cell, Column, Table
 from loadshare.study.critical import Critical
 from loadshare.study.march import March
 from loadshare.study.named import run_study
@@ -19,6 +18,7 @@ from loadshare.study.sensitivity import Sensitivity
 from loadshare.study.sweep import sweep
 from loadshare.study.tolerance.result import Tolerance
 from loadshare.study.tolerance.study import tolerance
+from loadshare.table import Table
 from loadshare.view import Viewed
 
 if TYPE_CHECKING:
@@ -65,16 +65,12 @@ def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
         The case of the study.
     """
     view = found._view()
-    rows = [[Cell(text) for text in row] for row in view.rows]
-    right = [all(map(_is_figure, column)) for column in zip(*view.rows, strict=True)]
-    columns = [Column(n, r) for n, r in zip(view.columns, right, strict=False)]
-    tables = [Table(view.title, columns, rows, folded=len(rows) > FOLDED)] if rows else []
     return StudyPart(
         name=name,
         title=f"{name}: {type(found).__name__.lower()}",
         facts={what: text for what, text in view.facts if text},
         figures=tuple(figure.begin() for figure in _figures(found, case)),
-        tables=(*tables, *_more_tables(found)),
+        tables=[table for table in view.tables if table.rows],
         problems=tuple(found._left_open()),
     )
 
@@ -108,10 +104,6 @@ def run_part(
 def quick_studies(case: Case) -> list[str]:
     """Return the names of a case's studies that a page shows without being asked for them."""
     return [name for name, study in case.study.items() if study.kind != LONG]
-
-
-def _is_figure(text: str) -> bool:
-    return text.lstrip("+-−").replace(".", "", 1).isdigit()
 
 
 @singledispatch
@@ -153,42 +145,3 @@ def _(found: Tolerance, _: Case) -> Iterator[Figure]:
     for over in found.overs:
         if any(one.over == over for one in found.omega):
             yield found.plot(over="group" if over == "group" else "stage")
-
-
-@singledispatch
-def _more_tables(_: Any) -> Iterator[Table]:
-    """Yield the tables of a study other than that of its view."""
-    yield from ()
-
-
-@_more_tables.register
-def _(found: Tolerance) -> Iterator[Table]:
-    """Yield the quantiles of Ω, and the worst case that was found."""
-    levels = list(found.omega[0].summary.quantiles) if found.omega else []
-    rows = [
-        [Cell(one.stage), Cell(one.over), *(_quantile(one.summary.quantiles[k]) for k in levels)]
-        for one in found.omega
-    ]
-    if rows:
-        heads = [Column("stage"), Column("over"), *(Column(f"{100 * k:g} %", True) for k in levels)]
-        yield Table("Quantiles of Ω", heads, rows)
-    for one in found.worst:
-        inputs = [
-            [
-                Cell(d.name),
-                Cell(f"{one.inputs[d.name]:.6g} {d.distribution.unit}".strip(), one.inputs[d.name]),
-                Cell(one.at[d.name]),
-            ]
-            for d in found.inputs.every
-        ]
-        yield Table(
-            f"Worst case found: Ω = {one.omega:.5f} over the mean of the {one.over}",
-            [Column("input"), Column("value", True), Column("of its tolerance")],
-            inputs,
-            [f"Certified; the largest of {one.solved:,} trials. There may be a worse case."],
-            folded=len(inputs) > FOLDED,
-        )
-
-
-def _quantile(found: Any) -> Cell:
-    return Cell(f"{found.value:.5f}", found.value)

@@ -13,7 +13,7 @@ from loadshare.pictures import Figure, picture
 from loadshare.results.dataset import unchanging, with_units
 from loadshare.study.parameter import Value
 from loadshare.study.tables import sensitivity_dataset
-from loadshare.view import View, Viewed, listed
+from loadshare.view import View, Viewed
 
 SIDES = ("falling", "rising")
 
@@ -162,33 +162,7 @@ class Sensitivity(Viewed):
         return picture(self, stage, over)
 
     def _view(self) -> View:
-        """Show the largest derivatives of the system's Ω, and the numbers of kinks and remarks."""
+        """Show the inputs that change Ω of the system most, and what each derivative leaves out."""
+        from loadshare.study.sensitivity.view import sensitivity_view
 
-        def cell(key: str, side: str, factor: float) -> str:
-            rate = self.omega[key, side].get("system")
-            error = self.omega_error[key, side].get("system", 0.0)
-            if rate is None or rate != rate:
-                return "–"
-            return f"{rate * factor:+.4g}" if abs(rate) > error else f"0 ± {error * factor:.1g}"
-
-        def size(key: str, factor: float) -> float:
-            rates = [abs(self.omega[key, s].get("system", 0.0)) for s in self.sides]
-            return max((r * abs(factor) for r in rates if r == r), default=0.0)
-
-        order = sorted(self.inputs, key=lambda i: -size(i.key, i.value.factor))
-        rows = tuple(
-            (
-                i.key,
-                *(cell(i.key, s, i.value.factor) for s in self.sides),
-                f"per {i.value.unit or 1}",
-            )
-            for i in order
-        )
-        facts = (
-            ("positions", listed(self.positions)),
-            ("inputs", f"{len(self.inputs)}, {len(self.skipped)} left out"),
-            ("on the verge", f"{len(self.kinks)} positions" if self.kinks else ""),
-            ("remarks", str(len(self.remarks)) if self.remarks else ""),
-        )
-        columns = ("input", *(f"dΩ {side}" for side in self.sides), "unit")
-        return View("Sensitivities of Ω of the system, largest first", facts, columns, rows)
+        return sensitivity_view(self)

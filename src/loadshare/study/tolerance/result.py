@@ -17,9 +17,10 @@ from loadshare.results.dataset import unchanging
 from loadshare.study.tolerance.dataset import dataset as labelled
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.inputs import Inputs
-from loadshare.study.tolerance.statistics import Estimate, OmegaStatistics, Summary
+from loadshare.study.tolerance.statistics import OmegaStatistics, Summary
+from loadshare.study.tolerance.view import tolerance_view
 from loadshare.study.tolerance.worst import WorstCase
-from loadshare.view import View, Viewed, figure, listed
+from loadshare.view import View, Viewed
 
 Over: TypeAlias = Literal["stage", "group"]
 OVERS: tuple[Over, ...] = get_args(Over)
@@ -162,33 +163,10 @@ class Tolerance(Viewed):
         return picture(self, stage, over)
 
     def _view(self) -> View:
-        """Show how many samples have an answer, the distribution of Ω, and the worst case found."""
-        certified = f"{self.samples - self.refused} of {self.samples}"
-        facts = (
-            ("certified", f"{certified} samples, largest residual {self.residual:.1e}"),
-            ("inputs", listed([one.name for one in self.inputs.every])),
-            ("worst case", ", ".join(f"Ω {w.omega:.4f} over the {w.over}" for w in self.worst)),
-            ("why refused", "; ".join(f"{n} × {m}" for m, n in self.messages.items())),
-        )
-        rows = tuple(
-            (
-                one.stage,
-                one.over,
-                _with_ends(one.summary.mean, ".4f", ".4f"),
-                figure(one.summary.spread),
-                _with_ends(one.exceedance, ".3g", ".2g") if one.exceedance else "–",
-            )
-            for one in self.omega
-        )
-        limit = "limit" if self.limit is None else f"{self.limit:g}"
-        columns = ("stage", "over", "mean Ω (95 %)", "deviation", f"P(Ω > {limit})")
-        return View(f"Tolerance study of {self.case}", facts, columns, rows)
+        """Show how Ω scatters, where that comes from, and the worst case found."""
+        return tolerance_view(self)
 
     def _left_open(self) -> list[str]:
         if not self.refused:
             return []
         return [f"{count(self.refused, 'sample')} of {self.samples} not certified."]
-
-
-def _with_ends(found: Estimate, form: str, ends: str) -> str:
-    return f"{found.value:{form}} ({found.low:{ends}} to {found.high:{ends}})"

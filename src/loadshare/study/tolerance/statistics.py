@@ -36,6 +36,11 @@ class Estimate:
     low: float
     high: float
 
+    def text(self, form: str) -> str:
+        """Return the figure and its interval; an end that is not known is left open."""
+        low, high = (f"{end:{form}}" if math.isfinite(end) else "" for end in (self.low, self.high))
+        return f"{self.value:{form}} ({f'{low} … {high}'.strip()})"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Summary(Comparable):

@@ -6,10 +6,6 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from loadshare.study.tolerance.statistics import Estimate
 
 NONE = "–"
 """Shown where there is no figure."""
@@ -47,12 +43,6 @@ def omega(value: float | None) -> str:
 def micrometres(value: float | None) -> str:
     """Return a length [m] in µm."""
     return fixed(None if value is None else value * 1e6, 3)
-
-
-def interval(found: Estimate, form: str = ".4g") -> str:
-    """Return an estimate with its confidence interval; an end that is not known is left open."""
-    low, high = (f"{end:{form}}" if math.isfinite(end) else "" for end in (found.low, found.high))
-    return f"{found.value:{form}} ({f'{low} … {high}'.strip()})"
 
 
 def small(value: float) -> str:
