@@ -6,8 +6,6 @@ import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from loadshare.numbers import NONE
-
 FOLDED = 24
 """Number of rows above which a table is shown only when asked for."""
 
@@ -94,8 +92,8 @@ Record = dict[str, Cell]
 def table(
     title: str,
     rows: Iterable[Record],
-    words: Iterable[str],
-    figures: Iterable[str],
+    fields: Iterable[str],
+    words: Collection[str],
     heads: Mapping[str, str] | None = None,
     notes: Iterable[str] = (),
     most: float = math.inf,
@@ -106,17 +104,18 @@ def table(
     ----------
     title : str
     rows : iterable of Record
-    words, figures : iterable of str
-        Fields that hold words, and after them those that hold figures.
+    fields : iterable of str
+    words : collection of str
+        Fields that hold words; all others hold figures.
     heads : mapping of field to str, optional
         Titles of columns that are not called like their field.
     notes : iterable of str
     most : float
         Number of rows up to which a page shows the table without being asked for it.
     """
-    fields = dict.fromkeys(words, False) | dict.fromkeys(figures, True)
-    columns = [Column((heads or {}).get(name, name), right) for name, right in fields.items()]
-    cells = [[r[n] if r[n].text else Cell(NONE) for n in fields] for r in rows]
+    fields = list(fields)
+    columns = [Column((heads or {}).get(name, name), name not in words) for name in fields]
+    cells = [[row[name] for name in fields] for row in rows]
     return Table(title, columns, cells, list(notes), folded=len(cells) > most)
 
 

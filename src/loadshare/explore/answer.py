@@ -15,7 +15,7 @@ from loadshare.explore.inputs import Inputs
 from loadshare.explore.pictures import float_shapes, force_shapes, train_shapes
 from loadshare.job import solve
 from loadshare.job.positions import prepared
-from loadshare.numbers import decimals, fixed, omega, small
+from loadshare.numbers import NONE, decimals, fixed, omega, small
 from loadshare.report.flanks import carrying
 from loadshare.report.palette import palette_of
 from loadshare.report.verdict import measure_of, trust, verdict_tables
@@ -188,7 +188,8 @@ def states(shown: Position) -> Table:
     """Return the contact states at a position: flanks, boundaries of floats, splines."""
     rows = list(_states(shown))
     title = f"Contact states at position {shown.position}"
-    return table(title, rows, ("element", "state"), ("force",), {"force": "force [N]"})
+    words = ("element", "state")
+    return table(title, rows, (*words, "force"), words, {"force": "force [N]"})
 
 
 def _states(shown: Position) -> Iterator[Record]:
@@ -197,7 +198,7 @@ def _states(shown: Position) -> Iterator[Record]:
     places = decimals(sizes)
 
     def row(element: str, state: str, size: float) -> Record:
-        text = fixed(size, places) if size > 0.0 else ""
+        text = fixed(size, places) if size > 0.0 else NONE
         return {"element": Cell(element), "state": Cell(state), "force": Cell(text, size)}
 
     for name in shown.train.meshes:

@@ -256,11 +256,16 @@ def measures(result: Result) -> Iterator[Record]:
         bounds = {"warning": measure.warning, "refusal": measure.refusal}
         yield {
             "figure": Cell(LABELS[name]),
-            "value": Cell(small(measure.value), measure.value),
+            "value": Cell(_length(measure.value), measure.value),
             **{k: Cell(NONE if b is None else significant(b, 3), b) for k, b in bounds.items()},
             "where": Cell(NONE if nowhere else measure.where),
             "position": Cell(NONE if nowhere else str(position), position),
         }
+
+
+def _length(value: float) -> str:
+    """Return a relative displacement with three digits; a tiny one as its order of magnitude."""
+    return significant(value, 3) if value >= 1e-4 or not value else small(value)
 
 
 def residuals(result: Result) -> Iterator[Record]:

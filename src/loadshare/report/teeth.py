@@ -56,8 +56,7 @@ def teeth_tables(case: Case) -> Iterator[Table]:
     ):
         found = list(rows)
         if found:
-            words = [key for key in fields if key in WORDS]
-            yield table(title, found, words, [key for key in fields if key not in WORDS])
+            yield table(title, found, fields, WORDS)
 
 
 def _gears(case: Case) -> Iterator[Record]:

@@ -31,7 +31,11 @@ def verdict_tables(result: Result) -> Iterator[Table]:
     if result.positions[0].floats:
         yield resting(result)
     yield table(
-        "Largest forces", largest_forces(result), ("what", "where"), ("value",), {"value": "most"}
+        "Largest forces",
+        largest_forces(result),
+        ("what", "where", "value"),
+        ("what", "where"),
+        {"value": "most"},
     )
 
 
@@ -63,7 +67,8 @@ def sharing(result: Result) -> Table:
     measure = measure_of(result)
     over_stage = f"{OMEGA} = {K_GAMMA}" if measure == K_GAMMA else measure
     heads = {"over stage": over_stage, "over group": "Ω over group", "stage at": "reached at"}
-    return table("Load sharing by stage", rows, ("stage", "stage at"), figures, heads)
+    words = ("stage", "stage at")
+    return table("Load sharing by stage", rows, (*words, *figures), words, heads)
 
 
 def resting(result: Result) -> Table:
@@ -78,7 +83,8 @@ def resting(result: Result) -> Table:
         reaction = Cell(read_best(most, "N", DIGITS), most)
         rows.append({"gear": Cell(gear), "rests": Cell("; ".join(lines)), "reaction": reaction})
     heads = {"reaction": "reaction, most"}
-    return table("Where the floats rest", rows, ("gear", "rests"), ("reaction",), heads)
+    words = ("gear", "rests")
+    return table("Where the floats rest", rows, (*words, "reaction"), words, heads)
 
 
 def largest_forces(result: Result) -> Iterator[Record]:

@@ -340,6 +340,6 @@ def test_the_table_and_the_report_tell_it(case, tmp_path):
     for word in ("check", "draw"):
         out = ["-o", str(tmp_path / "train.svg")] if word == "draw" else []
         assert CliRunner().invoke(app, [word, str(file), *out]).exit_code == 0
-    from loadshare.report.page.answers import torque_table
+    from loadshare.report.tables import torque_table
 
     assert any("LTCA, slices" in note for note in torque_table(ls.solve(case)).notes)

@@ -12,17 +12,15 @@ from loadshare.case import Case
 from loadshare.certify import FloatState
 from loadshare.cli.console import say, say_all
 from loadshare.cli.exits import places, ranges
-from loadshare.cli.tables.table import fits, show, table, texts
-from loadshare.numbers import NONE, counted, decimals, fixed, significant, small
-from loadshare.report import records
+from loadshare.cli.tables.table import fits, show, show_table, table, texts
+from loadshare.numbers import NONE, counted, decimals, fixed, small
+from loadshare.report import records, tables
 from loadshare.report.words import advice, undetermined_lines
 from loadshare.results import Position, Result
-from loadshare.table import Cell
 
 MOST = 6
 """Largest number of positions that are shown side by side."""
 RESTS = "Floating gears: displacement x, y and margin [µm], reaction of the ring [N]"
-WORDS = ("figure", "unit", "where")
 
 
 def print_result(result: Result, wanted: int, *, loads: bool = False, cycle: bool = False) -> None:
@@ -58,29 +56,18 @@ def print_omega(result: Result) -> None:
     if not result.stages:
         say("\nNo stages are named, so there is no load-sharing coefficient.")
         return
-    fields = ("stage", "over stage", "stage at", "over group", "group at")
-    made = texts(records.omegas(result), fields, words=("stage", "stage at", "group at"))
-    heads = ("stage", "over stage mean", "reached at", "over group mean", "reached at")
-    for column, head in zip(made.columns, heads, strict=True):
-        column.header = head
-    show("Load-sharing coefficient Ω: largest over branches and positions", made)
+    show_table(tables.omega_table(result))
 
 
 def print_loads(result: Result) -> None:
     """Print external torques, torques of shafts and forces on bearings, the largest of each."""
-    fields = ["part", "torque", "torque at", "bearing", "bearing at"]
-    if len(result.positions) == 1:
-        fields = [name for name in fields if not name.endswith(" at")]
-    made = texts(records.loads(result), fields, words=("part",))
-    show("Loads: torque from outside or of a shaft [N·m], force on a bearing or pin [N]", made)
+    show_table(tables.load_table(result), notes=False)
 
 
 def print_cycle(result: Result) -> None:
     """Print transmission error, stiffness, share and point of the cycle at every position."""
-    rows = list(records.yielding(result))
-    title = "Transmission error [µrad] and stiffness [N·m/rad] of the train"
-    show(title, texts(rows, rows[0], words=()))
-    if len(rows) > 1:
+    show_table(tables.yield_table(result), notes=False)
+    if len(result.positions) > 1:
         say(records.error_text(result))
     fields = ("mesh", "position", "cycle point", "Ω stage", "error", "stiffness", "at the driver")
     title = "Meshes: transmission error [µm], stiffness [N/µm] and at the driver [N·m/rad]"
@@ -89,13 +76,7 @@ def print_cycle(result: Result) -> None:
 
 def print_validity(result: Result) -> None:
     """Print the largest displacements over the positions, their bounds, and a warning above one."""
-    rows = list(records.measures(result))
-    for row in rows:
-        value = row["value"].value or 0.0
-        text = significant(value, 3) if value >= 1e-4 or value == 0.0 else f"{value:.1e}"
-        row["value"] = Cell(text, value)
-    made = texts(rows, _fields(result, "figure", "value", "warning", "refusal", "where"), WORDS)
-    show("Displacements: the largest, and the limits of the geometry", made)
+    show_table(tables.validity_table(result), notes=False)
     warning = advice(result)
     if warning:
         say(Text.assemble(("WARNING", "bold yellow"), f"  {warning}"))
@@ -103,8 +84,7 @@ def print_validity(result: Result) -> None:
 
 def print_certificate(result: Result, wanted: int) -> None:
     """Print the worst value of every residual over the positions, and the verdict."""
-    fields = _fields(result, "figure", "value", "unit", "scaled", "where")
-    show("Certificate: the worst residuals", texts(records.residuals(result), fields, WORDS))
+    show_table(tables.certificate_table(result), notes=False)
     proved = records.proved(result)
     none = "no bound on the torques is proved, but they are in balance"
     say(none if math.isinf(proved) else f"torques proved to {small(proved)} of the largest")
@@ -119,11 +99,6 @@ def print_certificate(result: Result, wanted: int) -> None:
     )
     verdict = result.uniqueness.text
     say(f"{verdict[0].upper()}{verdict[1:]}.")
-
-
-def _fields(result: Result, *fields: str) -> tuple[str, ...]:
-    """Return these fields, and the position if there are several."""
-    return (*fields, "position") if len(result.positions) > 1 else fields
 
 
 def print_heading(

@@ -68,15 +68,15 @@ def show(title: str, made: Rich) -> None:
         say(part)
 
 
-def show_table(found: Table) -> None:
-    """Print a table, the number of rows that are left out, and its notes."""
+def show_table(found: Table, *, notes: bool = True) -> None:
+    """Print a table, the number of rows that are left out, and its notes if wanted."""
     if not found.rows:
         say(f"\n{found.title}: none")
     else:
         words = [column.title for column in found.columns if not column.figures]
         heads = [column.title for column in found.columns]
         show(found.title, table(heads, found.texts[: found.most], words))
-    say_all([*([found.left] if found.left else []), *found.notes])
+    say_all([*([found.left] if found.left else []), *(found.notes if notes else [])])
 
 
 def show_view(found: Viewed) -> None:

@@ -13,10 +13,9 @@ from loadshare.case.reader import load_draft
 from loadshare.errors import CaseError, LoadshareError, Refused
 from loadshare.job import Progress, solve
 from loadshare.numbers import NONE, omega, small
-from loadshare.report import records
+from loadshare.report import records, tables
 from loadshare.report.figure import Figure
 from loadshare.report.figures.train import train as draw
-from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
 from loadshare.report.plots import Plots
 from loadshare.report.teeth import teeth_tables
@@ -213,15 +212,15 @@ def _figures(result: Result) -> Iterator[Figure]:
 
 def _tables(result: Result) -> Iterator[Table]:
     if result.stages:
-        yield answers.omega_table(result)
-    yield answers.torque_table(result)
-    yield answers.position_table(result)
-    yield answers.yield_table(result)
+        yield tables.omega_table(result)
+    yield tables.torque_table(result)
+    yield tables.position_table(result)
+    yield tables.yield_table(result)
     if result.positions[0].floats:
-        yield answers.float_table(result)
-    yield answers.load_table(result)
-    yield answers.validity_table(result)
-    yield answers.certificate_table(result)
+        yield tables.float_table(result)
+    yield tables.load_table(result)
+    yield tables.validity_table(result)
+    yield tables.certificate_table(result)
 
 
 def overview(chapters: list[Chapter]) -> Table:
@@ -242,4 +241,4 @@ def overview(chapters: list[Chapter]) -> Table:
             }
         )
     fields = list(rows[0])
-    return table("All cases", rows, fields[:3], fields[3:])
+    return table("All cases", rows, fields, fields[:3])

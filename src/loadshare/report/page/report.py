@@ -12,9 +12,9 @@ from pathlib import Path
 from loadshare._version import __version__
 from loadshare.case import Case
 from loadshare.output import write_whole
-from loadshare.report.page.answers import effort_text
 from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
 from loadshare.report.page.offline import render
+from loadshare.report.tables import effort_text
 from loadshare.table import Table
 from loadshare.view import Viewed
 

@@ -1,4 +1,4 @@
-"""Results as tables."""
+"""Results as tables, for screen and page; a screen leaves out their notes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,8 @@ from loadshare.report.words import advice, places_text, rest_lines, undetermined
 from loadshare.results import Result
 from loadshare.table import FOLDED, Cell, Record, Table, table
 
-OMEGAS = dict.fromkeys(("over stage", "Ω stage"), "Ω over stage mean") | dict.fromkeys(
-    ("over group", "Ω pair"), "Ω over group mean"
-)
-"""Titles of the columns of both coefficients."""
-LOADS = {
-    "torque": "torque [N·m]",
-    "bearing": "force on the bearing or pin [N]",
-    "torque at": "at position",
-    "bearing at": "at position",
-}
+OMEGAS = {"Ω stage": "Ω over stage mean", "Ω pair": "Ω over group mean"}
+WORDS = ("figure", "unit", "where")
 MESHES = {
     "torque": "torque [N·m]",
     "coast flank": "coast flank [N·m]",
@@ -27,21 +19,21 @@ MESHES = {
     "stiffness": "stiffness [N/µm]",
     "at the driver": "at the driver [N·m/rad]",
 }
-YIELDING = {
-    f"{what} {side}": f"{what} at the {side} [{unit}]"
-    for what, unit in (("error", "µrad"), ("stiffness", "N·m/rad"))
-    for side in ("input", "output")
-}
 
 
 def omega_table(result: Result) -> Table:
     """Return the largest Ω of every stage and of the system, and where it is reached."""
     return table(
-        "Load-sharing coefficient Ω, largest over branches and positions",
+        "Load-sharing coefficient Ω: largest over branches and positions",
         records.omegas(result),
+        ("stage", "over stage", "stage at", "over group", "group at"),
         ("stage", "stage at", "group at"),
-        ("over stage", "over group"),
-        OMEGAS | {"stage at": "reached at", "group at": "reached at, group mean"},
+        {
+            "over stage": "over stage mean",
+            "stage at": "reached at",
+            "over group": "over group mean",
+            "group at": "reached at",
+        },
     )
 
 
@@ -56,7 +48,8 @@ def torque_table(result: Result) -> Table:
         notes += _undetermined(result)
     heads = OMEGAS | {t: f"{t} [N·m]" for t in torques}
     title = "Torque on the driver of every mesh"
-    return table(title, rows, ("mesh", "stage"), figures, heads, notes)
+    words = ("mesh", "stage")
+    return table(title, rows, (*words, *figures), words, heads, notes)
 
 
 def position_table(result: Result) -> Table:
@@ -66,7 +59,7 @@ def position_table(result: Result) -> Table:
         "The error is the transmission error along the line of action; stiffnesses are tangents."
     ]
     title = "Meshes at every position"
-    return table(title, rows, ("mesh",), list(rows[0])[1:], MESHES, notes, most=FOLDED)
+    return table(title, rows, rows[0], ("mesh",), MESHES, notes, most=FOLDED)
 
 
 def yield_table(result: Result) -> Table:
@@ -77,8 +70,8 @@ def yield_table(result: Result) -> Table:
         "of torque over rotation.",
         records.error_text(result),
     ]
-    title = "Transmission error and stiffness of the train"
-    return table(title, rows, (), list(rows[0]), YIELDING, notes, FOLDED)
+    title = "Transmission error [µrad] and stiffness [N·m/rad] of the train"
+    return table(title, rows, rows[0], (), notes=notes, most=FOLDED)
 
 
 def float_table(result: Result) -> Table:
@@ -97,8 +90,8 @@ def float_table(result: Result) -> Table:
     return table(
         "Floating gears",
         rows,
+        ("gear", "rests", "spline", "position", *units),
         ("gear", "rests", "spline"),
-        ("position", *units),
         {name: f"{name} [{unit}]" for name, unit in units.items()},
         _undetermined(result),
         FOLDED,
@@ -115,14 +108,14 @@ def _undetermined(result: Result) -> list[str]:
 
 def load_table(result: Result) -> Table:
     """Return the largest torques from outside, forces on bearings and torques of shafts."""
+    fields = ("part", "torque", "torque at", "bearing", "bearing at")
     return table(
-        "Loads of gears, bearings and shafts: the largest",
+        "Loads: torque from outside or of a shaft [N·m], force on a bearing or pin [N]",
         records.loads(result),
+        [name for name in fields if len(result.positions) > 1 or not name.endswith(" at")],
         ("part",),
-        ("torque", "torque at", "bearing", "bearing at"),
-        LOADS,
-        ["The torque of a gear is that from outside, counter-clockwise about its axis."],
-        FOLDED,
+        notes=["The torque of a gear is that from outside, counter-clockwise about its axis."],
+        most=FOLDED,
     )
 
 
@@ -137,10 +130,9 @@ def validity_table(result: Result) -> Table:
     return table(
         "Displacements: the largest, and the limits of the geometry",
         records.measures(result),
-        ("figure", "where"),
-        ("value", "warning", "refusal", "position"),
-        {"warning": "warning above", "refusal": "refused from"},
-        notes,
+        _placed(result, "figure", "value", "warning", "refusal", "where"),
+        WORDS,
+        notes=notes,
     )
 
 
@@ -149,8 +141,8 @@ def certificate_table(result: Result) -> Table:
     return table(
         "Certificate: the worst residuals",
         records.residuals(result),
-        ("figure", "where", "unit"),
-        ("value", "scaled", "position"),
+        _placed(result, "figure", "value", "unit", "scaled", "where"),
+        WORDS,
         notes=[
             "Recomputed from the answer and the physics alone; a scaled residual is relative to "
             f"the load or deflection of the case. Allowed: {result.stamp.tolerance:.0e}.",
@@ -160,6 +152,11 @@ def certificate_table(result: Result) -> Table:
             f"{result.uniqueness.text[0].upper()}{result.uniqueness.text[1:]}.",
         ],
     )
+
+
+def _placed(result: Result, *fields: str) -> tuple[str, ...]:
+    """Return these fields, and the position if there are several."""
+    return (*fields, "position") if len(result.positions) > 1 else fields
 
 
 def effort_text(result: Result) -> str:
