@@ -11,7 +11,7 @@ NONE = "–"
 """Shown where there is no figure."""
 
 
-def counted(number: int, noun: str) -> str:
+def counted(number: int, noun: str = "value") -> str:
     """Return a number of things in words: ``1 problem``, ``2 problems``."""
     return f"{number} {noun}" + ("" if number == 1 else "s")
 

@@ -38,7 +38,7 @@ from loadshare.case.quantity import (
     Radius,
 )
 from loadshare.case.rolling import BALL, ROLLER, bearing_coefficient
-from loadshare.case.words import count
+from loadshare.numbers import counted
 from loadshare.settings import ALLOWED
 
 PerSection = Annotated[OneOrMore[T], shaped("a length, or a list of them, one per section")]
@@ -97,7 +97,7 @@ class Shaft(Element):
         outer, inner = values(self.diameter), values(self.bore)
         for key, given in (("length", values(self.length)), ("bore", inner)):
             if len(given) != len(outer) and not (key == "bore" and len(given) == 1):
-                yield Rule(f"has {count(len(given))}, but diameter has {len(outer)}", (key,))
+                yield Rule(f"has {counted(len(given))}, but diameter has {len(outer)}", (key,))
                 return
         if any(inner[k % len(inner)] >= d for k, d in enumerate(outer)):
             yield Rule("leaves no shaft: it is not below the diameter", ("bore",))

@@ -36,7 +36,7 @@ from loadshare.case.quantity import (
     Distance,
     Quantity,
 )
-from loadshare.case.words import count
+from loadshare.numbers import counted
 
 SOURCES = ("geometry", "law_file")
 """Keys that name a file from which the law follows."""
@@ -120,7 +120,7 @@ class Table(Element):
             yield Rule("does not increase", ("torque",))
         for path, points in self._curves():
             if len(points) != len(self.torque):
-                number = f"has {count(len(points))}, but torque has {len(self.torque)}"
+                number = f"has {counted(len(points))}, but torque has {len(self.torque)}"
                 yield Rule(number, path)
             elif not _increases(points):
                 yield Rule("does not increase", path)

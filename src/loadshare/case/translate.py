@@ -13,8 +13,9 @@ from loadshare.case.described import description
 from loadshare.case.element import MARK, Element, Rule, elements_in
 from loadshare.case.keys import Path
 from loadshare.case.origin import Origin
-from loadshare.case.words import choices, count, did_you_mean
+from loadshare.case.words import choices, did_you_mean
 from loadshare.errors import CaseError
+from loadshare.numbers import counted
 from loadshare.settings import ALLOWED
 
 Read = TypeVar("Read", bound=Element)
@@ -180,7 +181,7 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
         hint = hint_at(path[-1], own, keys) if own else did_you_mean(path[-1], keys)
         return Rule("unknown key", path, choices(sorted(keys)), hint)
     if kind == "missing" and isinstance(path[-1], int):
-        return Rule(f"has {count(path[-1])}, but more are needed", path[:-1])
+        return Rule(f"has {counted(path[-1])}, but more are needed", path[:-1])
     if kind == "missing":
         holder = _table(model, path[:-1])
         names = {about.alias or n: n for n, about in holder.model_fields.items()} if holder else {}

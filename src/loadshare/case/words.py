@@ -87,11 +87,6 @@ def choices(known: Iterable[str]) -> str:
     return ", ".join(names[:SHOWN]) + (", …" if len(names) > SHOWN else "")
 
 
-def count(number: int, noun: str = "value") -> str:
-    """Return a number of things in words: ``1 value``, ``2 values``."""
-    return f"{number} {noun}" + ("" if number == 1 else "s")
-
-
 def as_given(value: Any) -> str:
     """Return a value as TOML would show it, shortened to what a message can hold.
 

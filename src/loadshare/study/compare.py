@@ -12,10 +12,10 @@ import numpy as np
 from loadshare.case import Case
 from loadshare.case.keys import dotted
 from loadshare.case.measured import COEFFICIENTS, Measurement
-from loadshare.case.words import count
 from loadshare.errors import CaseError
 from loadshare.job import Progress, solve
 from loadshare.libraries import pd
+from loadshare.numbers import counted
 from loadshare.pictures import Figure, picture
 from loadshare.results import Position, Result
 from loadshare.study.positions import loaded
@@ -143,7 +143,7 @@ class Comparison(Viewed):
         words = ("measured", "of", "at")
         heads = (*words, "figure", "±", "computed", "difference", "in ±")
         title = "Measured against computed"
-        chi = f"χ² = {self.chi_square:.4g} over {count(len(self.deviations), 'figure')}"
+        chi = f"χ² = {self.chi_square:.4g} over {counted(len(self.deviations), 'figure')}"
         made = text_table(title, heads, rows, words, [chi])
         return View(title, (("case", self.result.stamp.case),), (made,))
 

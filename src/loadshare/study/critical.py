@@ -13,12 +13,11 @@ from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path as FilePath
 
 from loadshare.case import Case
-from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
 from loadshare.libraries import pd
-from loadshare.numbers import runs
+from loadshare.numbers import counted, runs
 from loadshare.pictures import Figure, picture
 from loadshare.study.events import Event, events_of, flanks_changed
 from loadshare.study.follow.line import Line
@@ -137,7 +136,7 @@ class Critical(Viewed):
         doubtful = sum(not event.confirmed for event in self.events)
         lines = []
         if doubtful:
-            lines.append(f"{count(doubtful, 'event')} of {len(self.events)} not confirmed.")
+            lines.append(f"{counted(doubtful, 'event')} of {len(self.events)} not confirmed.")
         gaps = sorted({(u.start, u.stop, u.why) for u in self.unproved})
         unit = f" {self.parameter.unit}" if self.parameter.unit else ""
         lines += [
@@ -145,7 +144,7 @@ class Critical(Viewed):
             for start, stop, why in gaps[:SHOWN]
         ]
         if len(gaps) > SHOWN:
-            lines.append(f"{count(len(gaps) - SHOWN, 'further interval')} not proved.")
+            lines.append(f"{counted(len(gaps) - SHOWN, 'further interval')} not proved.")
         return lines
 
 

@@ -14,9 +14,9 @@ from loadshare.arguments import check_mapping, whole
 from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.case.reader import opened
-from loadshare.case.words import count
 from loadshare.errors import CaseError, Refused
 from loadshare.libraries import pd, special
+from loadshare.numbers import counted
 from loadshare.pictures import Figure, picture
 from loadshare.settings import FIT
 from loadshare.study.compare import Comparison, Deviation, computed
@@ -116,7 +116,7 @@ class Fit(Viewed):
 
     def _view(self) -> View:
         """Show the fitted inputs, how well they fit, and what the data leave open."""
-        degrees = count(max(self.freedom, 0), "degree")
+        degrees = counted(max(self.freedom, 0), "degree")
         facts = (
             ("χ²", f"{self.chi_square:.4g}, {degrees} of freedom"),
             ("starts", f"{len(self.starts)}, {self.evaluations} sets of equilibria"),

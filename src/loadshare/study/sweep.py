@@ -17,14 +17,13 @@ import numpy as np
 from loadshare.arguments import check_mapping, one_of, whole
 from loadshare.array_types import Array
 from loadshare.case import Case
-from loadshare.case.words import count
 from loadshare.equality import Comparable
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.answered import SampleAnswers, answer_samples
 from loadshare.later import known
 from loadshare.libraries import pd, xr
-from loadshare.numbers import omega
+from loadshare.numbers import counted, omega
 from loadshare.output import csv_of, netcdf_of, write_whole
 from loadshare.pictures import Figure, picture
 from loadshare.results import Result
@@ -222,7 +221,7 @@ class Sweep(Viewed):
         if not failed:
             return []
         reasons = dict.fromkeys(f"{p.status}: {p.message.splitlines()[0]}" for p in failed)
-        return [*reasons, f"{count(len(failed), 'point')} of {len(self.points)} not certified."]
+        return [*reasons, f"{counted(len(failed), 'point')} of {len(self.points)} not certified."]
 
     def to_netcdf(self, path: str | FilePath) -> None:
         """Write the labelled arrays to a netCDF file."""

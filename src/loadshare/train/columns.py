@@ -14,8 +14,9 @@ from loadshare.array_types import Array
 from loadshare.case.keys import Path, dotted, parse, with_unit
 from loadshare.case.quantity import as_text
 from loadshare.case.units import si_factor
-from loadshare.case.words import as_given, count
+from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
+from loadshare.numbers import counted
 
 _UNIT = re.compile(r"(?P<key>.*\S)\s+\[(?P<unit>[^\]]*)\]")
 
@@ -166,7 +167,7 @@ def _fault(column: Column, before: list[Column]) -> str:
     if not len(values):
         return "contains no value"
     if before and len(values) != len(before[0].values):
-        return f"has {count(len(values))}, but the keys before it have {len(before[0].values)}"
+        return f"has {counted(len(values))}, but the keys before it have {len(before[0].values)}"
     if any(other.path == column.path for other in before):
         return "is given twice"
     if values.dtype.kind not in "fiubU":

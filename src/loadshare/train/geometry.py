@@ -16,8 +16,8 @@ from loadshare import case as spec
 from loadshare.case.line_of_action import LineOfAction, backlash_of_teeth, line_of_action
 from loadshare.case.place import axis_of
 from loadshare.case.teeth import tooth_counts
-from loadshare.case.words import count
 from loadshare.errors import CaseError
+from loadshare.numbers import counted
 from loadshare.settings import ALLOWED
 from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
@@ -138,7 +138,7 @@ def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
         message = (
             f"all meshes complete whole cycles after {_number_text(cycles)} cycles of mesh "
             f"{found.fastest} ({_number_text(found.revolutions)} revolutions of gear "
-            f"{operating.input}); with {count(operating.positions, 'position')} in each "
+            f"{operating.input}); with {counted(operating.positions, 'position')} in each "
             f"cycle, these are {_number_text(steps)} positions"
         )
         fewer = f" or operating.positions = {most // cycles}" if most >= cycles else ""

@@ -11,8 +11,8 @@ from loadshare.case.keys import Path
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating
 from loadshare.case.teeth import CountMisfit, tooth_counts
-from loadshare.case.words import count
 from loadshare.errors import Problem
+from loadshare.numbers import counted
 
 
 def check_list_lengths(draft: Draft) -> Iterator[Problem]:
@@ -28,7 +28,7 @@ def check_list_lengths(draft: Draft) -> Iterator[Problem]:
         fields += [(("meshes", name, *key), value, *cycle) for key, value in mesh.per_position()]
     for path, value, key, needed in fields:
         if isinstance(value, tuple) and len(value) not in (1, needed):
-            message = f"has {count(len(value))}, but {key} is {needed}"
+            message = f"has {counted(len(value))}, but {key} is {needed}"
             allowed = "1 value" if needed == 1 else f"1 value or {needed}"
             yield draft.problem(path, message, allowed)
 

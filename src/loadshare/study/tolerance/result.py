@@ -8,10 +8,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 
-from loadshare.case.words import count
 from loadshare.equality import Comparable
 from loadshare.errors import LoadshareError
 from loadshare.libraries import pd, xr
+from loadshare.numbers import counted
 from loadshare.pictures import Figure, picture
 from loadshare.results.dataset import unchanging
 from loadshare.study.tolerance.dataset import dataset as labelled
@@ -169,4 +169,4 @@ class Tolerance(Viewed):
     def _left_open(self) -> list[str]:
         if not self.refused:
             return []
-        return [f"{count(self.refused, 'sample')} of {self.samples} not certified."]
+        return [f"{counted(self.refused, 'sample')} of {self.samples} not certified."]

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from loadshare.case.words import count
-from loadshare.numbers import NONE
+from loadshare.numbers import NONE, counted
 from loadshare.settings import TOLERANCE
 from loadshare.table import Cell, Table, text_table
 from loadshare.view import View
@@ -28,7 +27,7 @@ def tolerance_view(found: Tolerance) -> View:
         (
             "samples",
             f"{found.samples:,} {settings['sampling']} samples, seed {settings['seed']}, "
-            f"{count(len(settings['positions']), 'position')}, "
+            f"{counted(len(settings['positions']), 'position')}, "
             f"largest residual {found.residual:.1e}",
         ),
         ("certified", f"{found.samples - found.refused} of {found.samples} samples"),

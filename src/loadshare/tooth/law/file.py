@@ -20,8 +20,8 @@ from loadshare.case.origin import Origin
 from loadshare.case.quantity import Angle, Length
 from loadshare.case.reader import read_toml
 from loadshare.case.translate import validated
-from loadshare.case.words import count
 from loadshare.errors import CaseError, Refused
+from loadshare.numbers import counted
 from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import Ltca
@@ -145,7 +145,9 @@ class MeshLaw(Element):
         for key in ("a", "b", "c", "misfit"):
             found = len(getattr(self, key))
             if found != self.computed.positions:
-                message = f"has {count(found)}, but computed.positions is {self.computed.positions}"
+                message = (
+                    f"has {counted(found)}, but computed.positions is {self.computed.positions}"
+                )
                 yield Rule(message, (key,))
         for k, (b, c) in enumerate(zip(self.b, self.c, strict=False)):
             if b.si == c.si == 0.0:
@@ -159,8 +161,8 @@ class MeshLaw(Element):
         missed = 0.0 if self.sampled is None else self.sampled - 1.0
         if abs(missed) > MISSED:
             lines.append(
-                f"Sampled at {count(self.computed.positions, 'position')}, the mean deflection is "
-                f"{100.0 * missed:+.1f} % off that of the whole cycle; analysis.sampling = "
+                f"Sampled at {counted(self.computed.positions, 'position')}, the mean deflection "
+                f"is {100.0 * missed:+.1f} % off that of the whole cycle; analysis.sampling = "
                 '"means" gives it correctly.'
             )
         if self.sideways > SLICES:

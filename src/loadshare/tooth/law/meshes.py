@@ -16,10 +16,10 @@ from loadshare.case.keys import covers, dotted, parse
 from loadshare.case.line_of_action import facing, mesh_distance
 from loadshare.case.meshes import SOURCES
 from loadshare.case.recent import Recent
-from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.input import Unreadable, read_file, real
 from loadshare.involute import distance_without_backlash
+from loadshare.numbers import counted
 from loadshare.settings import ALLOWED
 
 if TYPE_CHECKING:
@@ -241,7 +241,7 @@ def _read(
                     problems |= dict.fromkeys(disagreements(case, name, gears, file.name))
                 if found != positions:
                     message = (
-                        f"has {count(found, 'position')}, but operating.positions is {positions}"
+                        f"has {counted(found, 'position')}, but operating.positions is {positions}"
                     )
                     hint = f"Write it again: loadshare ltca PAIR.toml --positions {positions}."
                     problems[case.problem(key, message, "", hint)] = None

@@ -10,7 +10,7 @@ from pydantic import Field, Strict
 
 from loadshare.case.element import Element, Rule, Text
 from loadshare.case.quantity import ANGLE, LENGTH, TORQUE, Angle, Dimension, Length, Quantity
-from loadshare.case.words import count
+from loadshare.numbers import counted
 from loadshare.settings import ALLOWED, TEETH
 from loadshare.tooth.analysis.ltca import POINTS
 
@@ -110,7 +110,7 @@ class Body(Element):
             values = getattr(pitch, key)
             if len(values) > self.teeth or (key == "single" and len(values) < self.teeth):
                 most = "" if key == "single" else " at most"
-                message = f"has {count(len(values))}"
+                message = f"has {counted(len(values))}"
                 yield Rule(message, ("pitch", key), f"{self.teeth}{most}, one per tooth")
             elif key == "single" and abs(sum(v.si for v in values)) > TEETH.closing:
                 off = f"{1e6 * sum(v.si for v in values):.4g} µm"
