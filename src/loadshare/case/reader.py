@@ -19,7 +19,7 @@ from loadshare.case.draft import Draft, as_data, read_draft
 from loadshare.case.keys import Path, dotted, merge, parse, walk
 from loadshare.case.model import Case
 from loadshare.case.origin import Origin
-from loadshare.case.recognise import KINDS, near_names, what_folder_is, what_is
+from loadshare.case.recognise import OTHER_FILES, near_names, what_folder_is, what_is
 from loadshare.case.revise import change, revise, still_assumed
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
@@ -145,8 +145,8 @@ def _read(
     """Return a file's merged data, the file of each key, and non-fatal problems."""
     own = read_toml(path)
     kind = own.get("kind")
-    if isinstance(kind, str) and kind in KINDS:
-        raise CaseError([Problem(str(path), "kind", as_given(kind), KINDS[kind])])
+    if isinstance(kind, str) and kind in OTHER_FILES:
+        raise CaseError([Problem(str(path), "kind", as_given(kind), OTHER_FILES[kind])])
     base, removals = own.pop("extends", None), own.pop("remove", [])
     data: dict[str, Any] = {}
     files: dict[Path, str] = {}

@@ -27,7 +27,7 @@ TAKEN_BY = {
     "case": "is a case; `loadshare run` solves it",
 }
 """What a file is, and which command takes it."""
-KINDS = {
+OTHER_FILES = {
     "helicoid": "is a pair of gears; `loadshare ltca` analyses it, and a mesh names it under its "
     "key geometry",
     "face-gear": "is a pair with a face gear; `loadshare ltca` analyses it, and a mesh names it "

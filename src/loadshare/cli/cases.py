@@ -157,10 +157,10 @@ def _no_case_text(path: Path) -> str:
 
 def _of_another_kind(file: Path) -> bool:
     """Return whether a file says that it is a pair or a law, which cases name but which is none."""
-    from loadshare.case.recognise import KINDS
+    from loadshare.case.recognise import OTHER_FILES
     from loadshare.settings import ALLOWED
 
-    kind = rf"""^kind\s*=\s*["']({"|".join(KINDS)})["']"""
+    kind = rf"""^kind\s*=\s*["']({"|".join(OTHER_FILES)})["']"""
     try:
         text = read_file(file, ALLOWED.bytes).decode("utf-8")
         return re.search(kind, text, re.MULTILINE) is not None
