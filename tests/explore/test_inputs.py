@@ -8,7 +8,7 @@ from tests.support import shipped
 import loadshare as ls
 from loadshare.case.keys import dotted
 from loadshare.errors import CaseError
-from loadshare.explore.inputs import Inputs, _step
+from loadshare.explore.inputs import PageInputs, _step
 from loadshare.study.parameter import read_value
 from loadshare.study.sensitivity.inputs import inputs_of
 
@@ -18,7 +18,7 @@ NAMES = ("fgfbstts/all_elements", "nrel_5mw/gearbox", "planetary/four_planets", 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_number_of_a_case_is_an_input(name):
     case = shipped(name)
-    inputs = Inputs(case).every
+    inputs = PageInputs(case).every
     wanted = [i.key for i in inputs_of(case, None) if not i.key.startswith(("errors", "study"))]
     assert set(wanted) <= set(inputs)
     for gear in case.gears:
@@ -27,7 +27,7 @@ def test_every_number_of_a_case_is_an_input(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_sliders_hold_their_value_and_have_round_steps(name):
-    for one in Inputs(shipped(name)).every.values():
+    for one in PageInputs(shipped(name)).every.values():
         assert one.low <= one.number <= one.high, one
         assert one.low < one.high
         assert one.whole or 900 <= (one.high - one.low) / one.step <= 3000, one
@@ -40,7 +40,7 @@ def test_round_steps():
 
 def test_what_makes_no_case_is_never_at_the_end_of_a_slider_of_a_size():
     """If zero is not allowed, the slider does not reach it."""
-    inputs = Inputs(shipped("fgfbstts/all_elements"))
+    inputs = PageInputs(shipped("fgfbstts/all_elements"))
     for key in ("rings.5.stiffness", "splines.4.bending_stiffness", "operating.speed"):
         one = inputs.every[key]
         inputs.case.replace({key: f"{one.low!r} {one.unit}"})
@@ -48,12 +48,12 @@ def test_what_makes_no_case_is_never_at_the_end_of_a_slider_of_a_size():
 
 
 def test_a_part_of_an_error_keeps_the_others():
-    inputs = Inputs(shipped("fgfbstts/limit_ring"))
+    inputs = PageInputs(shipped("fgfbstts/limit_ring"))
     changes = inputs.changes({"errors.6.installation.amount": "50 um"})
     assert changes == {
         "errors.6.installation": {"amount": "50 um", "direction": "90.0 deg"},
     }
-    inputs = Inputs(shipped("fgfbstts/all_elements"))
+    inputs = PageInputs(shipped("fgfbstts/all_elements"))
     both = {"errors.7.eccentricity.amount": "9 um", "errors.7.eccentricity.phase": "3 deg"}
     (table,) = inputs.changes(both).values()
     assert table == {"amount": "9 um", "direction": "0 deg", "phase": "3 deg"}
@@ -62,12 +62,14 @@ def test_a_part_of_an_error_keeps_the_others():
 
 def test_an_error_that_the_case_cannot_have_is_not_offered():
     """Nothing determines how far gears of this case turn, so an eccentricity is not possible."""
-    assert not [key for key in Inputs(shipped("fgfbstts/limit_ring")).every if "eccentric" in key]
+    assert not [
+        key for key in PageInputs(shipped("fgfbstts/limit_ring")).every if "eccentric" in key
+    ]
 
 
 def test_size_and_direction_say_what_the_components_say():
     case = shipped("fgfbstts/limit_ring")
-    inputs = Inputs(case)
+    inputs = PageInputs(case)
     turned = case.replace(inputs.changes({"errors.9.installation.direction": "-90 deg"}))
     torque = [ls.solve(c, positions=[1]).positions[0].torque for c in (case, turned)]
     assert torque[1] == pytest.approx(torque[0], rel=1e-9)
@@ -77,7 +79,7 @@ def test_errors_of_three_components_stay_numbers():
     case = shipped("fgfbstts/limit_ring").replace(
         {"errors.6.installation": ["1 um", "2 um", "3 um"]}
     )
-    keys = Inputs(case).every
+    keys = PageInputs(case).every
     assert "errors.6.installation[2]" in keys
     assert "errors.6.installation.amount" not in keys
 
@@ -100,17 +102,17 @@ def test_errors_of_three_components_stay_numbers():
 )
 def test_no_key_but_those_of_the_list(key):
     with pytest.raises(CaseError, match="is not an input"):
-        Inputs(shipped("fgfbstts/limit_ring")).changes({key: "/etc/passwd"})
+        PageInputs(shipped("fgfbstts/limit_ring")).changes({key: "/etc/passwd"})
 
 
 @pytest.mark.parametrize("value", [None, True, [], {}, ["1 um"], {"a": 1}, "9" * 300])
 def test_a_value_is_a_text_or_a_number(value):
     with pytest.raises(CaseError):
-        Inputs(shipped("fgfbstts/limit_ring")).changes({"rings.4.float": value})
+        PageInputs(shipped("fgfbstts/limit_ring")).changes({"rings.4.float": value})
 
 
 def test_names_with_a_star_and_joined_keys():
-    inputs = Inputs(shipped("fgfbstts/limit_ring"))
+    inputs = PageInputs(shipped("fgfbstts/limit_ring"))
     assert inputs.keys("rings.*.float") == ("rings.4.float", "rings.5.float")
     assert inputs.keys("rings.5.float = rings.4.clearance") == (
         "rings.5.float",
@@ -128,7 +130,7 @@ def test_names_with_a_star_and_joined_keys():
 
 
 def test_units_of_inputs_are_those_of_the_case():
-    for one in Inputs(shipped("fgfbstts/all_elements")).every.values():
+    for one in PageInputs(shipped("fgfbstts/all_elements")).every.values():
         value = read_value(one.text)
         assert (value.number, value.unit) == (one.number, one.unit)
 
@@ -155,7 +157,7 @@ def test_directions_count_against_the_axis_of_the_gear(axis, matters):
             "stages": {"I": {"meshes": ["s-i1", "s-i2"]}},
         }
     )
-    key, inputs = "errors.i1.installation.amount", Inputs(case)
+    key, inputs = "errors.i1.installation.amount", PageInputs(case)
     same = case.replace(inputs.changes({key: inputs.every[key].text}))
     share, again = (ls.solve(c).positions[0].share["s-i1"] for c in (case, same))
     assert (abs(share - 1.0) > 0.1) is matters

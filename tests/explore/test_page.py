@@ -18,14 +18,14 @@ from tests.report.pages import EVIL_CASE
 from tests.support import mostly_slow, shipped
 
 from loadshare.case import Case, load_case
-from loadshare.explore.inputs import Inputs
+from loadshare.explore.inputs import PageInputs
 
 PICTURES = "figure:not([hidden]) > svg"
 
 
 @pytest.fixture(scope="module")
 def inputs():
-    return Inputs(load_case(SEED))
+    return PageInputs(load_case(SEED))
 
 
 def types(browser, name, text):

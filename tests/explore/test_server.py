@@ -22,7 +22,7 @@ from loadshare.case import Case, load_case
 from loadshare.explore.answer import answer_of, plain, whole_of
 from loadshare.explore.files import case_file
 from loadshare.explore.guard import hosts_of
-from loadshare.explore.inputs import Inputs
+from loadshare.explore.inputs import PageInputs
 from loadshare.report.verdict import largest_forces, resting, sharing
 
 FLOAT = "rings.5.float"
@@ -129,7 +129,7 @@ def partly_refused():
 
 
 def test_a_position_without_an_answer_is_reported():
-    inputs = Inputs(partly_refused())
+    inputs = PageInputs(partly_refused())
     assert answer_of(inputs, {}, 1)["status"] == "certified"
     whole = whole_of(inputs, {}, 1)
     assert (whole["status"], whole["measure"]) == ("partly refused", "Ω at 14 of 15")
@@ -154,7 +154,7 @@ def test_a_position_without_an_answer_is_reported():
 )
 def test_the_arrows_turn_no_idler(name, power):
     """The moments of all drawn forces about the centre of an idler add up to zero."""
-    inputs = Inputs(shipped(f"fgfbstts/{name}"))
+    inputs = PageInputs(shipped(f"fgfbstts/{name}"))
     found = answer_of(inputs, {"operating.power": power}, 1)
     view = found["train"]["views"][0]
     places = {mesh["name"]: np.array(mesh["at"]) for mesh in view["meshes"]}
@@ -301,7 +301,7 @@ def test_a_setting_is_saved_as_a_case_that_extends_the_original(seed, tmp_path):
         (tmp_path / name).write_text((CASES / "fgfbstts" / name).read_text())
     (tmp_path / found["name"]).write_text(found["text"])
     case = load_case(tmp_path / found["name"])
-    inputs = Inputs(load_case(SEED))
+    inputs = PageInputs(load_case(SEED))
     assert case == inputs.case.replace(inputs.changes(changes))
     assert ask(seed, "/toml", {"changes": {FLOAT: "3"}})[2]["status"] == "invalid"
     # The file itself is consistent, but its train is not.
@@ -348,7 +348,7 @@ def test_a_case_saved_whole_needs_no_file_of_a_law(tmp_path):
         tmp_path, CASE + 'geometry = "spur.toml"\n[errors.b]\ninstallation = ["0 um", "0 um"]'
     )
     case = load_case(file).replace({"errors": None})
-    found = case_file(Inputs(case), {}, file)
+    found = case_file(PageInputs(case), {}, file)
     assert "does not extend the original file" in found["note"]
     assert ls.solve(Case(tomllib.loads(found["text"]))).positions[0].certificate.passed
 
@@ -367,4 +367,4 @@ def test_hostile_texts_travel_as_texts(served):
 def test_an_answer_has_no_number_that_is_none():
     """Browsers cannot read NaN or infinity."""
     for name in ("fgfbstts/limit_ring", "star/floating_sun_3"):
-        json.dumps(answer_of(Inputs(shipped(name)), {}, 1), allow_nan=False)
+        json.dumps(answer_of(PageInputs(shipped(name)), {}, 1), allow_nan=False)

@@ -24,7 +24,7 @@ from tests.support import shipped
 import loadshare as ls
 from loadshare.explore import workers
 from loadshare.explore.answer import plain
-from loadshare.explore.inputs import Inputs
+from loadshare.explore.inputs import PageInputs
 from loadshare.explore.questions import Along
 from loadshare.explore.request import RequestError
 from loadshare.explore.samples import omega_table, scatter
@@ -153,7 +153,7 @@ def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
 
 def test_counts_and_geometry_do_not_scatter():
     """They are left out and named; alone they are no study."""
-    inputs = Inputs(shipped("planetary/four_planets"))
+    inputs = PageInputs(shipped("planetary/four_planets"))
     ranges = {"gears.sun.teeth": [0.0, 36.0], "gears.sun.centre[0]": [-0.1, 0.1]}
     varying = {"errors.planet2.pin.tangential": [0.0, 40.0]}
     found = scatter(inputs, {"ranges": ranges | varying})

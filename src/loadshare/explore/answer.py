@@ -11,7 +11,7 @@ from typing import Any
 from loadshare.case import Case
 from loadshare.case.keys import dotted
 from loadshare.errors import CaseError, Refused
-from loadshare.explore.inputs import Inputs
+from loadshare.explore.inputs import PageInputs
 from loadshare.explore.pictures import float_shapes, force_shapes, train_shapes
 from loadshare.job import solve
 from loadshare.job.positions import prepared
@@ -33,7 +33,7 @@ MOVING = ("gears.", "meshes.", "errors.", "operating.")
 """Beginnings of keys that may change the drawing of the train: its places, roles and colours."""
 
 
-def setting_of(inputs: Inputs, given: Setting) -> Case:
+def setting_of(inputs: PageInputs, given: Setting) -> Case:
     """Return the case as a page has set it.
 
     Raises
@@ -50,12 +50,12 @@ def invalid(error: CaseError) -> Plain:
     return {"status": INVALID, "messages": [str(problem) for problem in error.problems]}
 
 
-def answer_of(inputs: Inputs, given: Setting, position: int) -> Plain:
+def answer_of(inputs: PageInputs, given: Setting, position: int) -> Plain:
     """Solve a setting, at all positions if they are few, else at the one that is shown.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : PageInputs
     given : mapping of str to object
         Inputs that differ from the case.
     position : int
@@ -69,7 +69,7 @@ def answer_of(inputs: Inputs, given: Setting, position: int) -> Plain:
     return _answer(inputs, given, position, EXPLORE.together)[0]
 
 
-def whole_of(inputs: Inputs, given: Setting, position: int) -> Plain:
+def whole_of(inputs: PageInputs, given: Setting, position: int) -> Plain:
     """Return the same answer at all positions, and how far it can be trusted.
 
     This takes too long to follow a slider. It holds all that `answer_of` returns, so that a page
@@ -90,7 +90,7 @@ def whole_of(inputs: Inputs, given: Setting, position: int) -> Plain:
 
 
 def _answer(
-    inputs: Inputs, given: Setting, position: int, together: int
+    inputs: PageInputs, given: Setting, position: int, together: int
 ) -> tuple[Plain, Result | None]:
     """Return an answer and its result: at all positions if at most `together`, else at one."""
     case = setting_of(inputs, given)
@@ -124,7 +124,7 @@ def _answer(
     return found, result
 
 
-def _numbers(inputs: Inputs, given: Setting) -> Iterator[tuple[str, float]]:
+def _numbers(inputs: PageInputs, given: Setting) -> Iterator[tuple[str, float]]:
     """Yield the numbers of a setting in the units of the case, which sliders use."""
     for key, value in given.items():
         read = read_value(value)
@@ -217,7 +217,7 @@ def _states(shown: Position) -> Iterator[Record]:
             yield row(f"spline {found.gear}", found.spline, found.spline_force)
 
 
-def case_of(inputs: Inputs) -> Plain:
+def case_of(inputs: PageInputs) -> Plain:
     """Return what a page must know about its case before anything is changed."""
     case = inputs.case
     train = prepared(case)[1].train
@@ -235,7 +235,7 @@ def case_of(inputs: Inputs) -> Plain:
     }
 
 
-def tied(inputs: Inputs) -> list[tuple[str, tuple[str, ...]]]:
+def tied(inputs: PageInputs) -> list[tuple[str, tuple[str, ...]]]:
     """Return names with a star, each with the inputs that take the same value under it."""
     found: dict[str, int] = {}
     for key in inputs.every:

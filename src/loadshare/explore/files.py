@@ -11,17 +11,17 @@ import tomlkit
 from loadshare.case.reader import load_case
 from loadshare.case.writer import toml_text
 from loadshare.errors import CaseError
-from loadshare.explore.inputs import Inputs
+from loadshare.explore.inputs import PageInputs
 from loadshare.job.positions import prepared
 from loadshare.tooth import written_in
 
 
-def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) -> dict[str, str]:
+def case_file(inputs: PageInputs, given: Mapping[str, object], file: Path | None) -> dict[str, str]:
     """Return a setting as the text of a case file, its name, and a note on where it belongs.
 
     Parameters
     ----------
-    inputs : Inputs
+    inputs : PageInputs
         Inputs of the case, with the changes that the command line has made to the file.
     given : mapping of str to object
         Inputs that a page has changed.

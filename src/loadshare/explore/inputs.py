@@ -43,7 +43,7 @@ COARSE = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Input:
+class PageInput:
     """One number that a page may change; a page is given its attributes in this order.
 
     Attributes
@@ -85,7 +85,7 @@ class Input:
 
 
 @dataclass(frozen=True)
-class Inputs:
+class PageInputs:
     """All that a page may change in a case.
 
     Attributes
@@ -101,9 +101,9 @@ class Inputs:
         return self.case.to_dict()
 
     @cached_property
-    def every(self) -> dict[str, Input]:
+    def every(self) -> dict[str, PageInput]:
         """Inputs by key, in the order of the case file; then errors that it does not have."""
-        found: dict[str, Input] = {}
+        found: dict[str, PageInput] = {}
         for path in leaves(self.data):
             if self._vector_of(path) is None:
                 one = self._read(path, look_up(self.data, path))
@@ -222,14 +222,14 @@ class Inputs:
                 yield from absent.items()
                 return
 
-    def _read(self, path: Path, given: object) -> Input | None:
+    def _read(self, path: Path, given: object) -> PageInput | None:
         value = read_value(given)
         if value is None or (isinstance(given, str) and not value.unit):
             return None
         about, dimension = _described(path)
         whole, turning = isinstance(given, int), value.unit != "" and path[-1] in ANGLES
         low, high = _reach(path, value, dimension, turning)
-        return Input(
+        return PageInput(
             key=dotted(path),
             text=given if isinstance(given, str | int | float) else str(given),
             number=value.number,

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from loadshare.case import Case
 from loadshare.explore.answer import setting_of
-from loadshare.explore.inputs import Inputs
+from loadshare.explore.inputs import PageInputs
 from loadshare.explore.request import RequestError, number, setting, text
 from loadshare.settings import ALLOWED, EXPLORE
 
@@ -76,7 +76,7 @@ class Slopes(NamedTuple):
             yield self._replace(keys=self.keys[part], reaches=self.reaches[part])
 
 
-def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
+def along(inputs: PageInputs, body: Mapping[str, Any]) -> Along:
     """Return the stretch of an input that a page asks for.
 
     Raises
@@ -101,7 +101,7 @@ def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
     )
 
 
-def slopes(inputs: Inputs, body: Mapping[str, Any]) -> Slopes:
+def slopes(inputs: PageInputs, body: Mapping[str, Any]) -> Slopes:
     """Return the inputs by which a page wants to differentiate; raises as `along` does."""
     wanted = body.get("keys")
     if not isinstance(wanted, list) or not 0 < len(wanted) <= EXPLORE.keys:
@@ -111,7 +111,7 @@ def slopes(inputs: Inputs, body: Mapping[str, Any]) -> Slopes:
     return Slopes(with_keys_written(inputs, keys, setting(body)), keys, reaches, place(body))
 
 
-def with_keys_written(inputs: Inputs, keys: Sequence[str], given: Mapping[str, object]) -> Case:
+def with_keys_written(inputs: PageInputs, keys: Sequence[str], given: Mapping[str, object]) -> Case:
     """Return the case of a setting with some keys written out, so that they can be varied.
 
     An error that the case lacks, or gives by components, has no size and direction until then.

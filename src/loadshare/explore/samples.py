@@ -17,7 +17,7 @@ from loadshare.case import Case
 from loadshare.case.keys import dotted
 from loadshare.case.writer import toml_text
 from loadshare.explore.answer import plain
-from loadshare.explore.inputs import Input, Inputs
+from loadshare.explore.inputs import PageInput, PageInputs
 from loadshare.explore.questions import finite, place, with_keys_written
 from loadshare.explore.request import RequestError, number, setting, text
 from loadshare.explore.studies import Plain, reporting_errors
@@ -60,7 +60,7 @@ class Scatter(NamedTuple):
     left: tuple[str, ...]
 
 
-def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
+def scatter(inputs: PageInputs, body: Mapping[str, Any]) -> Scatter:
     """Return the study of the case that a page names, or one of the inputs that it shows.
 
     Raises
@@ -86,7 +86,7 @@ def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
 
 
 def _of_shown(
-    inputs: Inputs, body: Mapping[str, Any], given: Mapping[str, object]
+    inputs: PageInputs, body: Mapping[str, Any], given: Mapping[str, object]
 ) -> tuple[Case, dict[str, Any], list[str]]:
     ranges = body.get("ranges")
     if not isinstance(ranges, dict) or not ranges:
@@ -112,7 +112,7 @@ def _of_shown(
     return case, table, left
 
 
-def _spread(one: Input, given: Mapping[str, object], low: float, high: float) -> dict[str, Any]:
+def _spread(one: PageInput, given: Mapping[str, object], low: float, high: float) -> dict[str, Any]:
     """Return how an input scatters if the case does not give that."""
     now, unit = read_value(given.get(one.key, one.text)), one.unit
     if Value(1.0, unit).si_unit in EVENLY or now is None or now.number == 0.0:

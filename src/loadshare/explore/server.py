@@ -24,7 +24,7 @@ from loadshare.errors import CaseError
 from loadshare.explore.answer import answer_of, case_of, invalid, whole_of
 from loadshare.explore.files import case_file
 from loadshare.explore.guard import Guard
-from loadshare.explore.inputs import Inputs
+from loadshare.explore.inputs import PageInputs
 from loadshare.explore.questions import along, finite, place, slopes
 from loadshare.explore.request import RequestError, body_of, setting, text
 from loadshare.explore.samples import Growing, SampleRange, samples, scatter, start_study
@@ -43,7 +43,7 @@ INDEX = "index.html"
 Body = dict[str, Any]
 Parts = AsyncIterator[dict[str, Any]]
 Found = TypeVar("Found")
-Answering = Callable[[Inputs, Mapping[str, object], int], dict[str, Any]]
+Answering = Callable[[PageInputs, Mapping[str, object], int], dict[str, Any]]
 Handler = Callable[[Request], Awaitable[Response]]
 
 
@@ -71,7 +71,7 @@ class Explorer:
     """
 
     def __init__(self, case: Case, file: Path | None) -> None:
-        self.inputs, self.file = Inputs(case), file
+        self.inputs, self.file = PageInputs(case), file
         # One after another: each answer is ready sooner than if they ran at the same time.
         self.solver = ThreadPoolExecutor(1, "solver")
         self.workers = Workers(max(1, (os.cpu_count() or 2) - 1))

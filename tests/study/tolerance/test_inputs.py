@@ -13,7 +13,7 @@ from loadshare.settings import TOLERANCE
 from loadshare.study.parameter import table_of
 from loadshare.study.tolerance.design import uniforms
 from loadshare.study.tolerance.distribution import Distribution, read_distribution
-from loadshare.study.tolerance.inputs import Inputs, read_inputs
+from loadshare.study.tolerance.inputs import ScatteredInputs, read_inputs
 
 NORMAL = {"distribution": "normal", "mean": "0 um", "deviation": "10 um"}
 COUNT = 40_000
@@ -94,7 +94,7 @@ def test_a_star_draws_each_key_and_equal_signs_tie():
     (one,) = read_inputs(tied, "errors").every
     assert one.keys == ("rings.4.float", "rings.5.float")
     assert list(table_of([one], np.ones((2, 1)))) == ["rings.4.float [um]", "rings.5.float [um]"]
-    again = Inputs.from_plain(inputs.to_plain())
+    again = ScatteredInputs.from_plain(inputs.to_plain())
     assert again.every == inputs.every
 
 

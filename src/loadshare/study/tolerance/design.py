@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from loadshare.array_types import Array
 from loadshare.libraries import qmc
 from loadshare.settings import JOB, TOLERANCE
-from loadshare.study.tolerance.inputs import Inputs
+from loadshare.study.tolerance.inputs import ScatteredInputs
 
 
 @dataclass(frozen=True)
@@ -19,14 +19,14 @@ class Drawn:
 
     Attributes
     ----------
-    inputs : Inputs
+    inputs : ScatteredInputs
     count : int
         Rows of each matrix.
     seed : int
     sampling : str
     """
 
-    inputs: Inputs
+    inputs: ScatteredInputs
     count: int
     seed: int
     sampling: str

@@ -35,7 +35,7 @@ from loadshare.study.tolerance.distribution import (
 
 
 @dataclass(frozen=True, slots=True)
-class Input(Parameter):
+class ScatteredInput(Parameter):
     """An input that scatters.
 
     Attributes
@@ -52,22 +52,22 @@ class Input(Parameter):
     distribution: Distribution
 
     @classmethod
-    def of(cls, keys: tuple[str, ...], distribution: Distribution) -> Input:
+    def of(cls, keys: tuple[str, ...], distribution: Distribution) -> ScatteredInput:
         """Return the input of keys that all take one value, drawn from a distribution."""
         return cls("=".join(keys), keys, distribution.unit, distribution)
 
 
 @dataclass(frozen=True)
-class Inputs:
+class ScatteredInputs:
     """All inputs of a study.
 
     Attributes
     ----------
-    every : tuple of Input
+    every : tuple of ScatteredInput
     copulas : tuple of Copula
     """
 
-    every: tuple[Input, ...]
+    every: tuple[ScatteredInput, ...]
     copulas: tuple[Copula, ...] = ()
 
     def values(self, uniforms: Array) -> Array:
@@ -114,10 +114,10 @@ class Inputs:
         }
 
     @classmethod
-    def from_plain(cls, plain: Mapping[str, Any]) -> Inputs:
+    def from_plain(cls, plain: Mapping[str, Any]) -> ScatteredInputs:
         """Return inputs from the plain data of `to_plain`."""
         every = tuple(
-            Input.of(
+            ScatteredInput.of(
                 tuple(one["keys"]),
                 Distribution(one["distribution"], one["numbers"], one["unit"]),
             )
@@ -129,7 +129,7 @@ class Inputs:
         return cls(every, copulas)
 
 
-def read_inputs(case: Case, name: str) -> Inputs:
+def read_inputs(case: Case, name: str) -> ScatteredInputs:
     """Read the inputs of a tolerance study, and check the case at their far ends.
 
     Parameters
@@ -148,7 +148,7 @@ def read_inputs(case: Case, name: str) -> Inputs:
     copulas = tuple(reader.copulas(every))
     if reader.problems:
         raise CaseError(reader.problems)
-    return Inputs(every, copulas)
+    return ScatteredInputs(every, copulas)
 
 
 class _Reader:
@@ -179,7 +179,7 @@ class _Reader:
             return [tuple(dict.fromkeys(key for part in parts for key in part))]
         return [(key,) for key in parts[0]]
 
-    def inputs(self) -> Iterator[Input]:
+    def inputs(self) -> Iterator[ScatteredInput]:
         """Yield the inputs that can be used."""
         seen: dict[str, str] = {}
         for text, spread in (self.block.inputs or {}).items():
@@ -195,7 +195,7 @@ class _Reader:
                 seen |= dict.fromkeys(keys, text)
                 if found is None:
                     self.bad.update(keys)
-                elif not double and self._fits(path, one := Input.of(keys, found)):
+                elif not double and self._fits(path, one := ScatteredInput.of(keys, found)):
                     yield one
 
     def _read(self, path: tuple[str | int, ...], spread: Spread) -> Distribution | None:
@@ -230,7 +230,7 @@ class _Reader:
             return None
         return self._read(path, spread.model_copy(update={"high": f"{1e6 * ends.pop()!r} um"}))
 
-    def _fits(self, path: tuple[str | int, ...], one: Input) -> bool:
+    def _fits(self, path: tuple[str | int, ...], one: ScatteredInput) -> bool:
         """Return whether the case can be used at the far ends of an input, and between them."""
         for key in one.keys:
             if takes_count(parse(key)):
@@ -251,7 +251,7 @@ class _Reader:
                 return False
         return True
 
-    def copulas(self, every: Sequence[Input]) -> Iterator[Copula]:
+    def copulas(self, every: Sequence[ScatteredInput]) -> Iterator[Copula]:
         """Yield the groups that can be used."""
         number = {key: k for k, one in enumerate(every) for key in one.keys}
         taken: set[int] = set()

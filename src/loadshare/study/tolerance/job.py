@@ -21,7 +21,7 @@ from loadshare.job.many import solve_blocks
 from loadshare.libraries import pa
 from loadshare.study.tolerance.design import Drawn, PickFreeze
 from loadshare.study.tolerance.figures import Figures, figure_names, largest_figures
-from loadshare.study.tolerance.inputs import Inputs
+from loadshare.study.tolerance.inputs import ScatteredInputs
 from loadshare.train import Train, build_train
 from loadshare.train.samples import unusable
 
@@ -70,7 +70,7 @@ class Job:
     settings: dict[str, Any]
 
     @classmethod
-    def of(cls, case: Case, inputs: Inputs, **settings: Any) -> Job:
+    def of(cls, case: Case, inputs: ScatteredInputs, **settings: Any) -> Job:
         """Return the job of a case and its inputs."""
         whole = {
             "version": __version__,
@@ -91,9 +91,9 @@ class Job:
         return hashlib.sha256(text.encode()).hexdigest()
 
     @cached_property
-    def inputs(self) -> Inputs:
+    def inputs(self) -> ScatteredInputs:
         """The inputs of the study."""
-        return Inputs.from_plain(self.settings)
+        return ScatteredInputs.from_plain(self.settings)
 
     @cached_property
     def case(self) -> Case:

@@ -16,7 +16,7 @@ from loadshare.pictures import Figure, picture
 from loadshare.results.dataset import unchanging
 from loadshare.study.tolerance.dataset import dataset as labelled
 from loadshare.study.tolerance.folder import Folder
-from loadshare.study.tolerance.inputs import Inputs
+from loadshare.study.tolerance.inputs import ScatteredInputs
 from loadshare.study.tolerance.statistics import OmegaStatistics, Summary
 from loadshare.study.tolerance.view import tolerance_view
 from loadshare.study.tolerance.worst import WorstCase
@@ -56,7 +56,7 @@ class Tolerance(Viewed):
     ----------
     case : str
         Name of the case.
-    inputs : Inputs
+    inputs : ScatteredInputs
     settings : mapping
         Everything on which the samples depend, as in ``study.json``.
     limit : float or None
@@ -81,7 +81,7 @@ class Tolerance(Viewed):
     """
 
     case: str
-    inputs: Inputs
+    inputs: ScatteredInputs
     settings: Mapping[str, Any]
     limit: float | None
     samples: int
