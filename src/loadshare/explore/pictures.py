@@ -11,7 +11,7 @@ import numpy as np
 from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.numbers import MICROMETRE, MILLIMETRE, read_best
-from loadshare.report.figures.layout import Body, Layout, layout_of
+from loadshare.report.figures.layout import DrawnGear, DrawnTrain, layout_of
 from loadshare.report.figures.paths import Point, circle
 from loadshare.report.figures.region import Journey
 from loadshare.report.flanks import carrying, reaction_size
@@ -102,7 +102,7 @@ def train_shapes(case: Case) -> Plain | None:
     return {"views": [_view(layout, frame) for frame in layout.frames]}
 
 
-def _view(layout: Layout, frame: Vector) -> Plain:
+def _view(layout: DrawnTrain, frame: Vector) -> Plain:
     bodies = layout.large_first
     reach = np.vstack([_flat(b.circle(layout.reach(b)), frame) for b in bodies])
     low, high = reach.min(axis=0), reach.max(axis=0)
@@ -121,7 +121,7 @@ def _view(layout: Layout, frame: Vector) -> Plain:
     }
 
 
-def _gear(layout: Layout, palette: Palette, body: Body, frame: Vector) -> Plain:
+def _gear(layout: DrawnTrain, palette: Palette, body: DrawnGear, frame: Vector) -> Plain:
     full, dashed = layout.radii(body)
     is_round = body.is_round(frame)
     return {
@@ -137,7 +137,7 @@ def _gear(layout: Layout, palette: Palette, body: Body, frame: Vector) -> Plain:
     }
 
 
-def _ring(body: Body, radius: float, frame: Vector, is_round: bool) -> Any:
+def _ring(body: DrawnGear, radius: float, frame: Vector, is_round: bool) -> Any:
     """Return the radius of a circle seen as one, or the path of one seen from the side."""
     if is_round:
         return round(MILLIMETRE.of(radius), PLACES)

@@ -13,7 +13,7 @@ from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
 from loadshare.report.figures.marks import Panel, hover, path_rows
 from loadshare.report.figures.paths import Point, arrow, circle
-from loadshare.report.figures.region import Journey, Region
+from loadshare.report.figures.region import CentreRegion, Journey
 from loadshare.report.flanks import reaction_size
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
 from loadshare.report.vega_lite import Drawing, Row, joined, panel
@@ -118,7 +118,7 @@ class _Panel(Panel):
         self.labels.avoid(self._shaft())
 
     def _region(self) -> list[Any]:
-        region: Region | None = self.journey.region
+        region: CentreRegion | None = self.journey.region
         if region is None:
             return []
         outlines = [

@@ -27,7 +27,7 @@ OUTSIDE = 1.07
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Body:
+class DrawnGear:
     """A gear as it is drawn.
 
     Attributes
@@ -70,7 +70,7 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Pair:
+class DrawnMesh:
     """A mesh as it is drawn.
 
     Attributes
@@ -112,19 +112,19 @@ class Pair:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Layout:
+class DrawnTrain:
     """All that a drawing shows.
 
     Attributes
     ----------
-    bodies : mapping of gear to Body
-    pairs : tuple of Pair
+    bodies : mapping of gear to DrawnGear
+    pairs : tuple of DrawnMesh
     shafts : tuple of (str, str)
         Gears that a shaft joins.
     """
 
-    bodies: Mapping[str, Body]
-    pairs: tuple[Pair, ...]
+    bodies: Mapping[str, DrawnGear]
+    pairs: tuple[DrawnMesh, ...]
     shafts: tuple[tuple[str, str], ...]
 
     @property
@@ -132,7 +132,7 @@ class Layout:
         """Axis along which most gears turn, pointing the way the first of them does."""
         bodies = list(self.bodies.values())
 
-        def alike(body: Body) -> int:
+        def alike(body: DrawnGear) -> int:
             return sum(abs(float(body.axis @ other.axis)) > 1.0 - 1e-6 for other in bodies)
 
         return max(bodies, key=alike).axis
@@ -154,7 +154,7 @@ class Layout:
         return [frame, np.array([frame[0], axis])] if self._heights_differ(axis) else [frame]
 
     @property
-    def large_first(self) -> list[Body]:
+    def large_first(self) -> list[DrawnGear]:
         """The gears, large ones first, so that small ones lie on top."""
         return sorted(self.bodies.values(), key=lambda body: -self.reach(body))
 
@@ -165,13 +165,13 @@ class Layout:
         crossed = any(abs(float(b.axis @ axis)) < 1.0 - 1e-6 for b in self.bodies.values())
         return crossed or max(heights) - min(heights) > FLAT * size
 
-    def reach(self, body: Body) -> float:
+    def reach(self, body: DrawnGear) -> float:
         """Return the largest radius that is drawn of a gear [m]."""
         pitch = [p.radii[body.name] for p in self.pairs if body.name in p.radii]
         largest = max([body.base_radius, *body.rims, *pitch])
         return OUTSIDE * largest if body.kind == "internal" else largest
 
-    def radii(self, body: Body) -> tuple[dict[str, float], dict[str, float]]:
+    def radii(self, body: DrawnGear) -> tuple[dict[str, float], dict[str, float]]:
         """Return the radii [m] of a gear's full and dashed circles, by description."""
         if body.kind == "face":
             rims = dict(zip(("inner", "outer"), body.rims, strict=False))
@@ -187,7 +187,9 @@ class Layout:
         return found, {"base circle": body.base_radius}
 
 
-def layout_of(case: Sections, train: Train | None, flanks: Iterable[Flank] | None = None) -> Layout:
+def layout_of(
+    case: Sections, train: Train | None, flanks: Iterable[Flank] | None = None
+) -> DrawnTrain:
     """Arrange a case for a drawing.
 
     Parameters
@@ -215,10 +217,10 @@ def layout_of(case: Sections, train: Train | None, flanks: Iterable[Flank] | Non
             mesh = train.meshes[name]
             normal = mesh.drive_normal if drive else mesh.coast_normal
             pushes.setdefault(name, []).append(normal)
-    return Layout(bodies, tuple(_pairs(case, bodies, centres, pushes)), shafts)
+    return DrawnTrain(bodies, tuple(_pairs(case, bodies, centres, pushes)), shafts)
 
 
-def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | None) -> Body:
+def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | None) -> DrawnGear:
     roles = (
         {case.operating.input: "input", case.operating.output: "output"} if case.operating else {}
     )
@@ -228,7 +230,7 @@ def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | 
         held = FLOATS
     else:
         held = FIXED if support in (None, "rigid") else ELASTIC
-    return Body(
+    return DrawnGear(
         name=name,
         kind=gear.type,
         centre=centre,
@@ -257,10 +259,10 @@ def _radius(case: Sections, name: str, gear: Gear, centre: Vector) -> float:
 
 def _pairs(
     case: Sections,
-    bodies: Mapping[str, Body],
+    bodies: Mapping[str, DrawnGear],
     centres: Mapping[str, tuple[float, float, float]],
     pushes: Mapping[str, Sequence[Vector]],
-) -> Iterator[Pair]:
+) -> Iterator[DrawnMesh]:
     for name, mesh in case.meshes.items():
         if mesh.driver not in bodies or mesh.driven not in bodies or mesh.driver == mesh.driven:
             continue
@@ -270,7 +272,7 @@ def _pairs(
         driver, driven = bodies[mesh.driver], bodies[mesh.driven]
         place = _face_place if "face" in (driver.kind, driven.kind) else _parallel_place
         radii, point, distance, needed = place(driver, driven, line.pressure_angle)
-        yield Pair(
+        yield DrawnMesh(
             name=name,
             driver=driver.name,
             driven=driven.name,
@@ -286,7 +288,7 @@ def _pairs(
 Place = tuple[tuple[float, float], Vector, float, float]
 
 
-def _parallel_place(driver: Body, driven: Body, angle: float) -> Place:
+def _parallel_place(driver: DrawnGear, driven: DrawnGear, angle: float) -> Place:
     """Return pitch radii, pitch point, distance of the centres across the axis, and that needed."""
     radii = driver.base_radius / math.cos(angle), driven.base_radius / math.cos(angle)
     between = driven.centre - driver.centre
@@ -302,7 +304,7 @@ def _parallel_place(driver: Body, driven: Body, angle: float) -> Place:
     return radii, point, distance, needed
 
 
-def _face_place(driver: Body, driven: Body, angle: float) -> Place:
+def _face_place(driver: DrawnGear, driven: DrawnGear, angle: float) -> Place:
     """Return the same of a face gear: its acting radius, and the height of the pinion over it."""
     face, pinion = (driver, driven) if driver.kind == "face" else (driven, driver)
     pitch = pinion.base_radius / math.cos(angle)

@@ -52,7 +52,7 @@ class Boundary:
 
 
 @dataclass(frozen=True, slots=True)
-class Region:
+class CentreRegion:
     """Region in which a centre may be.
 
     Attributes
@@ -85,7 +85,7 @@ def region(
     position: int,
     displacement: Mapping[str, tuple[float, float]],
     window: float,
-) -> Region | None:
+) -> CentreRegion | None:
     """Return the region of a float at a position; None for a gear without limits.
 
     Parameters
@@ -109,15 +109,15 @@ def region(
     if not found:
         return None
     pieces = found[0].pieces if len(found) == 1 else []
-    return Region(pieces, [edge for each in found for edge in each.boundaries])
+    return CentreRegion(pieces, [edge for each in found for edge in each.boundaries])
 
 
-def _disc(train: Train, ring: RoundRing) -> Region:
+def _disc(train: Train, ring: RoundRing) -> CentreRegion:
     x, y = (float(v) for v in train.gears[ring.gear].plane @ ring.offset)
     outline = circle((x, y), ring.radius)
     # It is labelled at the upper right, away from both axes.
     outward = (math.sqrt(0.5), math.sqrt(0.5))
-    return Region([outline], [Boundary(boundary_name(ring.name), outline, outward)])
+    return CentreRegion([outline], [Boundary(boundary_name(ring.name), outline, outward)])
 
 
 def _drum(
@@ -126,7 +126,7 @@ def _drum(
     position: int,
     displacement: Mapping[str, tuple[float, float]],
     window: float,
-) -> Region:
+) -> CentreRegion:
     """Return the drum between the rings of two neighbours, line by line across it."""
     gear = train.gears[ring.gear]
     across = gear.plane @ ring.across
@@ -186,7 +186,7 @@ def _drum(
     for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if rows.size else ():
         outline = path(left[run], lines[run]) + path(right[run][::-1], lines[run][::-1])
         pieces.append([*outline, outline[0]])
-    return Region(pieces, boundaries)
+    return CentreRegion(pieces, boundaries)
 
 
 MILLIMETRES = 75.0
@@ -239,7 +239,7 @@ class Journey:
         return self.rests[self.hardest]
 
     @cached_property
-    def region(self) -> Region | None:
+    def region(self) -> CentreRegion | None:
         """Region at the position with the largest reaction."""
         here = self.positions[self.hardest]
         return region(self.train, self.gear, here.position, here.displacement, 1.5 * self._reach)

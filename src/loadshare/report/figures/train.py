@@ -14,7 +14,15 @@ from loadshare.numbers import MILLIMETRE, significant
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
-from loadshare.report.figures.layout import ELASTIC, FIXED, FLOATS, Body, Layout, Pair, layout_of
+from loadshare.report.figures.layout import (
+    ELASTIC,
+    FIXED,
+    FLOATS,
+    DrawnGear,
+    DrawnMesh,
+    DrawnTrain,
+    layout_of,
+)
 from loadshare.report.figures.marks import Panel, heading, hover, path_rows
 from loadshare.report.figures.paths import Point, arrow, corners
 from loadshare.report.flanks import carrying
@@ -100,7 +108,7 @@ def _pushes_text(first: Position | None, train: Train | None) -> str:
     return f"straight arrows: push of the {which}{where} on the driven gear"
 
 
-def _misfit_text(pair: Pair) -> str:
+def _misfit_text(pair: DrawnMesh) -> str:
     have, need = (significant(MILLIMETRE.of(v), 6) for v in (pair.distance, pair.needed))
     return (
         f"mesh {pair.name} does not fit: the centres are {have} mm apart, the radii need {need} mm"
@@ -110,7 +118,7 @@ def _misfit_text(pair: Pair) -> str:
 class _View(Panel):
     """The train seen along one direction; lengths in millimetres."""
 
-    def __init__(self, layout: Layout, frame: Vector, *, plan: bool) -> None:
+    def __init__(self, layout: DrawnTrain, frame: Vector, *, plan: bool) -> None:
         self.layout, self.palette, self.frame, self.plan = layout, layout.palette, frame, plan
         self.bodies = layout.large_first
         reach = np.vstack([self._flat_array(b.circle(self.layout.reach(b))) for b in self.bodies])
@@ -251,7 +259,7 @@ class _View(Panel):
             layers += self.points(rows, tooltip, shape=shape, size=60, strokeWidth=1.4, **style)
         return layers
 
-    def _centre(self, body: Body) -> Row:
+    def _centre(self, body: DrawnGear) -> Row:
         ((x, y),) = self._flat(body.centre)
         still = "not" if body.role == "held" else "unknown"
         turns = {1: "counter-clockwise", -1: "clockwise", 0: still}[body.sense]
