@@ -96,7 +96,7 @@ class Loading:
         return np.asarray(self.hertz.any(axis=0))
 
     @cached_property
-    def bent(self) -> slice:
+    def nonlinear(self) -> slice:
         """Columns from the first to the last element whose law is a power or a table."""
         at = np.flatnonzero(self.curved | (self.tabulated >= 0))
         return slice(at[0], at[-1] + 1) if len(at) else slice(0)

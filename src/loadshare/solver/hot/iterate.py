@@ -64,13 +64,13 @@ class Iterate:
         loading : Loading
         which : ndarray of int, shape (S,), optional
         """
-        roots = np.cbrt(np.maximum(share[..., loading.bent], HOT.least_share))
+        roots = np.cbrt(np.maximum(share[..., loading.nonlinear], HOT.least_share))
         roots = roots if which is None else roots[which]
         of_load = loading.root[samples] if len(loading.root) > 1 else loading.root
         if isinstance(samples, slice):
-            np.multiply(of_load[:, None], roots, out=self.root[samples, loading.bent])
+            np.multiply(of_load[:, None], roots, out=self.root[samples, loading.nonlinear])
         else:
-            self.root[samples, loading.bent] = of_load[:, None] * roots
+            self.root[samples, loading.nonlinear] = of_load[:, None] * roots
 
 
 def at_rest(
