@@ -52,7 +52,7 @@ def test_critical_values_are_those_of_the_study(seed):
     found = [event["value"] for line in lines for event in line["events"]]
     # The start of the search affects the last digits.
     assert found == pytest.approx(sorted({e.value for e in wanted.events}), rel=1e-9)
-    text = lines[0]["events"][0]["told"]
+    text = lines[0]["events"][0]["label"]
     assert text.startswith("gear 5 leaves its ring")
     assert text.endswith("at 2.977 um")
     gaps = [end for line in lines for gap in line["gaps"] for end in gap[:2]]

@@ -54,7 +54,7 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
             "here": _point(shown.displacement[gear]),
             "reaction": [v / size for v in rest.reaction] if size else None,
             "force": read_best(size, "N") if size else "",
-            "told": journey.subtitle[:-1],
+            "lines": journey.subtitle[:-1],
         }
 
 

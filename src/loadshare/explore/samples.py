@@ -144,7 +144,7 @@ def start_study(question: Scatter) -> Plain:
         "limit": block.limit,
         "samples": settings["samples"],
         "replicated": settings["sampling"] == "sobol",
-        "told": {
+        "begun": {
             "name": question.name,
             "samples": settings["samples"],
             "seed": settings["seed"],

@@ -162,7 +162,7 @@ class Explorer:
         if "job" not in study:
             yield study
             return
-        yield {"begun": study["told"]}
+        yield {"begun": study["begun"]}
         growing = Growing(study)
         while growing.done < study["samples"]:
             part = SampleRange(study["job"], growing.done, study["rows"])

@@ -48,7 +48,7 @@ def criticals(question: Along) -> Plain:
         {
             "value": value,
             "text": question.text(value),
-            "told": f"{'; '.join(words)} at {significant(value, 4)} {question.unit}".strip(),
+            "label": f"{'; '.join(words)} at {significant(value, 4)} {question.unit}".strip(),
         }
         for value, words in happens.items()
     ]

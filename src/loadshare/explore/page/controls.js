@@ -141,11 +141,11 @@ export class Control {
       gap.style.left = part(from); gap.style.width = part(low + to - from);
       return gap;
     }), ...events.map((event) => {
-      const tick = element("button", { type: "button", title: event.told, "aria-label": `go to ${event.told}`, onclick: go(event) });
+      const tick = element("button", { type: "button", title: event.label, "aria-label": `go to ${event.label}`, onclick: go(event) });
       tick.style.left = part(event.value);
       return tick;
     }));
-    this.events.replaceChildren(...events.map((event) => element("li", {}, element("button", { type: "button", onclick: go(event) }, event.told))));
+    this.events.replaceChildren(...events.map((event) => element("li", {}, element("button", { type: "button", onclick: go(event) }, event.label))));
   }
 }
 

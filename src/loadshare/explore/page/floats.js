@@ -16,7 +16,7 @@ export function drawFloats(place, floats, beside) {
   place.replaceChildren(...floats.map((found) => {
     const figure = element("figure", { "data-gear": found.gear }), more = beside(found.gear), view = viewOf(found);
     figure.append(draw(found, view, more),
-      element("figcaption", {}, ...[...found.told, ...outside(view, more)].map((line) => element("p", {}, line))));
+      element("figcaption", {}, ...[...found.lines, ...outside(view, more)].map((line) => element("p", {}, line))));
     return figure;
   }));
 }
@@ -34,7 +34,7 @@ function draw(found, [mx, my, half], { trace = [], pinned = [] }) {
   const plot = SIDE - LEFT;
   const scale = plot / (2 * half);
   const at = ([x, y]) => [LEFT + (x - mx + half) * scale, TOP + (my + half - y) * scale];
-  const svg = picture(SIDE + 8, TOP + plot + BOTTOM, `gear ${found.gear}: ${found.told.join("; ")}`);
+  const svg = picture(SIDE + 8, TOP + plot + BOTTOM, `gear ${found.gear}: ${found.lines.join("; ")}`);
   svg.setAttribute("data-name", `gear ${found.gear}`);
   const id = `clip-${[...found.gear].map((c) => c.codePointAt(0)).join("-")}`;
   svg.append(shape("clipPath", { id }, shape("rect", { x: LEFT, y: TOP, width: plot, height: plot })));

@@ -21,7 +21,7 @@ export async function critical(control, view, redraw) {
   const whole = await asking.critical.ask({ ...range(control, view), at: Number(control.slider.value) }, (found) => {
     if (!found.events) { control.status.textContent = why(found); return; }
     // What happens where two stretches meet is found by both.
-    for (const event of found.events) known.set(event.told, event);
+    for (const event of found.events) known.set(event.label, event);
     gaps.push(...found.gaps);
     confirmed &&= found.confirmed;
     control.marks([...known.values()].sort((a, b) => a.value - b.value), gaps);
@@ -54,7 +54,7 @@ export function drawTrace(numberAt, shown) {
   for (const bar of shown.bars) if (bar.here !== null) here.set(`stage ${bar.stage}`, Math.max(bar.here, here.get(`stage ${bar.stage}`) || 0));
   drawLines(figure, "trace", { x: traced.x, lines: new Map(Object.entries(traced.lines).map(([stage, values]) => [`stage ${stage}`, values])),
     title: control.name, unit: control.input.unit, point: number === null ? null : { at: number, values: here },
-    marks: (control.known || []).map((event) => [event.value, event.told]) });
+    marks: (control.known || []).map((event) => [event.value, event.label]) });
 }
 
 export function slopes({ keys, changes, position }) {
