@@ -11,7 +11,7 @@ from loadshare.array_types import Array
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import pressed
-from loadshare.study.follow.ranges import Range, sampled
+from loadshare.study.follow.ranges import RangeAlong, sampled
 from loadshare.study.follow.stretches import OffsetBounds, Stretches
 
 
@@ -47,14 +47,14 @@ class Bound(NamedTuple):
 
     Attributes
     ----------
-    value : Range
+    value : RangeAlong
     felt : ndarray, shape (B, width)
         Largest size of its slope with respect to the quantities.
     varies : ndarray, shape (B, width)
         By how much this slope varies.
     """
 
-    value: Range
+    value: RangeAlong
     felt: Array
     varies: Array
 
@@ -64,7 +64,7 @@ class Push(NamedTuple):
 
     Attributes
     ----------
-    value : Range
+    value : RangeAlong
         Along the chord.
     rate, spread : ndarray, shape (B,)
         Its derivative along the chord at a fixed offset.
@@ -74,7 +74,7 @@ class Push(NamedTuple):
         Its slope with respect to the radius: largest size, and by how much it varies.
     """
 
-    value: Range
+    value: RangeAlong
     rate: Array
     spread: Array
     extra: Array
@@ -159,7 +159,7 @@ def _times(one: Array, one_off: Array, other: Array, other_off: Array) -> tuple[
     return np.asarray(one * other), np.asarray(off)
 
 
-def _scaled(one: Range, other: Range) -> tuple[Array, Array]:
+def _scaled(one: RangeAlong, other: RangeAlong) -> tuple[Array, Array]:
     """Return the product of a quantity and the derivative of another, middle and half width."""
     return _times(one.middle, one.off, other.rate, other.spread)
 
@@ -199,7 +199,7 @@ def friction_bound(s: Stretches, k: int, slopes: dict[int, ContactSlope]) -> Bou
     # Where the torque changes its sign the bound has a kink.
     kink = (torque.min(axis=1) <= 0.0) & (torque.max(axis=1) >= 0.0)
     varies = np.where(kink[:, None] & (felt > 0.0), np.inf, varies)
-    return Bound(Range(value.nodes, rate, spread), felt, varies)
+    return Bound(RangeAlong(value.nodes, rate, spread), felt, varies)
 
 
 def _turning_force(
@@ -261,7 +261,7 @@ def _turned(
     return slack, stiff
 
 
-def _limit(s: Stretches, k: int) -> Range:
+def _limit(s: Stretches, k: int) -> RangeAlong:
     """Return the radius of a step; for an arc, the clearance less the nominal length."""
     e = s.equations
     if k in e.arcs:
@@ -280,7 +280,7 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
     polar = s.state.polars[k]
     if where is not None:
         p = s.chord[where]
-        value = Range(polar.sense * p.nodes, polar.sense * p.rate, p.spread)
+        value = RangeAlong(polar.sense * p.nodes, polar.sense * p.rate, p.spread)
         return Push(value, value.rate, value.spread, dev[:, s.z_in + where], still, still)
     around = s.around(k, dev)
     value, give = s.sampled(polar.size), s.sampled(polar.slope)
@@ -309,7 +309,7 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
 
 
 def _rolling_push(
-    s: Stretches, k: int, felt: Array, value: Range, give: Range, power: float
+    s: Stretches, k: int, felt: Array, value: RangeAlong, give: RangeAlong, power: float
 ) -> Push:
     """Return the force of a bearing's wall, K (R − clearance)^power, with R known to `felt`."""
     numbers = s.numbers.radial[:, k - s.equations.radials.start]

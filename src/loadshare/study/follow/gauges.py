@@ -12,7 +12,7 @@ from loadshare.array_types import Array, Flags
 from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.forces import friction_bound, varying_slopes
-from loadshare.study.follow.ranges import Enclosure, Range, sampled
+from loadshare.study.follow.ranges import Enclosure, RangeAlong, sampled
 from loadshare.study.follow.stretches import Stretches
 
 
@@ -175,7 +175,7 @@ def _radius(s: Stretches, k: int, dev: Array, bend: Array) -> Enclosure:
     # The radius changes no faster than the offset itself, however its direction turns.
     moved = np.sqrt((offset.rate**2).sum(axis=1))
     spread = np.fmin(spread, np.abs(straight) + moved) + varies
-    chord = Range(nodes, straight + clearance.rate, spread + clearance.spread)
+    chord = RangeAlong(nodes, straight + clearance.rate, spread + clearance.spread)
     return Enclosure(chord, s.felt(k, dev, around.turn), s.felt(k, bend, around.turn))
 
 
@@ -200,7 +200,7 @@ def _stick(s: Stretches, k: int, bound: Enclosure) -> Enclosure:
         own = sampled(nodes)
         rate, spread = own.rate, own.spread + spread
     fixed = sampled(np.minimum(given, nodes))
-    chord = Range(
+    chord = RangeAlong(
         np.where(known[:, None], fixed.nodes, nodes),
         np.where(known, fixed.rate, rate),
         np.where(known, fixed.spread, spread),
@@ -220,4 +220,4 @@ def _pull(s: Stretches, where: int, dev: Array, bend: Array) -> Enclosure:
     spread = np.minimum(speed * turn, 2.0 * speed)
     parts = slice(s.z_in + where, s.z_in + where + 2)
     off, bends = (np.sqrt((v[:, parts] ** 2).sum(axis=1)) for v in (dev, bend))
-    return Enclosure(Range(size, (along * p.rate).sum(axis=1), spread), off, bends)
+    return Enclosure(RangeAlong(size, (along * p.rate).sum(axis=1), spread), off, bends)

@@ -11,7 +11,7 @@ from loadshare.settings import FOLLOW
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Range:
+class RangeAlong:
     """A quantity along stretches, as a function of the fraction τ ∈ [0, 1]; shape (B, ...).
 
     Attributes
@@ -51,27 +51,29 @@ class Range:
         """Upper bound on the size: that in the middle and the largest distance from it."""
         return np.asarray(np.abs(self.middle) + self.off)
 
-    def __getitem__(self, key: object) -> Range:
+    def __getitem__(self, key: object) -> RangeAlong:
         """Return a part of the quantity."""
         whole = key if isinstance(key, tuple) else (key,)
         at_nodes = (slice(None), slice(None), *whole)
         inner = (slice(None), *whole)
-        return Range(self.nodes[at_nodes], self.rate[inner], self.spread[inner])
+        return RangeAlong(self.nodes[at_nodes], self.rate[inner], self.spread[inner])
 
-    def __neg__(self) -> Range:
-        return Range(-self.nodes, -self.rate, self.spread)
+    def __neg__(self) -> RangeAlong:
+        return RangeAlong(-self.nodes, -self.rate, self.spread)
 
-    def __sub__(self, other: Range) -> Range:
-        return Range(self.nodes - other.nodes, self.rate - other.rate, self.spread + other.spread)
+    def __sub__(self, other: RangeAlong) -> RangeAlong:
+        return RangeAlong(
+            self.nodes - other.nodes, self.rate - other.rate, self.spread + other.spread
+        )
 
 
-def sampled(nodes: Array) -> Range:
+def sampled(nodes: Array) -> RangeAlong:
     """Enclose a smooth quantity known at the nodes (B, NODES, ...)."""
     slopes = (FOLLOW.nodes - 1) * np.diff(nodes, axis=1)
     low, high = slopes.min(axis=1), slopes.max(axis=1)
     noise = 4.0 * FOLLOW.nodes * np.finfo(float).eps * np.abs(nodes).max(axis=1)
     # Half the range is the spread that the samples show; as much again may lie between them.
-    return Range(nodes, 0.5 * (low + high), (high - low) + noise)
+    return RangeAlong(nodes, 0.5 * (low + high), (high - low) + noise)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,12 +82,12 @@ class Enclosure:
 
     Attributes
     ----------
-    chord : Range
+    chord : RangeAlong
     off, bend : ndarray, shape (B,)
         Largest distance from the chord, of the quantity and of its derivative.
     """
 
-    chord: Range
+    chord: RangeAlong
     off: Array
     bend: Array
 

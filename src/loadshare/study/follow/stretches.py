@@ -11,7 +11,7 @@ from loadshare.settings import FOLLOW
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.numbers import Numbers
-from loadshare.study.follow.ranges import Enclosure, Range, sampled
+from loadshare.study.follow.ranges import Enclosure, RangeAlong, sampled
 
 
 class OffsetBounds(NamedTuple):
@@ -107,7 +107,7 @@ class Stretches:
         shape = (self.count * FOLLOW.nodes, *values.shape[1:])
         return np.broadcast_to(values, shape).reshape(self.count, FOLLOW.nodes, *values.shape[1:])
 
-    def sampled(self, values: Array) -> Range:
+    def sampled(self, values: Array) -> RangeAlong:
         """Enclose a quantity known at all nodes (B·NODES or 1, ...)."""
         return sampled(self.split(values))
 
