@@ -153,7 +153,7 @@ def moved(law: at.Graph, place: int, radius: float, pull: float) -> int:
     """Return the place to which an element at `radius` under `pull` should move."""
     bands = np.array([FORCE_BAND]), np.array([LENGTH_BAND]), np.array([FORCE_BAND])
     offset, load = np.array([[0.6, 0.8]]) * radius, np.array([[0.6, 0.8]]) * pull
-    wrong, other = radials.misplaced(place, law, offset, load, *bands)
+    wrong, other = radials.right_state(place, law, offset, load, *bands)
     return int(other[0]) if wrong[0] else place
 
 

@@ -25,7 +25,7 @@ from loadshare.solver.hot import compiled, radials, vectorised
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.exchange import exchange
 from loadshare.solver.hot.iterate import at_rest
-from loadshare.solver.hot.kernel.signs import misplaced
+from loadshare.solver.hot.kernel.signs import right_state
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import samples_of
@@ -166,8 +166,8 @@ def test_radial_elements_move_alike_from_place_to_place(data):
     graph = at.Graph(*(np.array([v]) for v in law))
     bands = (np.array([1e-12]),) * 3
     offset, force = np.array([[0.6 * u, 0.8 * u]]), np.array([[0.6 * p, 0.8 * p]])
-    wrong, moved = radials.misplaced(place, graph, offset, force, *bands)
-    other = misplaced.py_func(place, law, *offset[0], *force[0], 1e-12, 1e-12, 1e-12)
+    wrong, moved = radials.right_state(place, graph, offset, force, *bands)
+    other = right_state.py_func(place, law, *offset[0], *force[0], 1e-12, 1e-12, 1e-12)
     assert other == (moved[0] if wrong[0] else place)
 
 

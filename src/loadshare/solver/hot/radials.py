@@ -94,7 +94,7 @@ def block(
     return RadialTangent(columns, compliance, start[:, None] * along, along, bound)
 
 
-def misplaced(
+def right_state(
     status: int,
     law: at.Graph,
     offset: Array,

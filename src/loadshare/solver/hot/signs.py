@@ -9,7 +9,7 @@ from loadshare.settings import HOT
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.elements import arc_at, pick
 from loadshare.solver.hot.on_set import OnSet
-from loadshare.solver.hot.radials import beyond, misplaced, until
+from loadshare.solver.hot.radials import beyond, right_state, until
 from loadshare.solver.hot.rest import rest
 
 
@@ -35,7 +35,7 @@ def wrong_elements(on: OnSet, sign: float) -> tuple[Flags, States]:
         s, k = structure.rows + j, acting.get(j)
         force = on.force[:, k : k + 2] if k is not None else np.zeros((len(on.rows), 2))
         offset = on.offset(j)
-        wrong[:, s], moved[:, s] = misplaced(
+        wrong[:, s], moved[:, s] = right_state(
             int(on.states[s]),
             on.graph(j, offset),
             offset,

@@ -64,8 +64,8 @@ def look_at_rows(s, work, width):  # type: ignore[no-untyped-def]
 
 
 @bare
-def misplaced(status, law, u, v, p, q, force_band, length_band, faint):  # type: ignore[no-untyped-def]
-    """Return the right state of a radial element, possibly its own; see `hot.radials.misplaced`."""
+def right_state(status, law, u, v, p, q, force_band, length_band, faint):  # type: ignore[no-untyped-def]
+    """Return the right state of a radial element, possibly its own; see `radials.right_state`."""
     first, stick, bound, reach, last, _ = law
     radius, size = np.sqrt(u * u + v * v), np.sqrt(p * p + q * q)
     jump = bound > first * stick * (1.0 + HOT.rounded)
@@ -146,7 +146,7 @@ def look_at_radials(s, work, width):  # type: ignore[no-untyped-def]
             faint = HOT.sign * work.strongest[m]
             p = work.force[e, m] if e >= 0 else 0.0
             q = work.force[e + 1, m] if e >= 0 else 0.0
-            better = misplaced(status, law, u[m], v[m], p, q, force_band, length_band, faint)
+            better = right_state(status, law, u[m], v[m], p, q, force_band, length_band, faint)
             work.better[j, m] = better
             work.mistakes[m] += better != status
 
