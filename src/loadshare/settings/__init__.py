@@ -9,7 +9,7 @@ from loadshare.settings.allowed import ALLOWED
 from loadshare.settings.certificate import BOUND, CERTIFY
 from loadshare.settings.contact import CONTACT, LAWS
 from loadshare.settings.explore import EXPLORE
-from loadshare.settings.hot import ABREAST, EXCHANGE, HOT, RULE, SEARCH, STATICS
+from loadshare.settings.hot import EXCHANGE, HOT, RULE, SEARCH, SIDE_BY_SIDE, STATICS
 from loadshare.settings.job import JOB
 from loadshare.settings.precision import EPS
 from loadshare.settings.studies import FIT, FOLLOW, MARCH, SENSITIVITY, TOLERANCE
@@ -17,7 +17,6 @@ from loadshare.settings.teeth import TEETH
 from loadshare.settings.undetermined import PLACES
 
 __all__ = [
-    "ABREAST",
     "ALLOWED",
     "BOUND",
     "CERTIFY",
@@ -35,6 +34,7 @@ __all__ = [
     "RULE",
     "SEARCH",
     "SENSITIVITY",
+    "SIDE_BY_SIDE",
     "STATICS",
     "TEETH",
     "TOLERANCE",

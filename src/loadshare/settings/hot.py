@@ -76,7 +76,7 @@ class HotPath(NamedTuple):
     """Least share of the load at which a law begins, from another sample's forces."""
 
 
-class Abreast(NamedTuple):
+class SideBySide(NamedTuple):
     """Samples of a set side by side; those that are out of the ordinary are left undecided."""
 
     widest: int = 256
@@ -223,7 +223,7 @@ class Search(NamedTuple):
 
 
 HOT = HotPath()
-ABREAST = Abreast()
+SIDE_BY_SIDE = SideBySide()
 STATICS = Statics()
 EXCHANGE = Exchange()
 RULE = Rule()

@@ -20,7 +20,7 @@ from loadshare.job.engines import engine_named
 from loadshare.job.machine import Answers, Machine
 from loadshare.job.table import KEPT
 from loadshare.scene.loading import loading_of
-from loadshare.settings import ABREAST, CERTIFY, JOB
+from loadshare.settings import CERTIFY, JOB, SIDE_BY_SIDE
 from loadshare.solver.hot import compiled, radials, vectorised
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.exchange import exchange
@@ -73,7 +73,7 @@ def contact_forces(machine: Machine, found: Answers) -> np.ndarray:
 def few_abreast(*given):
     """Solve eight at a time, so that samples wait, and slow ones start again beside each other."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "ABREAST", ABREAST._replace(widest=8))
+        patch.setattr(compiled, "SIDE_BY_SIDE", SIDE_BY_SIDE._replace(widest=8))
         return compiled.settle(*given)
 
 

@@ -17,7 +17,7 @@ from loadshare.array_types import Flags, Numbers, States
 from loadshare.by_reference import by_reference, set_apart
 from loadshare.scene.loading import Loading
 from loadshare.scene.structure import Structure
-from loadshare.settings import ABREAST
+from loadshare.settings import SIDE_BY_SIDE
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.kernel.conclude import conclude
@@ -55,7 +55,7 @@ def settle(
         SampleArrays._make(getattr(loading, name) for name in SampleArrays._fields),
         Given(rows, *state, one_only, verdict, proposal),
         ends,
-        ABREAST.widest,
+        SIDE_BY_SIDE.widest,
     )
     left = (verdict == UNDECIDED).nonzero()[0]
     if len(left):
@@ -86,14 +86,14 @@ def _settle_set(s, work, given, waiting, widest):  # type: ignore[no-untyped-def
     """Settle samples of one set; slow ones are put off, and start again side by side."""
     set_apart()
     total = waiting.shape[0]
-    for number in range(ABREAST.rounds):
+    for number in range(SIDE_BY_SIDE.rounds):
         slow = 0
-        last = number == ABREAST.rounds - 1 or total <= widest
+        last = number == SIDE_BY_SIDE.rounds - 1 or total <= widest
         for first in range(0, total, widest):
             count = min(widest, total - first)
-            width = count if count <= ABREAST.fewest else min(widest, (count + 7) // 8 * 8)
+            width = count if count <= SIDE_BY_SIDE.fewest else min(widest, (count + 7) // 8 * 8)
             fill(s, work, given, waiting, first, count, width)
-            run(s, work, given.one_only, 0 if last else int(ABREAST.few * count), width)
+            run(s, work, given.one_only, 0 if last else int(SIDE_BY_SIDE.few * count), width)
             if last:
                 give_up(work, count)
             conclude(s, work, given, count, width)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import ABREAST
+from loadshare.settings import SIDE_BY_SIDE
 from loadshare.solver.hot.kernel.options import bare
 from loadshare.solver.hot.kernel.sums import add_product
 from loadshare.solver.hot.kernel.work import TURN
@@ -102,13 +102,13 @@ def follow_arcs(s, work, distance, width):  # type: ignore[no-untyped-def]
         for m in range(width):
             f = abs(work.force[s.arc_contacts[w], m] - work.before[w, m])
             strongest = work.strongest[m] if work.strongest[m] > 0.0 else 1.0
-            y = f / strongest * (ABREAST.steepest / ABREAST.turned * distance)
+            y = f / strongest * (SIDE_BY_SIDE.steepest / SIDE_BY_SIDE.turned * distance)
             step[m] = y if y > step[m] else step[m]
     for m in range(width):
         # Every pass turns arcs by about the same share of their previous turn. Splines respond to
         # each turn more than springs do.
-        y = step[m] * (ABREAST.turned / distance)
+        y = step[m] * (SIDE_BY_SIDE.turned / distance)
         before = work.each[TURN, m]
-        rest = y * min(max(y / before, ABREAST.least), 1.0) if shrinks and before > 0.0 else y
+        rest = y * min(max(y / before, SIDE_BY_SIDE.least), 1.0) if shrinks and before > 0.0 else y
         work.each[TURN, m] = y
         work.misfit[m] = rest if rest > work.misfit[m] else work.misfit[m]

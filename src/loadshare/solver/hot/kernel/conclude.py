@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import ABREAST, HOT
+from loadshare.settings import HOT, SIDE_BY_SIDE
 from loadshare.solver.hot.contact_states import DONE, OTHER
 from loadshare.solver.hot.kernel import work as at
 from loadshare.solver.hot.kernel.options import bare
@@ -85,7 +85,7 @@ def _refine(s, work, width):  # type: ignore[no-untyped-def]
             y = abs(left[c, m])
             misfit[m] = misfit[m] if y <= misfit[m] else y
     for m in range(width):
-        closed = misfit[m] <= ABREAST.closed_by * yielded[m] or yielded[m] == 0.0
+        closed = misfit[m] <= SIDE_BY_SIDE.closed_by * yielded[m] or yielded[m] == 0.0
         if work.each[at.BAND, m] == HOT.sign and not closed:
             # The matrix of the redundants was too stiff or too flat for this sample.
             work.each[at.BAND, m] = 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import ABREAST, HOT
+from loadshare.settings import HOT, SIDE_BY_SIDE
 from loadshare.solver.hot.contact_states import STICK
 from loadshare.solver.hot.kernel import work as at
 from loadshare.solver.hot.kernel.laws import piece
@@ -23,7 +23,7 @@ def fill(s, work, given, waiting, first, count, width):  # type: ignore[no-untyp
     for m in range(width):
         i = samples[m]
         work.floor[m] = given.floors[i]
-        work.each[at.PATIENT, m] = HOT.patience if given.one_only[i] else ABREAST.patience
+        work.each[at.PATIENT, m] = HOT.patience if given.one_only[i] else SIDE_BY_SIDE.patience
         work.live[m], work.go[m] = 1.0 if m < count else 0.0, 1.0
         work.each[at.BAND, m], work.each[at.DRIFTS, m], work.singular[m] = 0.0, 0.0, 0.0
         work.each[at.PREVIOUS, m], work.each[at.TURN, m], work.each[at.GIVEN_UP, m] = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import ABREAST, HOT
+from loadshare.settings import HOT, SIDE_BY_SIDE
 from loadshare.solver.hot.kernel.options import bare
 
 
@@ -41,7 +41,7 @@ def renew_laws(s, work, misfit, width):  # type: ignore[no-untyped-def]
             more = abs(more - y)
             # Misfit between the tangent and the law.
             gone = abs((b * y + c_hertz) * y * y - moved)
-            gone += 0.0 if more <= ABREAST.close * y else 2.0 * c_hertz * y * more
+            gone += 0.0 if more <= SIDE_BY_SIDE.close * y else 2.0 * c_hertz * y * more
             gone = gone if touching else 0.0
             misfit[m] = gone if gone > misfit[m] else misfit[m]
             waiting = 0.0 if touching | (now <= work.floor[m]) else 1.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import ABREAST, HOT
+from loadshare.settings import HOT, SIDE_BY_SIDE
 from loadshare.solver.hot.kernel import work as at
 from loadshare.solver.hot.kernel.arcs import follow_arcs, turn_arcs
 from loadshare.solver.hot.kernel.laws import renew_laws, renew_tables
@@ -176,7 +176,7 @@ def run(s, work, one_only, enough, width):  # type: ignore[no-untyped-def]
     for m in range(width):
         lives += work.live[m] > 0.0
     law_misfit, misfit = work.waits, work.misfit
-    for number in range(ABREAST.passes):
+    for number in range(SIDE_BY_SIDE.passes):
         if lives <= enough:
             break
         _pass(s, work, width)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import ABREAST, HOT, LAWS
+from loadshare.settings import HOT, LAWS, SIDE_BY_SIDE
 from loadshare.solver.hot.contact_states import CORNER, SLIP, STOP, WALL
 from loadshare.solver.hot.kernel import work as at
 from loadshare.solver.hot.kernel.options import bare
@@ -99,7 +99,7 @@ def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
                 begin = 0.0
                 outer = max(size, law[at.FIRST_END, m])
                 outer = min(outer, reach) / max(bound, HOT.faint * push)
-                inner = min(outer, ABREAST.yields)
+                inner = min(outer, SIDE_BY_SIDE.yields)
             else:
                 inner, reached = 1.0 / law[at.LAST, m], max(size, reach)
                 begin = reach - bound * inner

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from loadshare.settings import ABREAST
+from loadshare.settings import SIDE_BY_SIDE
 from loadshare.solver.hot.kernel.options import bare
 
 
@@ -90,12 +90,12 @@ def solve(matrix, right, factor, definite, width, singular, largest, pivot):  # 
             for m in range(width):
                 p = matrix[c, c, m]
                 largest[m] = p if p > largest[m] else largest[m]
-                singular[m] = singular[m] if p > ABREAST.doubtful * largest[m] else 1.0
+                singular[m] = singular[m] if p > SIDE_BY_SIDE.doubtful * largest[m] else 1.0
                 pivot[m] = 1.0 / p
         else:
             for m in range(width):
                 p = matrix[c, c, m]
-                singular[m] = singular[m] if -p * largest[m] > ABREAST.doubtful else 1.0
+                singular[m] = singular[m] if -p * largest[m] > SIDE_BY_SIDE.doubtful else 1.0
                 pivot[m] = 1.0 / p
         for k in range(starts[c], starts[c + 1]):
             d = below[k]
