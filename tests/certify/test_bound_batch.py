@@ -128,7 +128,7 @@ def test_bounds_hold_and_are_those_of_the_source(name, plain, monkeypatch):
     assert (errors(columns, here, wrong, right) <= off + 2.0 * exact).all()
     assert (off <= 1e-9).any()
     # One full row of claims and one that is not: only a few, because uncompiled code is slow.
-    few = np.arange(BOUND.abreast + 6)
+    few = np.arange(BOUND.side_by_side + 6)
     some = here.take(few) if here.count > 1 else here
     with np.errstate(all="ignore"):
         off = relative_bounds(columns, some, taken(wrong, few))

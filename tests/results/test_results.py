@@ -59,12 +59,12 @@ def test_positions_are_looked_at_in_groups_and_alone_with_the_same_digits(result
     for p in positions:
         beside = p.certificate.claims
         assert beside.positions[p.row] == p.position
-        assert len(beside.positions) <= CERTIFY.abreast
+        assert len(beside.positions) <= CERTIFY.side_by_side
         (alone,) = certified(Claims.of(p.train, [p.equilibrium]), result.stamp.tolerance)
         assert alone == p.certificate
         assert alone.bound.relative <= 1e-9
     groups = {id(p.certificate.claims) for p in positions}
-    assert len(groups) == math.ceil(len(positions) / CERTIFY.abreast)
+    assert len(groups) == math.ceil(len(positions) / CERTIFY.side_by_side)
 
 
 def test_a_result_is_stamped(result):

@@ -195,4 +195,5 @@ def certify_all(
 
 def in_groups(every: Sequence[int]) -> list[Sequence[int]]:
     """Return numbers of answers in groups that are judged together."""
-    return [every[at : at + CERTIFY.abreast] for at in range(0, len(every), CERTIFY.abreast)]
+    width = CERTIFY.side_by_side
+    return [every[at : at + width] for at in range(0, len(every), width)]

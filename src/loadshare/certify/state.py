@@ -349,7 +349,7 @@ def times(matrix: Array, columns: Array) -> Array:
 
     Few columns are each multiplied as if alone, so that no digit depends on the others.
     """
-    if not 1 < columns.shape[-1] <= CERTIFY.abreast:
+    if not 1 < columns.shape[-1] <= CERTIFY.side_by_side:
         return np.asarray(matrix @ columns)
     alone = np.ascontiguousarray(np.moveaxis(columns, -1, 0))[..., None]
     return np.ascontiguousarray(np.moveaxis((matrix @ alone)[..., 0], 0, -1))

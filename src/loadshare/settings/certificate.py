@@ -23,7 +23,7 @@ class Certify(NamedTuple):
     """Rounding of a length, relative to the largest displacement, error and gap together: some
     terms, each known to a few EPS, as displacements are products over coordinates. A train on soft
     shafts, whose input turns by a thousand turns, misses its laws by up to 6 EPS."""
-    abreast: int = 8
+    side_by_side: int = 8
     """Positions of a result that are judged together: NumPy takes as long for one of them, and
     reading a single one costs no more than these."""
     together: int = 2048
@@ -86,7 +86,7 @@ class Bound(NamedTuple):
     """Relative bound below which twice the precision is not tried."""
     together: int = 512
     """Claims that are bounded in twice the precision at a time."""
-    abreast: int = 64
+    side_by_side: int = 64
     """Claims whose products Numba computes side by side."""
     soft: float = 1e5
     """Largest compliance of a turn of a line, at first, over the largest of the claim: a softer one

@@ -118,7 +118,7 @@ class SharedData:
         sizes: list[tuple[int, ...]] = [*((k,) for k in rows), (arcs, 2), (arcs,), (4,), (pulls,)]
         sizes += [(pulls, 6), (pulls, 2), (pulls, 3)]
         sizes += [()] * (len(Workspace._fields) - len(sizes))
-        return Workspace(*(np.zeros((*size, BOUND.abreast)) for size in sizes))
+        return Workspace(*(np.zeros((*size, BOUND.side_by_side)) for size in sizes))
 
     def found(self, count: int) -> ClaimFigures:
         """Return space for the figures of `count` claims."""

@@ -7,14 +7,6 @@ import numpy as np
 from loadshare.by_reference import by_reference, set_apart
 from loadshare.certify.bound.acts import CLOSED, ENDLESS, LIGHT, OPEN
 from loadshare.certify.bound.claim import EPS
-from loadshare.certify.bound.kernel.abreast import (
-    fill,
-    put_column,
-    put_largest,
-    put_rows,
-    take_row,
-    take_rows,
-)
 from loadshare.certify.bound.kernel.forces import (
     put_balance,
     put_contacts,
@@ -26,6 +18,14 @@ from loadshare.certify.bound.kernel.forces import (
 from loadshare.certify.bound.kernel.lengths import put_gaps, put_lengths, put_limits, put_places
 from loadshare.certify.bound.kernel.options import compiled, inlined, within
 from loadshare.certify.bound.kernel.residuals import put_displaced, put_worst
+from loadshare.certify.bound.kernel.rows import (
+    fill,
+    put_column,
+    put_largest,
+    put_rows,
+    take_row,
+    take_rows,
+)
 from loadshare.extremes import larger, smaller
 from loadshare.numbering import numbered
 from loadshare.settings import BOUND, CERTIFY
@@ -52,8 +52,8 @@ def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-de
     """Process claims side by side, except for what is rare: radial elements, opposed contacts."""
     set_apart()
     count, last, claims = 0, 0, len(claim.rotation)
-    for first in range(0, claims, BOUND.abreast):
-        width = min(BOUND.abreast, claims - first)
+    for first in range(0, claims, BOUND.side_by_side):
+        width = min(BOUND.side_by_side, claims - first)
         put_places(of, here, claim, first, width, work)
         put_lengths(of, work)
         _put_loads(of, here, claim, first, width, work)
@@ -85,9 +85,9 @@ def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-de
 def _put_scales(work):  # type: ignore[no-untyped-def]
     """Write the rounding of lengths, and the deflection of cases [m]."""
     width, deflection = work.width, work.deflection
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         width[v] = EPS * (width[v] + work.limits[v] + work.longest[v] + work.yielded[v])
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         bent = larger(work.bent[v], deflection[v])
         deflection[v] = bent if bent > 0.0 else CERTIFY.least_deflection
 
@@ -138,13 +138,13 @@ def _put_loads(of, here, claim, first, width, work):  # type: ignore[no-untyped-
         claimed = work.claimed[e]
         put_largest(top, claimed, 1.0)
         put_largest(torque, claimed, of.arm[e])
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         load[v] = larger(load[v], top[v])
         load[v] = load[v] if load[v] > 0.0 else 1.0
         torque[v] = torque[v] if torque[v] > 0.0 else 1.0
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         work.band[v], work.light[v] = CERTIFY.band * load[v], BOUND.light * load[v]
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         work.root_of_light[v] = np.cbrt(work.light[v])
 
 
@@ -154,16 +154,16 @@ def _put_acts(of, work):  # type: ignore[no-untyped-def]
     set_apart()
     flanks, contacts, top, approach = len(of.arm), len(of.twin), work.top, work.approach
     room, aside = work.room, work.aside
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         work.resolution[v] = CERTIFY.resolution * (work.width[v] + work.limits[v])
     for c in range(contacts):
         acts, claimed, gap = work.acts[c], work.claimed[c], work.gap[c]
         # According to its force alone.
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             force = abs(claimed[v])
             loaded = _ENDLESS if force < EPS * work.scale[v] else _LIGHT
             acts[v] = loaded if force < work.light[v] else _CLOSED
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             force, next_to = abs(claimed[v]), BOUND.touching * work.widest[v]
             faint = (force <= BOUND.noise * top[v]) & (gap[v] > BOUND.apart * approach[v])
             idle = ((force == 0.0) | faint) & (not gap[v] <= next_to)
@@ -177,12 +177,12 @@ def _put_acts(of, work):  # type: ignore[no-untyped-def]
     fill(aside, 0.0)
     for c in range(contacts):
         acts, claimed, gap = work.acts[c], work.claimed[c], work.gap[c]
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             apart = gap[v] if acts[v] == OPEN else np.inf
             room[v] = smaller(room[v], apart if gap[v] == gap[v] else -np.inf)
         if c < flanks:
             # A mesh has two flanks.
-            for v in range(BOUND.abreast):
+            for v in range(BOUND.side_by_side):
                 beside = 2.0 * abs(claimed[v]) * of.arm[c]
                 aside[v] = larger(aside[v], beside if acts[v] == OPEN else 0.0)
 
@@ -190,7 +190,7 @@ def _put_acts(of, work):  # type: ignore[no-untyped-def]
 @inlined
 def _put_opposed(work, c, other):  # type: ignore[no-untyped-def]
     """Replace two opposed contacts of a ring that act by one that holds both ways."""
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         if work.acts[c, v] != OPEN and work.acts[other, v] != OPEN:
             _hold_both_ways(work, c, other, v)
 

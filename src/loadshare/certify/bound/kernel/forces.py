@@ -7,17 +7,6 @@ import numpy as np
 from loadshare.by_reference import set_apart
 from loadshare.certify.bound.acts import CLOSED, ENDLESS, OPEN
 from loadshare.certify.bound.claim import EPS
-from loadshare.certify.bound.kernel.abreast import (
-    fill,
-    put_column,
-    put_largest,
-    put_most,
-    put_multiple,
-    put_rows,
-    put_sizes,
-    put_sum,
-    row_of,
-)
 from loadshare.certify.bound.kernel.laws import (
     law_of,
     nearest,
@@ -28,6 +17,17 @@ from loadshare.certify.bound.kernel.laws import (
     stiffest,
 )
 from loadshare.certify.bound.kernel.options import inlined, within
+from loadshare.certify.bound.kernel.rows import (
+    fill,
+    put_column,
+    put_largest,
+    put_most,
+    put_multiple,
+    put_rows,
+    put_sizes,
+    put_sum,
+    row_of,
+)
 from loadshare.extremes import larger, smaller
 from loadshare.settings import BOUND
 
@@ -48,9 +48,9 @@ def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignor
     fill(work.bow, 0.0)
     for c in range(len(of.twin)):
         claimed, acts, push, carried = work.claimed[c], work.acts[c], work.push, 0.0
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             push[v] = claimed[v] if acts[v] != OPEN else 0.0
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             carried += acts[v] + abs(claimed[v])
         _put_columns(of, work, c)
         if carried == 0.0:
@@ -65,7 +65,7 @@ def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignor
         _put_reach(of, work, c, work.reach, work.faint)
         _put_seen(work, c)
         _spread_contact(work, c, first, width, found, sets, new, alike)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         # A contact cannot pull: nothing is bounded then.
         work.yielded[v] = work.yielded[v] if work.weakest[v] >= 0.0 else np.inf
 
@@ -81,7 +81,7 @@ def _put_columns(of, work, c):  # type: ignore[no-untyped-def]
         return
     for a in range(2):
         force, line = work.force[of.first_arc + 2 * k + a], work.line[k, a]
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             force[v] = -push[v] * line[v]
 
 
@@ -90,9 +90,9 @@ def _put_bent(work, c):  # type: ignore[no-untyped-def]
     """Include the deflection of a flank, loaded or at rest."""
     bent, acts, compression = work.bent, work.acts[c], work.law[0]
     claimed, at_rest = work.claimed[c], work.at_rest[c]
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         bent[v] = larger(bent[v], compression[v] if acts[v] != OPEN else 0.0)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         bent[v] = larger(bent[v], abs(at_rest[v]) if claimed[v] > work.band[v] else 0.0)
 
 
@@ -102,12 +102,12 @@ def _put_wall(of, here, c, first, width, work):  # type: ignore[no-untyped-def]
     k, push = c - len(of.twin) + len(of.apart), work.push
     compression, least, most, holds = work.law
     put_column(here.wall[:, of.drum[c - len(of.arm)]], first, width, least)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         compression[v] = least[v] * push[v]
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         most[v], holds[v] = least[v], np.inf
     if k >= 0:
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             turned = work.turn[k, v] if work.acts[c, v] != OPEN else 0.0
             work.turned_lines[v] = larger(work.turned_lines[v], turned)
         put_largest(work.bow, push, 1.0 / of.apart[k])
@@ -119,23 +119,23 @@ def _put_reach(of, work, c, reach, faint):  # type: ignore[no-untyped-def]
     """Include the force error up to which a contact stays as it is, its compression, any pull."""
     acts, push, compression, holds = work.acts[c], work.push, work.law[0], work.law[3]
     yielded, weakest = work.yielded, work.weakest
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         reach[v] = smaller(reach[v], holds[v] if acts[v] == CLOSED else np.inf)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         faint[v] = smaller(faint[v], holds[v] if acts[v] > CLOSED else np.inf)
     # A contact that opens may move by any length; of two that touch, one takes what the other
     # cannot.
     if of.twin[c] < 0:
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             reach[v] = smaller(reach[v], push[v] if acts[v] == CLOSED else np.inf)
     else:
         other = work.gap[of.twin[c]]
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             alone = (acts[v] == CLOSED) & (other[v] < np.inf)
             reach[v] = smaller(reach[v], push[v] if alone else np.inf)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         yielded[v] = larger(yielded[v], abs(compression[v]) if acts[v] != OPEN else 0.0)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         weakest[v] = smaller(weakest[v], push[v])
 
 
@@ -144,21 +144,21 @@ def _put_seen(work, c):  # type: ignore[no-untyped-def]
     """Write the misfit of a contact [m], and include its part in residuals."""
     claimed, acts, gap, compression = work.claimed[c], work.acts[c], work.gap[c], work.law[0]
     apart, longest, energy, total = work.apart[c], work.misfit, work.energy, work.total
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         apart[v] = -gap[v] - (compression[v] if acts[v] != OPEN else 0.0)
     # With less force than the band it counts as open, as in `residuals`.
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         carries = (acts[v] != OPEN) & (claimed[v] > work.band[v])
         longest[v] = larger(longest[v], abs(apart[v]) if carries else apart[v])
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         spent = -claimed[v] * apart[v] - abs(claimed[v]) * work.resolution[v]
         energy[v] = larger(energy[v], spent)
     put_most(work.pulled, claimed, -1.0)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         # Idle beside an opposed contact; claims in which both carry are left to NumPy.
         seen = apart[v] if apart[v] > -np.inf or claimed[v] != 0.0 else 0.0
         total[v] += claimed[v] + (0.0 * seen)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         misfit = apart[v] if acts[v] != OPEN else 0.0
         work.given[v] = larger(misfit, 0.0) if claimed[v] == 0.0 else misfit
     put_multiple(apart, work.given, 1.0)
@@ -197,13 +197,13 @@ def put_springs(of, here, claim, first, width, work, found, sets, new):  # type:
         else:
             put_column(here.support[:, number, axis], first, width, soft)
             alike, claimed = len(here.support) == 1, work.borne[2 * number + axis]
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             force[v] = claimed[v] / arm
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             soft[v] = arm * arm / soft[v]
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             work.yielded[v] = larger(work.yielded[v], abs(soft[v] * force[v]))
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             apart[v] = length[v] - soft[v] * force[v]
         put_largest(work.misfit, apart, 1.0)
         put_sum(work.total, apart, 1.0)
@@ -316,7 +316,7 @@ def put_pushes(left, sizes, force, start, at, value):  # type: ignore[no-untyped
         row = force[j]
         for i in range(start[j], start[j + 1]):
             factor, over, size = value[i], left[at[i]], sizes[at[i]]
-            for v in range(BOUND.abreast):
+            for v in range(BOUND.side_by_side):
                 term = factor * row[v]
                 over[v] -= term
                 size[v] += abs(term)
@@ -332,7 +332,7 @@ def put_balance(of, here, first, width, work):  # type: ignore[no-untyped-def]
         c = of.load[k, 0]
         due = work.torque[of.load[k, 1]]
         # A quotient is rounded once, a multiple by the inverse twice.
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             work.given[v] = due[v] / of.load_radius[k]
         put_sum(left[c], work.given, 1.0)
         put_sizes(sizes[c], work.given, 1.0)
@@ -348,7 +348,7 @@ def put_balance(of, here, first, width, work):  # type: ignore[no-untyped-def]
     for j in range(len(work.force)):
         put_largest(largest, work.force[j], 1.0)
     for c in range(len(left)):
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             most = abs(left[c, v]) + EPS * sizes[c, v]
             residual[v] = larger(residual[v], most)
             total[v] += most
@@ -365,7 +365,7 @@ def put_balance(of, here, first, width, work):  # type: ignore[no-untyped-def]
     for c in range(len(left)):
         put_largest(unbalanced, left[c], 1.0)
         put_sizes(total, left[c], 1.0)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         # The largest may have passed over a NaN.
         known = total[v] < np.inf
         residual[v] = residual[v] if known and work.covered[v] > 0.0 else np.inf

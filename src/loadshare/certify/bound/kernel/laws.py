@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.certify.bound.kernel.abreast import put_column, row_of
 from loadshare.certify.bound.kernel.options import compiled, inlined
+from loadshare.certify.bound.kernel.rows import put_column, row_of
 from loadshare.settings import BOUND, LAWS
 
 
@@ -133,20 +133,20 @@ def put_laws(of, here, e, first, width, work):  # type: ignore[no-untyped-def]
     hertz, curved = work.given, 0.0
     put_column(here.bending[:, e], first, width, least)
     put_column(here.hertz[:, e], first, width, hertz)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         curved += hertz[v]
     if curved == 0.0:
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             most[v], holds[v] = least[v], np.inf
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             compression[v] = least[v] * force[v]
         return len(here.bending) == 1 and len(here.hertz) == 1
     root, light, root_of_light = work.root, work.light, work.root_of_light
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         root[v] = np.cbrt(max(force[v], 0.0))
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         holds[v] = _holds(hertz[v], force[v], light[v])
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         law = _by_power(least[v], hertz[v], force[v], root[v], light[v], root_of_light[v])
         compression[v], least[v], most[v] = law
     return False

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.by_reference import set_apart
-from loadshare.certify.bound.kernel.abreast import (
+from loadshare.certify.bound.kernel.options import within
+from loadshare.certify.bound.kernel.rows import (
     fill,
     put_column,
     put_largest,
@@ -15,7 +16,6 @@ from loadshare.certify.bound.kernel.abreast import (
     put_rows,
     put_sum,
 )
-from loadshare.certify.bound.kernel.options import within
 from loadshare.extremes import larger
 from loadshare.settings import BOUND
 
@@ -53,10 +53,10 @@ def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-
         fill(square, 0.0)
         for i in range(3 * g, 3 * g + 3):
             offset, row, way = varying[shafts + i], shift[i], moved[i]
-            for v in range(BOUND.abreast):
+            for v in range(BOUND.side_by_side):
                 row[v] = way[v] + offset[v]
             put_largest(work.limits, offset, 1.0)
-            for v in range(BOUND.abreast):
+            for v in range(BOUND.side_by_side):
                 square[v] += offset[v] * offset[v]
         put_most(furthest, square, 1.0)
     for g in range(len(of.carrier)):
@@ -64,7 +64,7 @@ def put_places(of, here, claim, first, width, work):  # type: ignore[no-untyped-
             for i in range(3):
                 put_sum(shift[3 * g + i], shift[3 * of.carrier[g] + i], 1.0)
     put_sum(widest, work.limits, 1.0)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         furthest[v] = np.sqrt(furthest[v])
 
 
@@ -131,7 +131,7 @@ def put_gaps(of, here, first, width, work):  # type: ignore[no-untyped-def]
                 put_column(here.arc_shift[:, d, side, i], first, width, work.given)
                 put_sum(moved, work.given, frame[i])
         put_column(here.arc_clearance[:, d, side], first, width, gap)
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             x, y = line[0, v], line[1, v]
             along = of.nominal[k, 0] * x + of.nominal[k, 1] * y
             longer = 2.0 * along + (x * x + y * y)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.by_reference import set_apart
-from loadshare.certify.bound.kernel.abreast import (
+from loadshare.certify.bound.kernel.options import inlined, within
+from loadshare.certify.bound.kernel.rows import (
     fill,
     put_column,
     put_largest,
@@ -14,7 +15,6 @@ from loadshare.certify.bound.kernel.abreast import (
     put_sum,
     row_of,
 )
-from loadshare.certify.bound.kernel.options import inlined, within
 from loadshare.extremes import larger
 from loadshare.settings import BOUND, CERTIFY
 
@@ -45,15 +45,15 @@ def put_worst(of, here, claim, first, width, work):  # type: ignore[no-untyped-d
                 length[v] = max(length[v], np.sqrt(x * x + y * y) - work.graph[q, 3, v])
         for d in of.squeezed:
             force[v] = max(force[v], _squeeze(of, here, claim, first + v, work, v, d, band))
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         load, deflection = work.scale[v], work.deflection[v]
         beyond = larger(length[v] - work.resolution[v], 0.0)
         worst = larger(force[v] / load, beyond / deflection)
         work.worst[v] = larger(worst, work.energy[v] / (load * deflection)) + 0.0 * total[v]
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         lawful = (work.lawful[v] > 0.0) & (not work.behind[v] > 0.0)
         work.given[v] = work.worst[v] if lawful else np.inf
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         work.worst[v] = work.given[v]
 
 
@@ -105,13 +105,13 @@ def _put_strayed(of, work):  # type: ignore[no-untyped-def]
     fill(square, 0.0)
     for g in of.still:
         x, y, z = moved[3 * g], moved[3 * g + 1], moved[3 * g + 2]
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             square[v] = larger(square[v], x[v] * x[v] + y[v] * y[v] + z[v] * z[v])
         for i in range(3 * g, 3 * g + 3):
             put_sum(total, moved[i], 1.0)
         for i in range(2 * g, 2 * g + 2):
             put_sum(total, work.borne[i], 1.0)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         length[v] = larger(length[v], np.sqrt(square[v]))
     for k in range(len(of.place)):
         g, axis = of.place[k, 1], of.axis[of.place[k, 1]]
@@ -143,10 +143,10 @@ def _put_free(of, here, first, width, work):  # type: ignore[no-untyped-def]
         fill(square, 0.0)
         for a in range(2):
             put_column(here.support[:, g, a], first, width, given)
-            for v in range(BOUND.abreast):
+            for v in range(BOUND.side_by_side):
                 push = 0.0 if given[v] > 0.0 else work.borne[2 * g + a, v]
                 square[v] += push * push
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             force[v] = larger(force[v], np.sqrt(square[v]))
         put_sum(total, square, 1.0)
 
@@ -193,22 +193,22 @@ def put_displaced(of, work):  # type: ignore[no-untyped-def]
     fill(worst, 0.0)
     for e in range(len(of.arm)):
         approach, across = work.length[e], work.across[e]
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             neglected = 0.5 * of.line[e] * across[v] * across[v] - max(-approach[v], 0.0)
             most[v] = larger(most[v], neglected)
         put_most(worst, approach, of.yields[e])
         put_largest(furthest, across, 1.0)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         most[v] /= work.deflection[v] * CERTIFY.neglected
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         worst[v] = larger(larger(worst[v], furthest[v] / of.turnable), most[v])
     for k in range(len(of.apart)):
         g, other, allowed = of.drum_gear[k // 2], of.neighbour[k], of.apart[k] * CERTIFY.turned
-        for v in range(BOUND.abreast):
+        for v in range(BOUND.side_by_side):
             square = 0.0
             for i in range(3):
                 way = moved[3 * g + i, v] - moved[3 * other + i, v]
                 square += way * way
             worst[v] = larger(worst[v], np.sqrt(square) / allowed)
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         worst[v] = np.nan if most[v] > 1.0 else worst[v]

@@ -59,7 +59,7 @@ def put_column(column, first, width, row):  # type: ignore[no-untyped-def]
 def fill(row, value):  # type: ignore[no-untyped-def]
     """Write one value into a row."""
     set_apart()
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         row[v] = value
 
 
@@ -67,7 +67,7 @@ def fill(row, value):  # type: ignore[no-untyped-def]
 def put_sum(total, row, factor):  # type: ignore[no-untyped-def]
     """Add a multiple of a row."""
     set_apart()
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         total[v] += factor * row[v]
 
 
@@ -75,7 +75,7 @@ def put_sum(total, row, factor):  # type: ignore[no-untyped-def]
 def put_sizes(total, row, factor):  # type: ignore[no-untyped-def]
     """Add the sizes of a multiple of a row."""
     set_apart()
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         total[v] += abs(factor * row[v])
 
 
@@ -83,7 +83,7 @@ def put_sizes(total, row, factor):  # type: ignore[no-untyped-def]
 def put_multiple(product, row, factor):  # type: ignore[no-untyped-def]
     """Write a multiple of a row."""
     set_apart()
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         product[v] = factor * row[v]
 
 
@@ -91,7 +91,7 @@ def put_multiple(product, row, factor):  # type: ignore[no-untyped-def]
 def put_most(most, row, factor):  # type: ignore[no-untyped-def]
     """Take the larger of a row and a multiple of another."""
     set_apart()
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         most[v] = larger(most[v], factor * row[v])
 
 
@@ -99,7 +99,7 @@ def put_most(most, row, factor):  # type: ignore[no-untyped-def]
 def put_largest(most, row, factor):  # type: ignore[no-untyped-def]
     """Take the larger of a row and a multiple of the sizes of another."""
     set_apart()
-    for v in range(BOUND.abreast):
+    for v in range(BOUND.side_by_side):
         most[v] = larger(most[v], factor * abs(row[v]))
 
 
@@ -111,5 +111,5 @@ def put_product(rows, start, end, at, value, numbers):  # type: ignore[no-untype
         row = rows[j]
         for i in range(start[j], end[j]):
             factor, other = value[i], numbers[at[i]]
-            for v in range(BOUND.abreast):
+            for v in range(BOUND.side_by_side):
                 row[v] += factor * other[v]
