@@ -187,11 +187,11 @@ def answer_samples(
         wanted = tuple(k for k in every if k <= group.train.count)
         if positions is not None and len(wanted) < len(every):
             lacking |= dict.fromkeys(rows.tolist(), tuple(k for k in every if k not in wanted))
-        abreast = [(k,) for k in wanted] if group.train.is_placed_anew else [wanted]
+        chunks = [(k,) for k in wanted] if group.train.is_placed_anew else [wanted]
         for at in range(0, len(rows), each):
             some = slice(at, at + each)
             taken = group.take(some)
-            parts += [_part(machine, rows[some], taken, k) for k in abreast if k]
+            parts += [_part(machine, rows[some], taken, k) for k in chunks if k]
             done += len(rows[some])
             if progress is not None:
                 progress(done, total)
@@ -203,7 +203,7 @@ def _part(
 ) -> MachineSamples:
     """Solve samples at some positions; those that the fast method leaves climb the ladder."""
     here = machine.at(positions[0])
-    situations = samples.abreast(positions)
+    situations = samples.at_positions(positions)
     engine = available_engine("auto", situations.count)
     found = here.answer(situations, CERTIFY.tolerance, engine, starts=positions)
     solved = HotAnswers(here, situations, found, CERTIFY.tolerance)

@@ -217,10 +217,10 @@ def solve_block(
     """
     open_ = _Open(rows, positions)
     block = open_.block
-    abreast = 1 if machine.train.is_placed_anew else max(1, machine.together // len(rows))
-    for at in range(0, len(positions), abreast):
-        some = positions[at : at + abreast]
-        situations, here = samples.abreast(some), machine.at(some[0])
+    width = 1 if machine.train.is_placed_anew else max(1, machine.together // len(rows))
+    for at in range(0, len(positions), width):
+        some = positions[at : at + width]
+        situations, here = samples.at_positions(some), machine.at(some[0])
         found = here.answer(situations, tolerance, engine, starts=some)
         chunk = _Chunk(slice(at, at + len(some)), here, situations, found.equilibria)
         open_.put(chunk, found)

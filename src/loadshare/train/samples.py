@@ -88,7 +88,7 @@ class Samples:
         found = situations_of(train_at(self._varied, index), index)
         return replace(found, train=train_at(self.train, index), count=self.count)
 
-    def abreast(self, positions: Sequence[int]) -> Situations:
+    def at_positions(self, positions: Sequence[int]) -> Situations:
         """Return the situations of all samples at several positions, one after another.
 
         Only one position is allowed for a train that is placed anew at every position.
