@@ -27,7 +27,7 @@ Figure = tuple[float, float]
 """A figure and its stated error."""
 
 
-class Slopes(NamedTuple):
+class SideSlopes(NamedTuple):
     """Derivatives of Ω of the system per unit of an input, to both sides."""
 
     item: Input
@@ -70,7 +70,7 @@ def sensitivity_view(found: Sensitivity) -> View:
     return View("Sensitivities of Ω of the system", facts, tuple(tables))
 
 
-def _ordered(found: Sensitivity, over: str) -> list[Slopes]:
+def _ordered(found: Sensitivity, over: str) -> list[SideSlopes]:
     """Return the derivatives with respect to all inputs, by what their whole value changes."""
     rates, errors = (
         (found.pair_omega, found.pair_omega_error)
@@ -86,11 +86,11 @@ def _ordered(found: Sensitivity, over: str) -> list[Slopes]:
             )
             for side in found.sides
         )
-        every.append(Slopes(item, falling, rising))
+        every.append(SideSlopes(item, falling, rising))
     return sorted(every, key=lambda slopes: -_size(slopes.whole[0]))
 
 
-def _table(over: str, ordered: list[Slopes]) -> Table:
+def _table(over: str, ordered: list[SideSlopes]) -> Table:
     kinked = any(slopes.is_kinked for slopes in ordered[:SHOWN])
     rows = []
     for slopes in ordered:
