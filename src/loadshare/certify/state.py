@@ -222,7 +222,7 @@ class ClaimedState:
         found[self.of.claims.rounds] = rounds
         if train.slip is not None:
             for q, gear in enumerate(train.splines, self.of.claims.splines.start):
-                found[q] = train.slip[gear][:, None]
+                found[q] = np.reshape(train.slip[gear], (3, 1))
         return found
 
     @cached_property

@@ -17,13 +17,13 @@ import numpy as np
 
 from loadshare.case import Case
 from loadshare.case.reader import opened
-from loadshare.case.words import count
 from loadshare.equality import Comparable
 from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
 from loadshare.job.answer import Answer
 from loadshare.job.positions import result_of
 from loadshare.libraries import pd, xr
+from loadshare.numbers import counted
 from loadshare.one_thread import one_thread
 from loadshare.pictures import Figure, picture
 from loadshare.results import Result
@@ -150,8 +150,8 @@ class March(Viewed):
 
     def _left_open(self) -> list[str]:
         lines = [f"REFUSED  {line}" for line in self.refused.splitlines()]
-        total = len(self.result.stamp.positions)
-        more = f"{count(len(self.slips), 'step')} of {total} certified; each needs the one before."
+        total, done = len(self.result.stamp.positions), counted(len(self.slips), "step")
+        more = f"{done} of {total} certified; each needs the one before."
         return [*lines, more] if lines else []
 
 

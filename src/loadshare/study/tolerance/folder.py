@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any
 from loadshare.case.content import ABOUT
 from loadshare.case.keys import dotted
 from loadshare.case.revise import differing as differences
-from loadshare.case.words import as_given, count
+from loadshare.case.words import as_given
 from loadshare.errors import LoadshareError, Problem, ResultError
 from loadshare.libraries import pa, parquet, pd
 from loadshare.lock import LOCK
+from loadshare.numbers import counted
 from loadshare.output import clear, is_left, write_whole
 from loadshare.results.digest import DIGEST, digest_of
 from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
@@ -260,7 +261,7 @@ def _differing_keys(known: str, wanted: str) -> list[str]:
         if path[0] not in ABOUT
     ]
     more = len(found) - KEYS
-    return found[:KEYS] + ([f"  and {count(more, 'further key')}"] if more > 0 else [])
+    return found[:KEYS] + ([f"  and {counted(more, 'further key')}"] if more > 0 else [])
 
 
 def _differing_inputs(known: Iterable[Any], wanted: Iterable[Any]) -> list[str]:
