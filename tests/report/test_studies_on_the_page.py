@@ -176,6 +176,16 @@ def test_the_command_runs_what_is_requested(case, tmp_path):
     assert "contradicts --no-studies" in done.stderr
 
 
+def test_a_case_that_cannot_be_read_is_reported_not_its_study(tmp_path):
+    """`extends` is taken from the folder of the file; its studies cannot be known."""
+    file, out = tmp_path / "case.toml", tmp_path / "report.html"
+    file.write_text('extends = "gone.toml"\n[study.floats]\nkind = "sensitivity"\n', "utf-8")
+    done = CliRunner().invoke(app, ["report", str(file), "-o", str(out), "--study", "floats"])
+    assert done.exit_code == 2
+    assert "no such study" not in done.stderr
+    assert "there is no such file" in " ".join(Reader(out.read_text("utf-8")).text.split())
+
+
 def test_a_folder_without_samples_is_reported_before_anything_is_solved(tmp_path):
     """A typing error in its name used to start the whole study, in a folder of that name."""
     file = tmp_path / "case.toml"

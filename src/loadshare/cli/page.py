@@ -95,7 +95,9 @@ def _with_studies(chapters: list[Chapter], named: dict[str, Path | None]) -> lis
         If no case holds a study of some name.
     """
     held = {name for one in chapters if one.case for name in one.case.study}
-    if unknown := [name for name in named if name not in held]:
+    unknown = [name for name in named if name not in held]
+    # A case that cannot be read may hold it; its problems are reported in any case.
+    if unknown and all(one.case for one in chapters):
         message = f"{', '.join(unknown)}: no such study"
         allowed = f"Allowed: {', '.join(sorted(held))}" if held else "The cases have none"
         raise typer.BadParameter(f"{message}. {allowed}.", param_hint="--study")
