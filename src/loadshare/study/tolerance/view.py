@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from loadshare.numbers import NONE, counted
+from loadshare.numbers import NONE, counted, decimals, fixed
 from loadshare.settings import TOLERANCE
 from loadshare.table import Cell, Table, text_table
 from loadshare.view import View
@@ -102,20 +102,17 @@ def _share_tables(every: Iterable[OmegaStatistics]) -> Iterator[Table]:
 
 def _other_tables(found: Tolerance) -> Iterator[Table]:
     """Yield the torques of the meshes and the displacements of the floats."""
-
-    def cells(of: Summary, factor: float = 1.0) -> list[Cell]:
-        values = (of.mean.value, of.spread, of.lowest, of.highest)
-        return [Cell(f"{factor * value:.5g}", factor * value) for value in values]
-
     figures = ("mean", "deviation", "smallest", "largest")
+    cells = _cells(found.torque.values())
     rows = [(Cell(mesh), *cells(torque)) for mesh, torque in found.torque.items()]
     title = "Largest driver torque over positions [N·m]"
     yield text_table(title, ("mesh", *figures), rows, ("mesh",))
     if found.floats:
+        cells = _cells((f.way for f in found.floats), 1e6)
         rows = [
             (
                 Cell(f.gear),
-                *cells(f.way, 1e6),
+                *cells(f.way),
                 Cell(NONE if f.pressed is None else f"{100 * f.pressed:.4g} %", f.pressed),
             )
             for f in found.floats
@@ -123,6 +120,17 @@ def _other_tables(found: Tolerance) -> Iterator[Table]:
         heads = ("float", *figures, "on its boundary")
         title = "Largest displacement of floats over positions [µm]"
         yield text_table(title, heads, rows, heads[:1])
+
+
+def _cells(every: Iterable[Summary], factor: float = 1.0) -> Callable[[Summary], list[Cell]]:
+    """Return a function for the cells of a summary; all figures have as many decimals."""
+    places = decimals(factor * of.highest for of in every)
+
+    def cells(of: Summary) -> list[Cell]:
+        values = (factor * v for v in (of.mean.value, of.spread, of.lowest, of.highest))
+        return [Cell(fixed(value, places), value) for value in values]
+
+    return cells
 
 
 def _worst_tables(found: Tolerance) -> Iterator[Table]:
