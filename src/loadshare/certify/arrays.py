@@ -18,14 +18,17 @@ from loadshare.train.situations import VARYING, Situations
 
 Here = namedtuple("Here", VARYING)  # type: ignore[misc]
 """The arrays of `Situations`, with one row or one per answer."""
-Claim = namedtuple("Claim", CLAIMED)  # type: ignore[misc]
-"""The arrays of `Equilibria`."""
+Claim = namedtuple("Claim", (*CLAIMED, "flank_root"))  # type: ignore[misc]
+"""The arrays of `Equilibria`, and the cube roots of the forces of flanks, (S or 1, flanks)."""
 
 
 def arrays_of(situations: Situations, answers: Equilibria) -> tuple[Any, Any]:
     """Return situations and claims as tuples, with the vectors of all gears in one row."""
     here = Here(*(_array(name, getattr(situations, name)) for name in VARYING))
-    return here, Claim(*(_array(name, getattr(answers, name)) for name in CLAIMED))
+    claim = (_array(name, getattr(answers, name)) for name in CLAIMED)
+    # NumPy finds many roots several times as fast as compiled code, which needs them one by one.
+    force = answers.flank_force if situations.hertz.any() else answers.flank_force[:1]
+    return here, Claim(*claim, np.cbrt(np.maximum(force, 0.0)))
 
 
 def _array(name: str, array: Array) -> Array:

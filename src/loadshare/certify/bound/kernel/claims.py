@@ -70,7 +70,7 @@ def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-de
                 at, soft = len(of.twin) + len(of.spring) + q, work.stiffest[q, v]
                 spread(sets, last, at, soft, soft)
         new = before, count
-        put_contacts(of, here, first, width, work, found, sets, new)
+        put_contacts(of, here, claim, first, width, work, found, sets, new)
         put_springs(of, here, claim, first, width, work, found, sets, new)
         _put_scales(work)
         put_worst(of, here, claim, first, width, work)

@@ -33,7 +33,7 @@ from loadshare.settings import BOUND
 
 
 @within
-def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignore[no-untyped-def]
+def put_contacts(of, here, claim, first, width, work, found, sets, new):  # type: ignore[no-untyped-def]
     """Write forces and misfits of contacts.
 
     Also writes their largest compression [m], infinite where one pulls; that of loaded flanks, or
@@ -58,7 +58,7 @@ def put_contacts(of, here, first, width, work, found, sets, new):  # type: ignor
             fill(work.apart[c], 0.0)
             continue
         if c < len(of.arm):
-            alike = put_laws(of, here, c, first, width, work)
+            alike = put_laws(of, here, claim, c, first, width, work)
             _put_bent(work, c)
         else:
             alike = _put_wall(of, here, c, first, width, work)

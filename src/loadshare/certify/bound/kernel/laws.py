@@ -119,7 +119,7 @@ def _holds(hertz, force, light):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def put_laws(of, here, e, first, width, work):  # type: ignore[no-untyped-def]
+def put_laws(of, here, claim, e, first, width, work):  # type: ignore[no-untyped-def]
     """Write the laws of a flank at the forces of claims to four rows, as in `flank_law`.
 
     Return whether compliances are the same for all claims.
@@ -142,8 +142,9 @@ def put_laws(of, here, e, first, width, work):  # type: ignore[no-untyped-def]
             compression[v] = least[v] * force[v]
         return len(here.bending) == 1 and len(here.hertz) == 1
     root, light, root_of_light = work.root, work.light, work.root_of_light
+    put_column(claim.flank_root[:, e], first, width, root)
     for v in range(BOUND.side_by_side):
-        root[v] = np.cbrt(max(force[v], 0.0))
+        root[v] = root[v] if force[v] != 0.0 else 0.0
     for v in range(BOUND.side_by_side):
         holds[v] = _holds(hertz[v], force[v], light[v])
     for v in range(BOUND.side_by_side):
