@@ -25,10 +25,10 @@ Claim = namedtuple("Claim", (*CLAIMED, "flank_root"))  # type: ignore[misc]
 def arrays_of(situations: Situations, answers: Equilibria) -> tuple[Any, Any]:
     """Return situations and claims as tuples, with the vectors of all gears in one row."""
     here = Here(*(_array(name, getattr(situations, name)) for name in VARYING))
-    claim = (_array(name, getattr(answers, name)) for name in CLAIMED)
-    # NumPy finds many roots several times as fast as compiled code, which needs them one by one.
-    force = answers.flank_force if situations.hertz.any() else answers.flank_force[:1]
-    return here, Claim(*claim, np.cbrt(np.maximum(force, 0.0)))
+    claim = {name: _array(name, getattr(answers, name)) for name in CLAIMED}
+    # NumPy finds many roots several times as fast as compiled code, which finds one by one.
+    force = claim["flank_force"] if situations.hertz.any() else claim["flank_force"][:1]
+    return here, Claim._make([*claim.values(), np.cbrt(np.maximum(force, 0.0))])
 
 
 def _array(name: str, array: Array) -> Array:
