@@ -288,6 +288,19 @@ def test_a_key_that_changes_the_machine_groups_the_samples(key):
             ]
 
 
+def test_loads_of_a_list_that_press_both_flanks_in_turn_are_refused():
+    """The smallest and the largest loads of all positions press one flank each."""
+    samples = {f"operating.torque[{k}] [N*m]": [700.0, -700.0, 700.0] for k in range(4)}
+    samples["operating.torque[4] [N*m]"] = [700.0, -700.0, -700.0]
+    case = loaded(shipped("fgfbstts/both_errors"), "700 N*m").replace(
+        {"operating.torque": ["700 N*m"] * 5}
+    )
+    with pytest.raises(CaseError, match="backlash"):
+        samples_of(case, samples)
+    some = {key: values[:2] for key, values in samples.items()}
+    assert sorted(rows.tolist() for rows, _ in samples_of(case, some)) == [[0], [1]]
+
+
 def test_a_backlash_changes_the_float_that_is_derived_from_it():
     ((_, group),) = samples_of(derived(), {'meshes."6-10".backlash [um]': [20.0, 30.0]})
     floats = group.situations(1).stop[:, 0]

@@ -36,7 +36,8 @@ def _becomes_array(case: spec.Case, column: Column) -> bool:
         case ("operating", "torque" | "power" | "speed") | ("operating", "external", _):
             return True
         case ("operating", "torque" | "power", int()):
-            return True
+            # Loads of both signs may press flanks that the first sample does not have.
+            return column.is_positive
         case ("operating", "forces", _, int()) | ("operating", "gravity", int()):
             return True
         case ("errors", gear, "installation", "amount" | "direction"):
