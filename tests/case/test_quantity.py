@@ -116,6 +116,15 @@ def test_units_that_engineers_write(kind, text, si):
             (
                 q.Length,
                 text,
+                "is outside the range of any machine (1e-40 to 10000 m). "
+                'Allowed: a length such as "45.9 mm". ',
+            )
+            for text in ("1e9999999 mm", "-1e99999999999999999999 mm", "1e-9999999 mm")
+        ),
+        *(
+            (
+                q.Length,
+                text,
                 'is not a number followed by a unit. Allowed: a length such as "45.9 mm". '
                 "Use a decimal point, and no separators between thousands.",
             )
@@ -155,6 +164,25 @@ def test_values_that_are_none(kind, given, message):
     with pytest.raises(ValidationError) as caught:
         read(kind, given)
     assert caught.value.errors()[0]["msg"] == message
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "hint"),
+    [
+        (q.TORSIONAL_COMPLIANCE, "2e-7 rad/N*m", "Did you mean rad/(N*m)?"),
+        (q.MODULUS, "206e3 N/mm2", "Did you mean N/mm^2?"),
+        (q.DENSITY, "7850 kg/m3", "Did you mean kg/m^3?"),
+        (q.TORQUE, "5 N×m", "Did you mean N*m?"),
+        (q.ANGULAR_SPEED, "5 min⁻¹", 'Write "5 rpm".'),
+        (q.STIFFNESS, "5 lb/in", "Write lbf: a force; 1 lb of mass is 0.45359237 kg."),
+        (q.EXPANSION, "5e-6 1/°C", "Write K: a rise of 1 °C is 1 K."),
+        (q.STIFFNESS, "5 N/mm/um", ""),
+    ],
+)
+def test_a_unit_that_is_nearly_right_is_proposed(kind, given, hint):
+    with pytest.raises(ValueError) as caught:
+        kind.read(given)
+    assert caught.value.context["hint"] == hint
 
 
 @pytest.mark.parametrize(

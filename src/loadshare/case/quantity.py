@@ -16,8 +16,8 @@ from loadshare.case.units import (
     OTHERS,
     beyond_unit,
     kind_of,
+    respelled,
     si_factor,
-    written_apart,
 )
 from loadshare.case.words import did_you_mean
 from loadshare.settings import ALLOWED
@@ -135,17 +135,28 @@ class Dimension:
             raise self._unknown(number, unit, str(error)) from None
         if factor is None:
             kind = kind_of(unit) or f"in {unit}"
-            hint = _rewritten(number, unit) if unit in OTHERS else ""
+            meant = respelled(unit, self.unit)
+            near = f"Did you mean {meant}?" if meant else ""
+            hint = _rewritten(number, unit) if unit in OTHERS else near
             raise self._problem(f"is {kind}, but {self.kind} is needed", hint=hint)
-        # Decimal keeps "45.9 mm" and "0.0459 m" the same number.
-        exact = Decimal(number) * Decimal(repr(factor))
-        value = Quantity(str(text), float(exact))
+        try:
+            # Decimal keeps "45.9 mm" and "0.0459 m" the same number.
+            exact = Decimal(number)
+            value = Quantity(str(text), float(exact * Decimal(repr(factor))))
+        except ArithmeticError:
+            raise self._outside() from None  # an exponent of a million or more
         self._check(value.si)
-        largest = ALLOWED.length if self.unit == "m" else ALLOWED.largest
-        if not (exact.is_zero() or ALLOWED.smallest <= abs(value.si) <= largest):
-            limits = f"{ALLOWED.smallest:g} to {largest:g} {self.unit}"
-            raise self._problem(f"is outside the range of any machine ({limits})")
+        if not (exact.is_zero() or ALLOWED.smallest <= abs(value.si) <= self._largest):
+            raise self._outside()
         return value
+
+    @property
+    def _largest(self) -> float:
+        return ALLOWED.length if self.unit == "m" else ALLOWED.largest
+
+    def _outside(self) -> PydanticCustomError:
+        limits = f"{ALLOWED.smallest:g} to {self._largest:g} {self.unit}"
+        return self._problem(f"is outside the range of any machine ({limits})")
 
     @property
     def allowed(self) -> str:
@@ -183,16 +194,20 @@ class Dimension:
         if unit in OTHERS:
             hint = _rewritten(number, unit)
             return self._problem(f"the unit {unit} is not known", hint=hint)
+        meant = respelled(unit, self.unit)
         if rest := beyond_unit(unit):
-            return self._problem(f"{rest} is not part of a unit; only a unit may follow a number")
-        apart = written_apart(unit, self.unit)
-        if apart is None:
-            others = ((written_apart(unit, si), kind) for kind, si in KINDS.items())
+            hint = f"Did you mean {meant}?" if meant else ""
+            why = f"{rest} is not part of a unit; only a unit may follow a number"
+            return self._problem(why, hint=hint)
+        if meant is None:
+            others = ((respelled(unit, si), kind) for kind, si in KINDS.items())
             other, kind = next(((text, kind) for text, kind in others if text), (None, ""))
             if other is not None:
                 return self._problem(f"{unit} would be {other}, {kind}, but {self.kind} is needed")
         fitting = [known for known in COMMON if si_factor(known, self.unit) is not None]
-        hint = f"Did you mean {apart}?" if apart else did_you_mean(part, fitting)
+        hint = f"Did you mean {meant}?" if meant else did_you_mean(part, fitting)
+        if not meant and part in OTHERS:
+            hint = f"Write {OTHERS[part]}."
         return self._problem(f"the unit {part} is not known", hint=hint)
 
     def _problem(

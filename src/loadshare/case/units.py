@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
@@ -46,6 +47,9 @@ horsepower = 745.6998715822702 * watt = hp
 """
 
 _WORD = re.compile(r"[^\W\d_]+")
+_NO_POWER = re.compile(r"([^\W\d_])([2-4])(?!\w)")
+_PRODUCTS = re.compile("[×•∙-]")
+"""Signs of a product that are none here."""
 
 # Spellings that a did-you-mean may propose: those that engineers use.
 COMMON = (
@@ -57,7 +61,7 @@ COMMON = (
 )
 
 OTHERS = {
-    **dict.fromkeys(("1/min", "U/min", "min-1", "min^-1", "/min", "rev/m"), "rpm"),
+    **dict.fromkeys(("1/min", "U/min", "min-1", "min^-1", "min⁻¹", "/min", "rev/m"), "rpm"),
     **dict.fromkeys(("lb-ft", "lbf-ft", "ft-lb", "ft-lbf", "lb*ft", "ft*lb"), "ft*lbf"),
     **dict.fromkeys(("lb-in", "lbf-in", "in-lb", "in-lbf", "lb*in", "in*lb"), "in*lbf"),
     **dict.fromkeys(("lb", "lbs"), "lbf: a force; 1 lb of mass is 0.45359237 kg"),
@@ -65,9 +69,14 @@ OTHERS = {
     **dict.fromkeys(("thou", "mil"), "in: one thousandth is 0.001 in"),
     **dict.fromkeys(("PS", "CV"), "W, kW or hp: 1 PS is 735.49875 W"),
     **dict.fromkeys(("kgf", "kp"), "N: 1 kgf is 9.80665 N"),
-    **dict.fromkeys(("°C", "degC", "C", "delta_degC", "Δ°C"), "K: a rise of 1 °C is 1 K"),
+    **dict.fromkeys(("t", "tonne"), "kg: 1 t is 1000 kg"),
+    **dict.fromkeys(("°F", "degF", "degreeF"), "K: a rise of 1 °F is 0.5556 K"),
+    **dict.fromkeys(
+        ("°C", "degC", "degreeC", "C", "delta_degC", "Δ°C"), "K: a rise of 1 °C is 1 K"
+    ),
     **dict.fromkeys(("gon", "grad", "grade"), "deg: 1 gon is 0.9 deg"),
     "feet": "ft",
+    "daN": "N: 1 daN is 10 N",
     "bar": "MPa: 1 bar is 0.1 MPa",
     "psi": "lbf/in^2",
 }
@@ -208,27 +217,47 @@ def beyond_unit(unit: str) -> str:
     return unit[found.start() :] if found else ""
 
 
-def written_apart(unit: str, target: str) -> str | None:
-    """Return a unit with a product sign where one is missing, as in ``Nm/rad``, or None.
+def respelled(unit: str, target: str) -> str | None:
+    """Return a unit with the sign that is missing in it, or None.
 
     Parameters
     ----------
     unit : str
-        A text that is not a unit.
+        A text that is no unit of the right kind: ``Nm/rad``, ``N/mm2``, ``rad/N*m``.
     target : str
         The SI unit of what it must measure.
     """
+    for found in _respellings(unit):
+        try:
+            if si_factor(found, target) is not None:
+                return found
+        except ValueError:
+            continue
+    return None
+
+
+def _respellings(unit: str) -> Iterator[str]:
+    """Yield a unit with product signs, a power sign, or brackets below its fraction bar."""
+    yield _PRODUCTS.sub("*", unit)
     for word in _WORD.finditer(unit):
+        if _is_known(word[0]):
+            continue
         for cut in range(1, len(word[0])):
             product = f"{word[0][:cut]}*{word[0][cut:]}"
             for put in (product, f"({product})"):
-                found = unit[: word.start()] + put + unit[word.end() :]
-                try:
-                    if si_factor(found, target) is not None:
-                        return found
-                except ValueError:
-                    continue
-    return None
+                yield unit[: word.start()] + put + unit[word.end() :]
+    yield _NO_POWER.sub(r"\1^\2", unit)
+    above, bar, below = unit.partition("/")
+    if bar and "/" not in below:
+        yield f"{above}/({below})"
+
+
+def _is_known(unit: str) -> bool:
+    try:
+        _parse(unit)
+    except ValueError:
+        return False
+    return True
 
 
 @lru_cache(maxsize=1024)
