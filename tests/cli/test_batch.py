@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -476,3 +477,38 @@ def test_no_case_is_wrong_usage(command, tmp_path):
 )
 def test_names_of_results_are_unique(cases, names):
     assert result_names([Path(case) for case in cases]) == names
+
+
+def test_no_result_leaves_the_folder(command, star, tmp_path, monkeypatch):
+    """Not even that of a case whose path leads out of the folder in which the command runs."""
+    for folder in ("here/b", "a"):
+        (tmp_path / folder).mkdir(parents=True)
+        shutil.copy(star / "floating_sun_3.toml", tmp_path / folder / "x.toml")
+    monkeypatch.chdir(tmp_path / "here")
+    command("batch", "../a/x.toml", "b/x.toml", "-o", "out", "--jobs", "1")
+    assert outcomes(Path("out")) == {"a/x": "certified", "here/b/x": "certified"}
+    assert all(Path("out") in file.parents for file in Path().rglob("*.json"))
+
+
+def test_a_quiet_batch_names_the_cases_that_failed_and_no_others(command, star, tmp_path):
+    bad = tmp_path / "bad.toml"
+    bad.write_text("x =", encoding="utf-8")
+    words = ("batch", star / "floating_sun_3.toml", bad, "-o", tmp_path / "out", "-j", "1", "-q")
+    done = command(*words)
+    assert (done.exit_code, done.stdout) == (1, "")
+    said = f"bad: invalid: {bad}: is not valid TOML at end of document: invalid value.\n"
+    assert done.stderr == said
+    assert command(*words, "--json").stderr == ""
+
+
+@pytest.mark.parametrize("kind", ['kind = "law"', ' "kind"="law"', '\ufeffkind = "helicoid"'])
+def test_pairs_and_laws_in_a_folder_are_no_cases_however_they_say_so(command, tmp_path, kind):
+    (tmp_path / "other.toml").write_text(kind, encoding="utf-8")
+    assert "No case found" in command("check", tmp_path).stderr
+
+
+def test_a_case_that_quotes_a_law_is_a_case(command, star, tmp_path):
+    text = (star / "floating_sun_3.toml").read_text(encoding="utf-8")
+    notes = 'notes = """\nkind = "law"\n"""\n'
+    (tmp_path / "case.toml").write_text(notes + text.replace("notes =", "#"), encoding="utf-8")
+    assert command("check", tmp_path).stdout == f"OK  {tmp_path / 'case.toml'}\n"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ import typer
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import keep_inputs
 from loadshare.cli.waiting import echo
-from loadshare.input import Unreadable, read_file, real
+from loadshare.input import real
 
 if TYPE_CHECKING:
     from loadshare.case import Case
@@ -157,15 +156,15 @@ def _no_case_text(path: Path) -> str:
 
 def _of_another_kind(file: Path) -> bool:
     """Return whether a file says that it is a pair or a law, which cases name but which is none."""
+    from loadshare.case.reader import read_toml
     from loadshare.case.recognise import OTHER_FILES
-    from loadshare.settings import ALLOWED
+    from loadshare.errors import CaseError
 
-    kind = rf"""^kind\s*=\s*["']({"|".join(OTHER_FILES)})["']"""
     try:
-        text = read_file(file, ALLOWED.bytes).decode("utf-8")
-        return re.search(kind, text, re.MULTILINE) is not None
-    except (OSError, Unreadable, UnicodeDecodeError):
+        kind = read_toml(file).get("kind")
+    except CaseError:
         return False  # to be reported like any other bad case
+    return isinstance(kind, str) and kind in OTHER_FILES
 
 
 def _hidden(file: Path, folder: Path) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -22,11 +22,11 @@ from loadshare.cli.batch.work import (
     result_names,
 )
 from loadshare.cli.cases import find_cases, read_changes
-from loadshare.cli.console import progress, say
+from loadshare.cli.console import progress, say, say_all
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
 from loadshare.cli.options import CasePaths, Changes, Json, Method, Solver, Tolerance
 from loadshare.cli.stop import Stop
-from loadshare.cli.waiting import echo
+from loadshare.cli.waiting import echo, is_hushed
 from loadshare.errors import LoadshareError
 from loadshare.json_text import json_text
 from loadshare.output import STANDARD, clear, make_folder, write_whole
@@ -95,6 +95,9 @@ def batch(
                 write_whole(summary, json_text(document))
             if json:
                 echo(json_text(document), nl=False)
+            elif is_hushed():
+                for line in _lines(done for done in ordered if done.outcome not in GOOD):
+                    echo(line, err=True)
             if stop.requested:
                 message = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
                 fail([message, "The same command continues; what is certified is kept."], stop.code)
@@ -152,10 +155,14 @@ def print_summary(outcomes: Sequence[Outcome]) -> None:
             f"{done.seconds:.2f}",
         )
     show("Cases", made)
-    for done in outcomes:
-        for message in done.messages:
-            say(f"{done.name}: {done.outcome}: {message}", whole=True)
+    say_all(_lines(outcomes), whole=True)
     say(counts(outcomes))
+
+
+def _lines(outcomes: Iterable[Outcome]) -> Iterator[str]:
+    """Yield what went wrong, and warnings."""
+    for done in outcomes:
+        yield from (f"{done.name}: {done.outcome}: {message}" for message in done.messages)
 
 
 def counts(outcomes: Sequence[Outcome]) -> str:

@@ -196,7 +196,8 @@ def result_names(cases: Sequence[Path]) -> list[str]:
     list of str
         Names that differ even on a file system that ignores case.
     """
-    absolute = [path.absolute() for path in cases]
+    # A path with ".." in it would lead out of the folder of results.
+    absolute = [Path(os.path.normpath(path.absolute())) for path in cases]
     root = os.path.commonpath([path.parent for path in absolute]) if absolute else ""
     stems = Counter(path.stem.casefold() for path in cases)
     taken = {SUMMARY}
