@@ -197,3 +197,11 @@ def test_a_path_keeps_its_corners_and_where_it_turns_back():
     assert corners(flat) == [flat[0], flat[len(flat) // 2], flat[-1]]
     square = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0), (2.0, 2.0)]
     assert corners(square) == [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0)]
+
+
+def test_a_long_title_makes_no_picture_wider():
+    case = shipped("star/floating_sun_3").replace({"title": "of any length " * 100})
+    wide = len(shipped("fgfbstts/limit_ring").title)
+    lines = train(case).spec["title"]["subtitle"]
+    assert wide < max(map(len, lines)) <= 150
+    assert " ".join(lines).startswith(case.title.strip())

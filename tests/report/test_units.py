@@ -7,8 +7,11 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.support import shipped
 
+import loadshare as ls
 from loadshare.numbers import NUMBER, Unit, engineering, significant
+from loadshare.report.words import undetermined_lines
 
 
 @pytest.mark.parametrize(
@@ -62,3 +65,11 @@ def test_significant_digits_round_trip(value, digits):
 )
 def test_significant_digits(value, text):
     assert significant(value) == text
+
+
+def test_an_end_of_a_range_that_is_round_off_is_zero():
+    """Also where nothing is loaded, so that no other end is larger."""
+    case = shipped("star/floating_sun_3").replace({"operating.torque": "0 N*m"})
+    lines = undetermined_lines(ls.solve(case).positions)
+    assert any(", up to 0 µrad" in line for line in lines)
+    assert not any("0.0000" in line for line in lines)

@@ -114,6 +114,8 @@ def direction_name(vector: Iterable[float]) -> str:
 
 DIGITS = 5
 """Significant digits of a range's ends."""
+LEAST = 1e-15
+"""End of a range that is round-off where no end is larger [m, rad]."""
 
 
 def undetermined_lines(positions: Sequence[Position]) -> list[str]:
@@ -133,7 +135,7 @@ def undetermined_lines(positions: Sequence[Position]) -> list[str]:
         sizes = [abs(end) for both in ranges for end in both if math.isfinite(end)]
         largest[kind[name]] = max(largest.get(kind[name], 0.0), *sizes, 0.0)
     for name, ranges in every.items():
-        least = ROUND_OFF * largest[kind[name]]
+        least = max(ROUND_OFF * largest[kind[name]], LEAST)
         ends = min(r[0] for r in ranges), max(r[1] for r in ranges)
         low, high = (0.0 if abs(end) <= least else end for end in ends)
         if low == high == 0.0:

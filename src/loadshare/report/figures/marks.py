@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
@@ -13,6 +14,8 @@ from loadshare.report.palette import DASHES, INK, SHAPES, SOFT, WARNING, Look
 from loadshare.report.vega_lite import OWN_LEGENDS, Channel, Drawing, Row, channel, joined, layer
 
 Subtitle = str | Sequence[str]
+LETTERS = 150
+"""Most letters of a line of a subtitle: titles of cases may be of any length."""
 
 
 def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any]:
@@ -145,7 +148,8 @@ def padded(low: float, high: float, least: float, share: float = 0.08) -> list[f
 
 def heading(title: str, subtitle: Subtitle = "") -> dict[str, Any]:
     """Return the title of a picture or panel."""
-    lines = [line for line in ([subtitle] if isinstance(subtitle, str) else subtitle) if line]
+    given = [subtitle] if isinstance(subtitle, str) else subtitle
+    lines = [line for text in given for line in textwrap.wrap(text, LETTERS)]
     return {"text": title, "subtitle": lines} if lines else {"text": title}
 
 
