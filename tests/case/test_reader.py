@@ -214,3 +214,37 @@ def test_a_bad_value_does_not_hide_an_unknown_name_beside_it(tmp_path):
         load_case(file)
     keys = [p.key for p in caught.value.problems]
     assert keys == ["rings.5.clearance", "rings.5.neighbours[1]"]
+
+
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        ("torque = 100 N*m", 'Put texts, and values with their unit, in quotes: "100 N*m".'),
+        (
+            "support = rigid # in its bearing",
+            'Put texts, and values with their unit, in quotes: "rigid".',
+        ),
+        ("centre = [0 mm, 1 mm]", 'Put texts, and values with their unit, in quotes: "0 mm".'),
+        ("torque = “100 N*m”", 'Quotes are straight: "100 N*m".'),
+        ("held = True", "Write true or false."),
+        ("module = 4,5", "Use a decimal point: 4.5."),
+        ("profile_shift = -.5", "Write -0.5."),
+        ("teeth = 018", "Write 18."),
+        ("teeth = 18;", "Nothing follows a value: drop the ; there."),
+        ("teeth: 18", "Write teeth = 18."),
+        ("// teeth", "A comment begins with #."),
+        ('module = "5 mm', 'A text begins and ends with " on one line.'),
+        (
+            "[gears.high speed]",
+            'Put a name of more than letters, digits, _ and - in quotes: [gears."high speed"].',
+        ),
+        ("[gears.b] teeth = 18", "Begin a new line after the head of a table."),
+        ("title = 1\ntitle = 2", ""),
+        ("teeth = = 3", ""),
+    ],
+)
+def test_a_slip_in_toml_comes_with_what_to_write(line, hint, tmp_path):
+    path = write(tmp_path, bad=f"[gears.a]\n{line}\n")
+    with pytest.raises(CaseError, match="is not valid TOML at line") as caught:
+        load_case(path)
+    assert [problem.hint for problem in caught.value.problems] == [hint]

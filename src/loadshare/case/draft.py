@@ -190,7 +190,9 @@ def _read_section(
         draft.add_problem((name,), f"has {len(value)} entries", f"at most {most}")
         return
     if model is not None and not isinstance(value, Mapping):
-        draft.add_problem((name,), "is not valid here", "a table")
+        named = isinstance(value, list) and get_origin(about.annotation) is dict
+        hint = f"Write [{name}.NAME] for each." if named else ""
+        draft.add_problem((name,), "is not valid here", "a table", hint)
     elif model is None or get_origin(about.annotation) is not dict:
         element = _read(draft, (name,), value, model or about.rebuild_annotation())
         if element is not None:

@@ -21,6 +21,7 @@ from loadshare.case.model import Case
 from loadshare.case.origin import Origin
 from loadshare.case.recognise import OTHER_FILES, near_names, what_folder_is, what_is
 from loadshare.case.revise import change, revise, still_assumed
+from loadshare.case.slips import slip_in
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
 from loadshare.input import Unreadable, read_file, real, stem
@@ -28,6 +29,7 @@ from loadshare.outside import OUTSIDE
 from loadshare.settings import ALLOWED
 
 _PLACE = re.compile(r"(.*) \(at (.*)\)", re.DOTALL)
+_LINE = re.compile(r"line (\d+),")
 _NAMES = re.compile(r"\((?:'(?:\\.|[^'\\])*',? ?)+\)")
 """A key path as the TOML parser prints it in messages."""
 NO_FILE = "no such file or directory"
@@ -232,17 +234,16 @@ def read_toml(path: FilePath) -> dict[str, Any]:
     CaseError
         If it cannot be read or is not TOML.
     """
+    text = ""
     try:
         held = read_file(path, ALLOWED.bytes)
         known = what_is(held, path.name)
         if known is not None:
             raise CaseError([Problem(str(path), "", "", known)])
-        parsed = _parsed(held.decode("utf-8-sig").replace("\r\n", "\n"))
+        text = held.decode("utf-8-sig").replace("\r\n", "\n")
+        parsed = _parsed(text)
     except tomllib.TOMLDecodeError as error:
-        match = _PLACE.fullmatch(str(error))
-        what, where = match.groups() if match else (str(error), "an unknown place")
-        what = _NAMES.sub(lambda names: dotted(literal_eval(names[0])), what[:1].lower() + what[1:])
-        why = f"is not valid TOML at {where}: {what}"
+        raise CaseError([_not_toml(path, text, error)]) from None
     except UnicodeDecodeError as error:
         why = f"is not UTF-8 text at byte {error.start}"
     except FileNotFoundError:
@@ -266,6 +267,15 @@ def read_toml(path: FilePath) -> dict[str, Any]:
             return data
         why = _DEEP
     raise CaseError([Problem(str(path), "", "", why)])
+
+
+def _not_toml(path: FilePath, text: str, error: tomllib.TOMLDecodeError) -> Problem:
+    match = _PLACE.fullmatch(str(error))
+    what, where = match.groups() if match else (str(error), "an unknown place")
+    what = _NAMES.sub(lambda names: dotted(literal_eval(names[0])), what[:1].lower() + what[1:])
+    line = _LINE.match(where)
+    hint = slip_in(text.split("\n")[int(line[1]) - 1]) if line else ""
+    return Problem(str(path), "", "", f"is not valid TOML at {where}: {what}", hint=hint)
 
 
 @lru_cache(maxsize=8)

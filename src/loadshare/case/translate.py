@@ -179,6 +179,8 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
         keys = list(map(str, _fields(model, path[:-1])))
         own = model if len(path) == 1 else None
         hint = hint_at(path[-1], own, keys) if own else did_you_mean(path[-1], keys)
+        if not hint and isinstance(error["input"], Mapping):
+            hint = "If the dot before it is part of a name, put the name in quotes."
         return Rule("unknown key", path, choices(sorted(keys)), hint)
     if kind == "missing" and isinstance(path[-1], int):
         return Rule(f"has {counted(path[-1])}, but more are needed", path[:-1])
