@@ -219,3 +219,19 @@ def test_another_way_of_saying_it_counts_for_a_copy_too(first: bool) -> None:
         "clearance",
         "ball_stiffness",
     ]
+
+
+def test_what_names_copies_that_could_not_be_made_is_no_problem_of_its_own() -> None:
+    gears = changed()["gears"]
+    gears["planet"]["copies"] = 1
+    data = changed(gears=gears, stages={"I": {"meshes": ["sun-planet1", "sun-planet2"]}})
+    del data["meshes"]["sun-planet2"]
+    with pytest.raises(CaseError) as caught:
+        Case(data)
+    assert [problem.key for problem in caught.value.problems] == ["gears.planet.copies"]
+
+
+def test_an_assumed_number_of_copies_assumes_their_angles() -> None:
+    case = Case(changed(assumed=["gears.planet.copies"]))
+    assert case.is_assumed("gears.planet3.centre.angle")
+    assert not case.is_assumed("gears.planet3.centre.distance")

@@ -250,4 +250,8 @@ def _patterns(given: Any, became: Mapping[str, Mapping[str, list[str]]]) -> list
     except ValueError:
         return [given]
     copies = became.get(str(path[0]), {}).get(str(path[1])) if len(path) > 1 else None
-    return [dotted((path[0], name, *path[2:])) for name in copies] if copies else [given]
+    if not copies:
+        return [given]
+    # The angles of the copies are what is left of their number.
+    rest = ("centre", "angle") if path[0] == "gears" and path[2:] == ("copies",) else path[2:]
+    return [dotted((path[0], name, *rest)) for name in copies]

@@ -18,7 +18,7 @@ def check_gear_names(draft: Draft) -> Iterator[Problem]:
     """Yield every mention of a gear that does not exist."""
     gears, carriers = draft.names("gears"), carriers_in(draft)
     for path, name in _gears_named(draft):
-        if gears and name not in gears:
+        if gears and name not in gears and not _of_unmade(draft, name):
             of_planet = path[0] == "gears" and path[-1] == "carrier"
             known, allowed = (
                 (carriers, allowed_carriers(carriers)) if of_planet else (gears, choices(gears))
@@ -28,6 +28,13 @@ def check_gear_names(draft: Draft) -> Iterator[Problem]:
             if name and copies:
                 hint = _unequal(draft, path, gears) or f"Give one: {', '.join(copies)}."
             yield draft.problem(path, f'"{name}" is not a gear', allowed, hint)
+
+
+def _of_unmade(draft: Draft, name: str) -> bool:
+    """Return whether a name is that of a copy that was not made, because of another problem."""
+    gears = draft.names("gears")
+    unmade = [g for g in gears if look_up(draft.data, ("gears", g, "copies")) is not None]
+    return any(_copies(gear, [name]) for gear in unmade)
 
 
 def _copies(name: str, gears: list[str]) -> list[str]:
@@ -64,7 +71,8 @@ def check_mesh_names(draft: Draft) -> Iterator[Problem]:
     """Yield every mention of a mesh that does not exist."""
     meshes = draft.names("meshes")
     for path, name in _meshes_named(draft):
-        if meshes and name not in meshes:
+        ends = ends_of(name, ()) or ()
+        if meshes and name not in meshes and not any(_of_unmade(draft, end) for end in ends):
             hint = did_you_mean(name, meshes)
             yield draft.problem(path, f'"{name}" is not a mesh', choices(meshes), hint)
 
