@@ -73,6 +73,14 @@ def test_a_few_lines_make_a_case(box) -> None:
     assert ls.solve(case).positions[0].torque == pytest.approx({"a-b": 100.0})
 
 
+def test_columns_may_have_any_order(box) -> None:
+    rows = [line.split(",") for line in GEARS.splitlines()]
+    turned = "".join(",".join(reversed(row)) + "\n" for row in rows)
+    assert import_tables(box(gears=turned)).case() == import_tables(box()).case()
+    with pytest.raises(CaseError, match="row 4, column E: has no name"):
+        import_tables(box(gears=turned + "10,0; 0\n"))
+
+
 def test_a_head_may_say_that_its_numbers_have_no_unit(box) -> None:
     given = import_tables(box(gears=GEARS.replace("teeth", "teeth [-]")))
     assert given.data == import_tables(box()).data

@@ -184,6 +184,7 @@ def test_a_setting_makes_the_table_of_a_gears_errors():
         ({"rings.4.float": "0 um:1 um:20001"}, "is too fine"),
         ({"rings.4.float": "0 um:1 um:200", "rings.5.float": "0 um:1 um:101"}, "20200 points"),
         ({"rings.4.float": "little"}, "cannot be read"),
+        ({"rings.4.float": "0 um:1e400 um:3"}, '"1e400 um" cannot be read'),
         ({"rings.4.float": ["0 um", "1 N"]}, "cannot be expressed in um"),
         ({"rings.4.float": ["0 um"], "rings.*.float": ["1 um"]}, "is set by"),
     ],

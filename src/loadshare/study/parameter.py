@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -106,6 +107,8 @@ def read_value(given: object) -> Value | None:
     if match is None:
         return None
     number, unit = float(match[1].replace("−", "-")), match[2]
+    if not math.isfinite(number):
+        return None
     try:
         return Value(number, unit) if not unit or _si_unit(unit) else None
     except ValueError:

@@ -132,7 +132,8 @@ class _Reader:
     def _elements(self, sheet: Sheet) -> None:
         """Read a sheet with a row for every element."""
         head = [cell.strip() for cell in sheet.rows[0]] if sheet.rows else []
-        if not head or head[0].lower() != "name":
+        named = next((k for k, text in enumerate(head) if text.lower() == "name"), None)
+        if named is None:
             self._tell(sheet.at(0, 0), "has no heading", "name, then keys of the case file")
             return
         section = self.data.setdefault(sheet.name, {})
@@ -140,24 +141,28 @@ class _Reader:
             if text and text in head[:column]:
                 self._tell(sheet.at(0, column), f"{text} appears twice")
         columns = [
-            self._path(sheet, 0, column, text, (sheet.name, "x")) if text and column else None
+            self._path(sheet, 0, column, text, (sheet.name, "x"))
+            if text and column != named
+            else None
             for column, text in enumerate(head)
         ]
         for number, row in enumerate(sheet.rows[1:], start=1):
             cells = [cell.strip() for cell in row]
             if not any(cells):
                 continue
-            name = cells[0]
+            name = cells[named] if named < len(cells) else ""
             name = name[1:] if name.startswith("'") and FORMULA.match(name[1:]) else name
             if not name or name in section:
                 self._tell(
-                    sheet.at(number, 0),
+                    sheet.at(number, named),
                     f"the name {as_given(name)} appears twice" if name else "has no name",
                 )
                 continue
             section[name] = {}
-            self.places[sheet.name, name] = sheet.at(number, 0)
-            for column, cell in enumerate(cells[1:], start=1):
+            self.places[sheet.name, name] = sheet.at(number, named)
+            for column, cell in enumerate(cells):
+                if column == named:
+                    continue
                 if column >= len(head) or not head[column]:
                     if cell:
                         self._tell(sheet.at(number, column), f"{as_given(cell)} has no heading")
