@@ -184,3 +184,12 @@ def test_what_is_no_change_by_key_path_is_told(drive):
     for key in (1, ("operating", "torque"), ""):
         with pytest.raises(CaseError, match="is not a key path"):
             drive.replace({key: "1 N*m"})
+
+
+def test_a_name_that_only_looks_like_another_is_told_apart(drive):
+    composed, apart = "\u00e9", "e\u0301"
+    renamed = {"gears.a": None, f"gears.{composed}": drive.to_dict()["gears"]["a"]}
+    with pytest.raises(CaseError) as caught:
+        drive.replace(renamed | {"operating.input": apart})
+    hint = next(p.hint for p in caught.value.problems if p.key == "operating.input")
+    assert hint == f"{composed} looks alike, but is written in other characters: copy it."

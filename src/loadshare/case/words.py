@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Mapping
 from difflib import SequenceMatcher, get_close_matches
 from typing import Any
+from unicodedata import normalize
 
 from loadshare.case.keys import dotted
 from loadshare.settings import ALLOWED
@@ -42,6 +43,9 @@ def did_you_mean(word: object, known: Iterable[str]) -> str:
     near = [option for option in options if option.casefold() == word.casefold()]
     if not near and len(options) > ALLOWED.options:
         return ""
+    for option in () if near else options:
+        if normalize("NFKC", option) == normalize("NFKC", word):
+            return f"{option} looks alike, but is written in other characters: copy it."
     if not near:
         near = [o for o in get_close_matches(word, options, n=5) if _is_slip(word, o)][:1]
     near = near[:1] or [option for option in options if _is_part(word, option)][:MOST]
