@@ -15,6 +15,7 @@ from tests.certify.test_bound_following import two_shafts
 from tests.support import mostly_slow
 
 import loadshare as ls
+from benchmarks import families
 from loadshare.study.memory.step import stepped
 from loadshare.study.positions import certified
 from loadshare.train import Train
@@ -94,3 +95,29 @@ def test_a_spline_without_friction_reaches_without_end():
     # At so light a load, one of the branches loses contact.
     assert last == pytest.approx([0.0, 1.0], abs=1e-9)
     assert found.dissipated == 0.0
+
+
+def on_one_spline(**friction: object) -> ls.Case:
+    """Return a star whose sun carries the whole torque over a spline with little room."""
+    data = families.star(4).to_dict()
+    for mesh in data["meshes"].values():
+        mesh.pop("gap", None)
+    data["gears"]["sun"].pop("support")
+    spline = {"bending_stiffness": "4e8 N/m", "clearance": "20 um"}
+    data["splines"] = {"sun": spline | friction}
+    data["errors"] = {
+        planet: {"eccentricity": {"amount": "40 um", "direction": direction}}
+        for planet, direction in (("planet1", "90 deg"), ("planet2", "0 deg"))
+    }
+    return ls.Case(data, name="star on a spline")
+
+
+def test_a_slip_that_stays_at_the_end_of_its_room_is_as_with_fixed_friction():
+    """The load alone determines the torque of the sun, and so its friction."""
+    turn = {"gear": "planet2", "revolutions": 1.0, "steps": 4}
+    fixed = ls.march(on_one_spline(friction_force="5000 N"), **turn)
+    found = ls.march(on_one_spline(friction=0.15, radius="30 mm"), **turn)
+    stages = [step["sun"].stage for step in found.slips]
+    assert stages == [step["sun"].stage for step in fixed.slips] == 2 * ["stop", "stick"]
+    for one, other in zip(found.result.positions, fixed.result.positions, strict=True):
+        assert one.torque == pytest.approx(other.torque, rel=1e-9)

@@ -39,9 +39,32 @@ class HeldSlips:
 
     def denied(self, force: Array) -> Flags:
         """Return whether errors (S, m) of the forces may change torques by more, (S,)."""
-        columns = self.claim.columns
-        turned = force[:, columns.flanks] @ np.abs(columns.moments).T
-        return np.asarray((turned > self.turned).any(axis=1))
+        if not np.isfinite(self.turned).any():
+            return np.zeros(len(force), dtype=bool)
+        return np.asarray((_torque_errors(self.claim, force) > self.turned).any(axis=1))
+
+
+def _torque_errors(claim: Claim, force: Array) -> Array:
+    """Bound the errors of the torques over splines by those of forces, (S, splines) [N·m].
+
+    The forces of an exact equilibrium balance at every rotation. So the flanks of a gear may be off
+    together by no more than the claim's imbalance there and the other forces of the gear are, even
+    if each of them may be off by more.
+    """
+    columns = claim.columns
+    errors = force[:, columns.flanks] @ np.abs(columns.moments).T
+    left, rounding = claim.balance(claim.forces)
+    for k, gear in enumerate(columns.train.splines):
+        at = columns.turns[gear].coordinate
+        if at is None:
+            continue
+        moments = -columns.units[at] * columns.matrix.high[:, at]
+        moments[columns.flanks] += columns.moments[k]
+        rest = np.flatnonzero(moments)
+        balanced = columns.units[at] * (np.abs(left[:, at]) + rounding[:, at])
+        balanced += force[:, rest] @ np.abs(moments[rest])
+        errors[:, k] = np.minimum(errors[:, k], balanced)
+    return np.asarray(errors)
 
 
 def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> HeldSlips:
