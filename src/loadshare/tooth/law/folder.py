@@ -53,7 +53,7 @@ def kept_law(pair: PairFile, found: Ltca) -> MeshLaw:
 def _place(pair: PairFile) -> str:
     """Return a law's place in the cache: by version, pair, and this package's code and settings."""
     key = digest_of(f"{code_hash()}\n{__version__}\n{pair.hash}")
-    return f"laws/{key}.toml"
+    return f"laws/{key}"
 
 
 @cache
