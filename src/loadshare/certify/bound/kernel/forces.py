@@ -227,12 +227,8 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
     longest, lawful, covered = 0.0, True, True
     for q in range(len(of.pull_gear)):
         g, j, rate = of.pull_gear[q], of.first_pull + 2 * q, 0.0
-        fx, fy, lifting, off_x, off_y = 0.0, 0.0, 0.0, 0.0, 0.0
-        if q < of.rounds:
-            r = row_of(here.round_offset, s)
-            for i in range(3):
-                off_x += of.frame[g, 0, i] * here.round_offset[r, q, i]
-                off_y += of.frame[g, 1, i] * here.round_offset[r, q, i]
+        fx, fy, lifting = 0.0, 0.0, 0.0
+        off_x, off_y = _centre(of, here, s, q, g)
         x, y = work.length[j, v] - off_x, work.length[j + 1, v] - off_y
         for i in range(3):
             fx -= of.frame[g, 0, i] * claim.radial_reaction[s, q, i]
@@ -297,6 +293,18 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
         found.slip[s, q, 0], found.slip[s, q, 1] = slips * x, slips * y
     work.longest[v], work.lawful[v] = longest, 1.0 if lawful else 0.0
     work.covered[v] = 1.0 if lawful and covered else 0.0
+
+
+@inlined
+def _centre(of, here, s, q, g):  # type: ignore[no-untyped-def]
+    """Return the centre of a radial element in the plane of its gear [m]."""
+    x, y = 0.0, 0.0
+    if q < of.rounds:
+        r = row_of(here.round_offset, s)
+        for i in range(3):
+            x += of.frame[g, 0, i] * here.round_offset[r, q, i]
+            y += of.frame[g, 1, i] * here.round_offset[r, q, i]
+    return x, y
 
 
 @inlined
