@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.array_library import library_of
 from loadshare.array_types import Array, floats
 
 
@@ -78,7 +79,8 @@ def rolled(nominal: Array, moved: Array) -> tuple[Array, Array, Array]:
     nominal, moved : ndarray, shape (…, 3)
         Vector at rest, and the displacement added to it [m].
     """
+    xp = library_of(moved)
     d = nominal + moved
-    length, before = np.sqrt((d * d).sum(axis=-1)), np.sqrt((nominal * nominal).sum(axis=-1))
-    grown = 2.0 * (moved * nominal).sum(axis=-1) + (moved * moved).sum(axis=-1)
+    length, before = xp.sqrt(xp.sum(d * d, axis=-1)), xp.sqrt(xp.sum(nominal * nominal, axis=-1))
+    grown = 2.0 * xp.sum(moved * nominal, axis=-1) + xp.sum(moved * moved, axis=-1)
     return d, length, grown / (length + before)

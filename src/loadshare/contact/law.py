@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol, runtime_checkable
 
-import numpy as np
-
+from loadshare.array_library import cube_root, library_of
 from loadshare.array_types import Array
 from loadshare.settings import CONTACT
 
@@ -140,14 +139,15 @@ def roots(b: Array, c: Array, compression: Array) -> Array:
     b, c, compression : ndarray
         [m/N], [m/N^(2/3)], [m].
     """
-    y = np.sqrt(compression / c)
-    y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
+    xp = library_of(compression)
+    y: Array = xp.sqrt(compression / c)
+    y = xp.where(b > 0.0, xp.minimum(y, cube_root(compression / xp.where(b > 0.0, b, 1.0))), y)
     for _ in range(CONTACT.roots):
         step = ((b * y + c) * y**2 - compression) / ((3.0 * b * y + 2.0 * c) * y)
         y = y - step
-        if (np.abs(step) <= CONTACT.many_roots * y).all():
+        if xp.all(xp.abs(step) <= CONTACT.many_roots * y):
             break
-    return np.asarray(y)
+    return y
 
 
 RIGID = PowerLaw(0.0, 0.0)

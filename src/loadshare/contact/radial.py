@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from loadshare.array_library import library_of
 from loadshare.array_types import Array
 from loadshare.settings import LAWS
-
-Figure = TypeVar("Figure", float, Array)
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,20 +223,21 @@ def round_ring_law(radius: float, stiffness: float) -> RadialLaw:
 
 
 def tangent_wall(
-    reach: Figure, stiffness: Figure, power: Figure, radius: Figure, faint: float
-) -> tuple[Figure, Figure]:
+    reach: Array, stiffness: Array, power: Array, radius: Array, faint: float
+) -> tuple[Array, Array]:
     """Return the tangent of a wall F = K (R − reach)^power: its start [m] and stiffness [N/m].
 
     Parameters
     ----------
-    reach, stiffness, power : float or ndarray
+    reach, stiffness, power : ndarray
         [m], K [N/m^power], above 1.
-    radius : float or ndarray
+    radius : ndarray
         R at which the tangent touches [m].
     faint : float
         Least force at the point of tangency [N]: without a force there is no stiffness.
     """
-    gap = np.maximum(radius - reach, (faint / stiffness) ** (1.0 / power))
+    xp = library_of(radius)
+    gap = xp.maximum(radius - reach, (faint / stiffness) ** (1.0 / power))
     return reach + gap * (1.0 - 1.0 / power), power * stiffness * gap ** (power - 1.0)
 
 
@@ -264,5 +264,8 @@ class RollingLaw:
 
     def touching(self, radius: float) -> RadialLaw:
         """Return the law whose wall is the tangent of this one at a radius [m]."""
-        begin, slope = tangent_wall(self.clearance, self.stiffness, self.power, radius, self.faint)
+        clearance, stiffness, power, at = map(
+            np.asarray, (self.clearance, self.stiffness, self.power, radius)
+        )
+        begin, slope = tangent_wall(clearance, stiffness, power, at, self.faint)
         return round_ring_law(float(begin), float(slope))

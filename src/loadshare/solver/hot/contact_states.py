@@ -10,10 +10,12 @@ A last piece that is a power law is replaced by its tangent at the element's rad
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
+from loadshare.array_library import library_of
 from loadshare.array_types import Array
 from loadshare.contact.radial import tangent_wall
 from loadshare.settings import LAWS
@@ -63,28 +65,28 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
         ``valid`` is false where the law would drop or S2 lies inside S1: such a sample is refused
         with a message by the next rung.
     """
-    first, given, reach, fixed, per_torque, last = (numbers[:, k] for k in range(6))
+    xp = library_of(torque)
+    first, given, reach, fixed, per_torque, last, power = (numbers[:, k] for k in range(7))
     with np.errstate(divide="ignore", invalid="ignore"):
-        bound = np.where(np.isnan(fixed), per_torque * np.abs(torque), fixed)
-        continuous = np.where(first > 0.0, bound / first, 0.0)
-    stick = np.where(np.isnan(given), continuous, np.minimum(given, continuous))
-    given_or_zero = np.where(np.isnan(given), 0.0, given)
+        bound = xp.where(xp.isnan(fixed), per_torque * xp.abs(torque), fixed)
+        continuous = xp.where(first > 0.0, bound / first, 0.0)
+    stick = xp.where(xp.isnan(given), continuous, xp.minimum(given, continuous))
+    given_or_zero = xp.where(xp.isnan(given), 0.0, given)
     valid = (first * given_or_zero <= bound * (1.0 + LAWS.written)) & (
-        np.isnan(given) | (reach >= stick)
+        xp.isnan(given) | (reach >= stick)
     )
-    throughout = (reach < stick) & np.isnan(given)
-    stick = np.where(throughout, np.inf, stick)
-    power = numbers[:, 6]
-    if (power != 1.0).any():
+    throughout = (reach < stick) & xp.isnan(given)
+    stick = xp.where(throughout, math.inf, stick)
+    if xp.any(power != 1.0):
         # The tangent is not used where the law is not a power, such as friction without a stop.
         with np.errstate(invalid="ignore"):
             begin, slope = tangent_wall(
-                reach, last, power, radius + np.zeros_like(reach), LAWS.wall_start
+                reach, last, power, radius + xp.zeros_like(reach), LAWS.wall_start
             )
-        reach, last = (np.where(power != 1.0, v, w) for v, w in ((begin, reach), (slope, last)))
+        reach, last = (xp.where(power != 1.0, v, w) for v, w in ((begin, reach), (slope, last)))
     found = (first, stick, bound, reach, last, valid)
     if any(v.shape != torque.shape for v in found):
-        return Graph(*(np.broadcast_to(v, torque.shape) for v in found))
+        return Graph(*(xp.broadcast_to(v, torque.shape) for v in found))
     return Graph(*found)
 
 

@@ -21,7 +21,7 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES, STATICS
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
-from loadshare.solver.hot.elements import arc_at, pick
+from loadshare.solver.hot.elements import arcs_at, arcs_of, pick
 from loadshare.solver.hot.iterate import Iterate, pushes
 
 
@@ -224,9 +224,9 @@ class _Batch(NamedTuple):
             met = (room <= PLACES.play) & (np.abs(direction).max(axis=1) > PLACES.loose)
             touches.append(met[:, None])
 
+        normals, margins = arcs_at(arcs_of(loading, rows), x)
         for a in left_by.arcs:
-            normal, margin = arc_at(loading, a, rows, x)
-            add(-normal @ loading.relative[a] @ moves, margin)
+            add(-normals[:, a] @ loading.relative[a] @ moves, margins[:, a])
         for j in left_by.radials:
             column, matrix = structure.radial_column(j), structure.radials[j].matrix
             law = at.graph(

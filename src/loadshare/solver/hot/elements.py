@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import NamedTuple
 
+from loadshare.array_library import library_of
 from loadshare.array_types import Array, Numbers
 from loadshare.contact.arc import rolled
 from loadshare.scene.loading import Loading
@@ -22,26 +23,49 @@ def piece(axis: Array, values: Array, where: Array) -> tuple[Array, Array, Array
     axis, values : ndarray, shape (S or 1, tables, points)
     where : ndarray, shape (S, tables)
     """
-    last = (~np.isnan(axis)).sum(axis=2) - 2
-    k = np.minimum(np.maximum((axis <= where[:, :, None]).sum(axis=2) - 1, 0), last)
-    at = np.arange(len(k))[:, None] if len(axis) > 1 else 0, np.arange(k.shape[1])
-    x0, y0 = axis[(*at, k)], values[(*at, k)]
-    return x0, y0, (values[(*at, k + 1)] - y0) / (axis[(*at, k + 1)] - x0)
+    xp = library_of(where)
+    last = xp.count_nonzero(~xp.isnan(axis), axis=2) - 2
+    passed = xp.count_nonzero(axis <= where[:, :, None], axis=2)
+    k = xp.minimum(xp.maximum(passed - 1, 0), last)[:, :, None]
+
+    def at(points: Array, number: Numbers) -> Array:
+        found: Array = xp.take_along_axis(points, number, axis=2)[:, :, 0]
+        return found
+
+    x0, y0 = at(axis, k), at(values, k)
+    return x0, y0, (at(values, k + 1) - y0) / (at(axis, k + 1) - x0)
 
 
-def arc_at(loading: Loading, a: int, rows: Numbers, x: Array) -> tuple[Array, Array]:
-    """Return normal (k, 3) and margin (k,) of an arc at coordinates x (k, n); see `Arc`."""
-    nominal = loading.nominal[a]
-    moved = pick(loading.shift, rows)[:, a] + x @ loading.relative[a].T
+class Arcs(NamedTuple):
+    """Arcs of some samples; the arrays are those of `Loading`."""
+
+    nominal: Array
+    shift: Array
+    clearance: Array
+    relative: Array
+
+
+def arcs_of(loading: Loading, rows: Numbers) -> Arcs:
+    """Return the arcs of some samples."""
+    varying = pick(loading.shift, rows), pick(loading.clearance, rows)
+    return Arcs(loading.nominal, *varying, loading.relative)
+
+
+def arcs_at(arcs: Arcs, x: Array) -> tuple[Array, Array]:
+    """Return normals (k, arcs, 3) and margins (k, arcs) at coordinates x (k, n); see `Arc`."""
+    xp, nominal = library_of(x), arcs.nominal
+    lines = xp.reshape(arcs.relative, (3 * nominal.shape[0], x.shape[1]))
+    moved = arcs.shift + xp.reshape(x @ lines.T, (x.shape[0], *nominal.shape))
     d, here, margin = rolled(nominal, moved)
-    beyond = d @ nominal <= 0.0
-    if beyond.any():
-        d[beyond] = nominal
-        here[beyond] = distance = np.sqrt(nominal @ nominal)
-        margin[beyond] = moved[beyond] @ nominal / distance
-    return d / here[:, None], margin + pick(loading.clearance, rows)[:, a]
+    beyond = xp.sum(d * nominal, axis=2) <= 0.0
+    if xp.any(beyond):
+        distance = xp.sqrt(xp.sum(nominal * nominal, axis=1))
+        d = xp.where(beyond[:, :, None], nominal, d)
+        here = xp.where(beyond, distance, here)
+        margin = xp.where(beyond, xp.sum(moved * nominal, axis=2) / distance, margin)
+    return d / here[:, :, None], margin + arcs.clearance
 
 
 def times(matrices: Array, vectors: Array) -> Array:
     """Return the products of (k, n, n) with (k, n)."""
-    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
+    return (matrices @ vectors[:, :, None])[:, :, 0]

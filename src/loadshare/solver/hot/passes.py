@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
+from loadshare.array_library import cube_root, in_places, largest, lengths, library_of
 from loadshare.array_types import Array, Flags
 from loadshare.contact.law import roots
 from loadshare.settings import HOT
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.elements import piece, times
 from loadshare.solver.hot.on_set import OnSet
-from loadshare.solver.hot.radials import RadialTangent, block
+from loadshare.solver.hot.radials import RadialTangent, tangent
 from loadshare.solver.hot.signs import wrong_elements
 from loadshare.solver.hot.symmetric import solve
 
@@ -23,153 +24,176 @@ def run(on: OnSet, patient: Flags) -> None:
     patient : ndarray of bool, shape (k,)
         Samples whose signs are checked only when they are settled.
     """
+    xp = on.library
     straight = (at.STICK, at.PINNED)
     bent = [status for _, status, _ in on.radial if status not in straight]
-    curved = len(on.arc) + len(bent) + len(on.table) > 0
-    previous = np.full(len(on.rows), np.inf)
+    curved = len(on.arc) + len(bent) + on.table.shape[0] > 0
+    previous = xp.full_like(on.push, math.inf)
     for number in range(HOT.passes):
         x, force = on.x, on.force
-        _pass(on, _blocks(on))
-        roots = on.root
+        _pass(on, _tangents_of_radials(on))
+        before = on.root
         laws = _renew_laws(on)
         on.lean = on.x, on.force
         if number % HOT.swing >= HOT.swing - HOT.damped:
             # Newton steps that swing to and fro around an answer settle at the mean.
             on.lean = 0.5 * (x + on.x), 0.5 * (force + on.force)
-            on.root = 0.5 * (roots + on.root)
+            on.root = 0.5 * (before + on.root)
         if curved and number < 2:
             _give_up_gross(on, (laws <= HOT.nearly) & ~patient)
-        yielded = np.abs(on.compression[:, on.contact]).max(axis=1, initial=0.0)
-        closing = on.misfit / np.where(yielded > 0.0, yielded, np.inf)
-        misfit = np.maximum(closing, laws * (HOT.settled / HOT.law))
+        yielded = largest(on.compression[:, on.contact])
+        closing = on.misfit / xp.where(yielded > 0.0, yielded, math.inf)
+        misfit = xp.maximum(closing, laws * (HOT.settled / HOT.law))
         if curved:
-            misfit = np.maximum(misfit, change(on.force, force))
+            misfit = xp.maximum(misfit, change(on.force, force))
             balanced = misfit <= HOT.settled
-            misfit = np.maximum(misfit, change(on.x, x))
+            misfit = xp.maximum(misfit, change(on.x, x))
         else:
             balanced = misfit <= HOT.settled
         # A law's tangent leaves a misfit of second order, so a small one need not be repeated.
-        stalled = (number > 2) & (misfit <= HOT.stalled) & (misfit >= 0.5 * previous)
-        on.settled = (misfit <= HOT.settled) | stalled
-        on.refused |= ~np.isfinite(on.x).all(axis=1)
+        stalled = (misfit <= HOT.stalled) & (misfit >= 0.5 * previous)
+        on.settled = misfit <= HOT.settled
+        if number > 2:
+            on.settled = on.settled | stalled
+        on.refused = on.refused | ~xp.all(xp.isfinite(on.x), axis=1)
         previous = misfit
-        on.burst = np.abs(on.force).max(axis=1, initial=0.0) > HOT.burst * on.unit
-        hopeless = (on.loose >= HOT.patience).any(axis=1) | _slipped_out(on) | on.burst
-        hopeless |= on.gross.any(axis=1)
-        if (on.settled | on.refused | hopeless).all():
+        on.burst = largest(on.force) > HOT.burst * on.unit
+        hopeless = xp.any(on.loose >= HOT.patience, axis=1) | _slipped_out(on) | on.burst
+        hopeless = hopeless | xp.any(on.gross, axis=1)
+        if xp.all(on.settled | on.refused | hopeless):
             break
     # Samples that creep on without end are left to the certificate.
     # Where the forces no longer change, no force holds the coordinates that still move.
-    on.settled |= (previous <= HOT.creep) | balanced
-    on.settled &= ~on.burst
-    on.settled &= ~on.refused
+    on.settled = (on.settled | (previous <= HOT.creep) | balanced) & ~on.burst & ~on.refused
 
 
-def _pass(on: OnSet, blocks: list[RadialTangent]) -> None:
+def _pass(on: OnSet, turning: list[RadialTangent]) -> None:
     """Make one Newton pass: redundants, forces, compressions, coordinates."""
-    particular, n = on.basis.particular, on.basis.redundant
-    tangent, shift = _tangents(on)
+    xp, particular, n = on.library, on.basis.particular, on.basis.redundant
+    rate, shift = _tangents(on)
     load, gap = on.at_arcs()
     statics = load @ particular.T + on.z @ n.T
-    stretch = gap + shift + tangent * statics
+    stretch = gap + shift + rate * statics
+    if turning:
+        moved = [b.offset + times(b.compliance, statics[:, b.columns]) for b in turning]
+        stretch = stretch + xp.concat([xp.zeros_like(stretch[:, on.scalar]), *moved], axis=1)
     size, count = n.shape[1], len(on.rows)
-    borders = [b for b in blocks if b.bound is not None]
-    matrix = np.zeros((count, size + len(borders), size + len(borders)))
-    sides = np.zeros((count, size + len(borders)))
-    matrix[:, :size, :size] = (tangent @ on.products).reshape(count, size, size)
-    for b in blocks:
-        stretch[:, b.columns] += b.offset + times(b.compliance, statics[:, b.columns])
-        part = n[b.columns]
-        matrix[:, :size, :size] += part.T @ b.compliance @ part
-    for e, b in enumerate(borders, start=size):
-        matrix[:, e, :size] = matrix[:, :size, e] = b.along @ n[b.columns]
-        sides[:, e] = b.bound - (b.along * statics[:, b.columns]).sum(axis=1)
-    sides[:, :size] = -stretch @ n
+    matrix = xp.reshape(rate @ on.products, (count, size, size))
+    for b in turning:
+        part = n[b.columns, :]
+        matrix = matrix + part.T @ b.compliance @ part
+    borders = [b for b in turning if b.bound is not None]
+    sides = -stretch @ n
+    if borders:
+        matrix, sides = _bordered(on, matrix, sides, borders, statics)
     if on.shared.shape[1]:
-        _set_apart(on, matrix, sides, np.abs(stretch).max(axis=1))
+        matrix, sides = _set_apart(on, matrix, sides, largest(stretch))
     solved = solve(matrix, sides, size)
     on.z = on.z + solved[:, :size]
     on.force = statics + solved[:, :size] @ n.T
-    on.compression = shift + tangent * on.force
-    for b in blocks:
-        moved = b.offset + times(b.compliance, on.force[:, b.columns])
-        on.compression[:, b.columns] = moved
-    for e, b in enumerate(borders, start=size):
-        on.compression[:, b.columns] += solved[:, e, None] * b.along
+    on.compression = shift + rate * on.force
+    if turning:
+        moved = [b.offset + times(b.compliance, on.force[:, b.columns]) for b in turning]
+        free = iter(range(size, size + len(borders)))
+        moved = [
+            m if b.bound is None else m + solved[:, next(free), None] * b.along
+            for m, b in zip(moved, turning, strict=True)
+        ]
+        on.compression = xp.concat([on.compression[:, on.scalar], *moved], axis=1)
     on.x = (gap + on.compression) @ particular
-    on.misfit = np.abs((gap + on.compression) @ n).max(axis=1, initial=0.0)
+    on.misfit = largest((gap + on.compression) @ n)
 
 
-def _set_apart(on: OnSet, matrix: Array, sides: Array, lengths: Array) -> None:
+def _bordered(
+    on: OnSet, matrix: Array, sides: Array, borders: list[RadialTangent], statics: Array
+) -> tuple[Array, Array]:
+    """Add a row and a column for the compression along every level piece, which is free."""
+    xp, n = on.library, on.basis.redundant
+    rows = xp.stack([b.along @ n[b.columns, :] for b in borders], axis=1)
+    none = xp.zeros_like(rows @ xp.permute_dims(rows, (0, 2, 1)))
+    upper = xp.concat([matrix, xp.permute_dims(rows, (0, 2, 1))], axis=2)
+    bounds = [b.bound - xp.sum(b.along * statics[:, b.columns], axis=1) for b in borders]
+    return (
+        xp.concat([upper, xp.concat([rows, none], axis=2)], axis=1),
+        xp.concat([sides, xp.stack(bounds, axis=1)], axis=1),
+    )
+
+
+def _set_apart(on: OnSet, matrix: Array, sides: Array, longest: Array) -> tuple[Array, Array]:
     """Fix the shares of rigid elements, unless they contradict one another."""
-    q = on.shared
-    size, largest = len(q), np.abs(matrix).max(axis=(1, 2))
-    against = sides[:, :size] @ q
-    against[np.abs(against) <= HOT.noise * lengths[:, None]] = 0.0
-    apart = np.where(largest > 0.0, largest, 1.0)
-    matrix[:, :size, :size] += apart[:, None, None] * (q @ q.T)
-    mild = sides[:, :size] - (sides[:, :size] @ q) @ q.T
-    sides[:, :size] = mild + (against / HOT.proximal) @ q.T
+    xp, borders = on.library, sides.shape[1] - on.shared.shape[0]
+    none = xp.zeros_like(xp.broadcast_to(on.shared[:1, :], (borders, on.shared.shape[1])))
+    q = xp.concat([on.shared, none], axis=0)
+    largest_entry = xp.max(xp.abs(matrix), axis=(1, 2))
+    against = sides @ q
+    against = xp.where(xp.abs(against) <= HOT.noise * longest[:, None], 0.0, against)
+    apart = xp.where(largest_entry > 0.0, largest_entry, 1.0)
+    mild = sides - (sides @ q) @ q.T
+    return matrix + apart[:, None, None] * (q @ q.T), mild + (against / HOT.proximal) @ q.T
 
 
 def _tangents(on: OnSet) -> tuple[Array, Array]:
     """Return the tangent compliance of every scalar element, and its compression at no force."""
-    tangent, shift = np.array(on.bending), np.zeros_like(on.gap)
-    if len(on.power):
-        root, c = on.root[:, on.power], on.hertz[:, on.power]
-        tangent[:, on.power] += 2.0 / 3.0 * c / root
-        shift[:, on.power] = c * root**2 / 3.0
-    if len(on.table):
-        force, start, slope = piece(*on.points, on.root[:, on.table] ** 3)
-        tangent[:, on.table], shift[:, on.table] = slope, start - slope * force
-    return tangent, shift
+    xp, powers = on.library, on.power.shape[0]
+    if not on.root.shape[1]:
+        return on.bending, xp.zeros_like(on.gap)
+    root, c = on.root[:, :powers], on.hertz
+    rates, shifts = [2.0 / 3.0 * c / root], [c * root**2 / 3.0]
+    if on.table.shape[0]:
+        force, start, slope = piece(*on.points, on.root[:, powers:] ** 3)
+        rates.append(slope)
+        shifts.append(start - slope * force)
+    rate, shift = (in_places(xp.concat(v, axis=1), on.law_of) for v in (rates, shifts))
+    return on.bending + rate, shift
 
 
 def _renew_laws(on: OnSet) -> Array:
     """Take the next tangents at the compressions; return the laws' relative misfit."""
-    misfit = np.zeros(len(on.rows))
-    if len(on.power):
-        b, c = on.bending[:, on.power], on.hertz[:, on.power]
-        force, compression = on.force[:, on.power], on.compression[:, on.power]
-        root, floor = on.root[:, on.power], on.floor[:, None]
+    xp, following = on.library, []
+    misfit: Array = xp.zeros_like(on.push)
+    if on.power.shape[0]:
+        b, c = on.bending_of_power, on.hertz
+        force = xp.take(on.force, on.power, axis=1)
+        compression = xp.take(on.compression, on.power, axis=1)
+        root, floor = on.root[:, : on.power.shape[0]], on.floor[:, None]
         touching = (force > 0.0) & (compression > 0.0)
-        on.loose = np.where(touching, 0, on.loose + 1)
-        true = b * force + c * np.cbrt(np.maximum(force, 0.0)) ** 2
-        off = np.where(touching, np.abs(true - compression), 0.0)
+        off = b * force + c * cube_root(xp.maximum(force, 0.0)) ** 2 - compression
+        misfit = largest(xp.where(touching, off, 0.0)) / largest(on.compression[:, on.scalar])
         # A flank that carries nothing has settled once its root is at the floor.
-        waiting = ~touching & (root > floor)
-        largest = np.abs(on.compression[:, on.scalar]).max(axis=1)
-        misfit = off.max(axis=1) / largest
-        misfit[waiting.any(axis=1)] = 1.0
-        on.loose[touching | (np.abs(force) <= HOT.sign * on.push[:, None])] = 0
-        following = roots(b, c, np.where(touching, compression, 1.0))
-        on.root[:, on.power] = np.maximum(np.where(touching, following, HOT.shrink * root), floor)
-    if len(on.table):
-        compression = on.compression[:, on.table]
+        misfit = xp.where(xp.any(~touching & (root > floor), axis=1), 1.0, misfit)
+        idle = xp.abs(force) <= HOT.sign * on.push[:, None]
+        on.loose = xp.where(touching | idle, 0, on.loose + 1)
+        next_root = xp.where(
+            touching, roots(b, c, xp.where(touching, compression, 1.0)), HOT.shrink * root
+        )
+        following.append(xp.maximum(next_root, floor))
+    if on.table.shape[0]:
+        compression = xp.take(on.compression, on.table, axis=1)
         start, force, slope = piece(*on.points[::-1], compression)
         force = force + slope * (compression - start)
-        on.root[:, on.table] = np.cbrt(np.maximum(force, 0.0))
+        following.append(cube_root(xp.maximum(force, 0.0)))
+    on.root = xp.concat(following, axis=1) if following else on.root
     return misfit
 
 
-def _blocks(on: OnSet) -> list[RadialTangent]:
+def _tangents_of_radials(on: OnSet) -> list[RadialTangent]:
     """Return the tangents of the radial elements at their present offsets."""
-    blocks = []
+    found = []
     for j, status, k in on.radial:
         if j in on.linear:
-            blocks.append(on.linear[j])
+            found.append(on.linear[j])
             continue
         columns = slice(k, k + 2)
         x, force = on.lean
         offset = on.offset(j, x)
         law = on.graph(j, offset)
-        on.refused |= ~law.valid
-        size = np.maximum(on.push, 1e-300)
-        found = block(columns, status, law, offset, force[:, columns], size)
+        on.refused = on.refused | ~law.valid
+        push = on.library.maximum(on.push, 1e-300)
+        now = tangent(columns, status, law, offset, force[:, columns], push)
         if status in (at.STICK, at.PINNED) and j in on.fixed:
-            on.linear[j] = found
-        blocks.append(found)
-    return blocks
+            on.linear[j] = now
+        found.append(now)
+    return found
 
 
 def _slipped_out(on: OnSet) -> Flags:
@@ -178,34 +202,37 @@ def _slipped_out(on: OnSet) -> Flags:
     It stays far beyond the end of that piece, or friction that follows the torque has vanished; or
     a rigid stop goes on holding inward.
     """
+    xp, out = on.library, on.push < 0.0
     for j, status, k in on.radial:
         offset = on.offset(j)
         law = on.graph(j, offset)
         if status == at.SLIP:
-            radius = np.sqrt((offset**2).sum(axis=1))
-            left = (radius > HOT.beyond * law.reach) | (law.bound <= HOT.sign * on.push)
+            left = lengths(offset) > HOT.beyond * law.reach
+            left = left | (law.bound <= HOT.sign * on.push)
         elif status == at.WALL:
-            left = (offset * on.force[:, k : k + 2]).sum(axis=1) < 0.0
+            left = xp.sum(offset * on.force[:, k : k + 2], axis=1) < 0.0
         else:
             continue
-        on.outside[:, j] = np.where(left, on.outside[:, j] + 1, 0)
-    return np.asarray((on.outside >= on.patience).any(axis=1))
+        before = on.outside.get(j, xp.zeros_like(left, dtype=xp.int64))
+        on.outside[j] = xp.where(left, before + 1, 0)
+        out = out | (on.outside[j] >= on.patience[j])
+    return out
 
 
 def _give_up_gross(on: OnSet, these: Flags) -> None:
     """Give up sets that are clearly wrong before they are settled."""
-    these = these & ~on.gross.any(axis=1)
-    if not these.any():
+    xp = on.library
+    these = these & ~xp.any(on.gross, axis=1)
+    if not xp.any(these):
         return
     before, on.settled = on.settled, these
     wrong, moved = wrong_elements(on, HOT.gross)
     on.settled = before
-    wrong &= these[:, None]
-    on.gross |= wrong
-    on.gross_to[these] = moved[these]
+    on.gross = on.gross | (wrong & these[:, None])
+    on.gross_to = xp.where(these[:, None], moved, on.gross_to)
 
 
 def change(now: Array, before: Array) -> Array:
     """Return the largest change of each row over its largest entry."""
-    size = np.abs(now).max(axis=1, initial=0.0)
-    return np.asarray(np.abs(now - before).max(axis=1, initial=0.0) / np.maximum(size, 1e-300))
+    found: Array = largest(now - before) / library_of(now).maximum(largest(now), 1e-300)
+    return found

@@ -25,7 +25,7 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import HOT, SEARCH
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot import vectorised
-from loadshare.solver.hot.elements import arc_at
+from loadshare.solver.hot.elements import arcs_at, arcs_of
 from loadshare.solver.hot.exchange import ExchangeResult, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest
 from loadshare.solver.hot.radials import beyond
@@ -113,10 +113,10 @@ class Proximal:
     def _face_arcs(self) -> None:
         """Replace arcs by their faces at the last pass."""
         first = self.structure.columns.arcs.start
+        normals, margins = arcs_at(arcs_of(self.loading, self.rows), self.x[None, :])
         for a in range(len(self.structure.arcs)):
-            normal, margin = arc_at(self.loading, a, self.rows, self.x[None, :])
-            self.vectors[first + a] = -normal[0] @ self.loading.relative[a]
-            self.gap[first + a] = margin[0] + self.vectors[first + a] @ self.x
+            self.vectors[first + a] = -normals[0, a] @ self.loading.relative[a]
+            self.gap[first + a] = margins[0, a] + self.vectors[first + a] @ self.x
 
     def _minimise(self) -> _Point:
         """Minimise the energy of a pass by Newton's method."""

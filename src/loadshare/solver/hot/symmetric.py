@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.array_types import Array
+from loadshare.array_library import largest, library_of, put_rows
+from loadshare.array_types import Array, Flags
 from loadshare.settings import HOT
 from loadshare.solver.hot.elements import times
 
@@ -25,25 +26,33 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
     """
     if not matrix.shape[1]:
         return sides
-    scale = np.abs(matrix).max(axis=(1, 2))
-    scale = np.where(scale > 0.0, scale, 1.0)
+    xp = library_of(matrix)
+    scale = xp.max(xp.abs(matrix), axis=(1, 2))
+    scale = xp.where(scale > 0.0, scale, 1.0)
     normed, target = matrix / scale[:, None, None], sides / scale[:, None]
-    solved: Array = np.zeros(sides.shape)
-    regular = np.ones(len(sides), dtype=bool)
-    try:
-        solved[:] = np.linalg.solve(normed, target[:, :, None])[:, :, 0]
-    except np.linalg.LinAlgError:
-        regular = np.linalg.slogdet(normed)[0] != 0.0
-        solved[regular] = np.linalg.solve(normed[regular], target[regular][:, :, None])[:, :, 0]
-    residual = np.abs(times(normed, solved) - target).max(axis=1)
-    regular &= residual <= HOT.refined * np.maximum(np.abs(solved).max(axis=1), 1e-300)
-    if not regular.all():
-        sign = np.where(np.arange(matrix.shape[1]) < size, 1.0, -1.0)
+    regular, solved = _regular(normed, target)
+    residual = largest(times(normed, solved) - target)
+    regular = regular & (residual <= HOT.refined * xp.maximum(largest(solved), 1e-300))
+    if not xp.all(regular):
+        pulls = HOT.proximal * np.diag(np.where(np.arange(matrix.shape[1]) < size, 1.0, -1.0))
         normed, target = normed[~regular], target[~regular]
-        proximal = normed + HOT.proximal * np.diag(sign)
-        found: Array = np.zeros(target.shape)
+        proximal = normed + xp.asarray(pulls, device=matrix.device)
+        found = xp.zeros_like(target)
         for _ in range(HOT.refinements):
             left = target - times(normed, found)
-            found += np.linalg.solve(proximal, left[:, :, None])[:, :, 0]
-        solved[~regular] = found
+            found = found + xp.linalg.solve(proximal, left[:, :, None])[:, :, 0]
+        solved = put_rows(~regular, found, solved)
     return solved
+
+
+def _regular(matrix: Array, sides: Array) -> tuple[Flags, Array]:
+    """Return which systems are regular, as far as can be told before, and their solutions."""
+    xp = library_of(matrix)
+    every = xp.ones_like(sides[:, 0], dtype=xp.bool)
+    try:
+        return every, xp.linalg.solve(matrix, sides[:, :, None])[:, :, 0]
+    except (ValueError, RuntimeError):
+        # Libraries differ in whether and how they refuse a singular matrix among others.
+        regular = xp.linalg.slogdet(matrix)[0] != 0.0
+        found = xp.linalg.solve(matrix[regular], sides[regular][:, :, None])[:, :, 0]
+        return regular, put_rows(regular, found, xp.zeros_like(sides))

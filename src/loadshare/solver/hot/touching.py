@@ -205,7 +205,7 @@ def _touches(of, here, s, element, carries):  # type: ignore[no-untyped-def]
 
 @inlined
 def _margin(of, here, s, a):  # type: ignore[no-untyped-def]
-    """Return the margin of an arc (see `elements.arc_at`)."""
+    """Return the margin of an arc (see `elements.arcs_at`)."""
     r, along, square, nominal = _row(here.shift, s), 0.0, 0.0, 0.0
     for i in range(3):
         moved = here.shift[r, a, i] + _along(of.relative, 3 * a + i, here, s)
