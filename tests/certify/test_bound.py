@@ -123,6 +123,52 @@ def test_bounds_hold_of_what_all_but_idles(family: str, number: int) -> None:
     assert max(b for b, _ in found["bound"]) < 1e-8
 
 
+def idle_set_beside_a_floating_sun() -> ls.Case:
+    """Return two sets in a row: of one, two planets leave the sun loose; the other only idles."""
+    gears: dict[str, dict[str, object]] = {}
+    for k in "12":
+        gears |= {
+            f"s{k}": {"teeth": 30, "module": "2 mm", "centre": ["0 mm", "0 mm"]},
+            f"p{k}": {
+                "teeth": 24,
+                "module": "2 mm",
+                "centre": {"angle": "10 deg"},
+                "copies": 4,
+                "carrier": f"c{k}",
+            },
+            f"r{k}": {
+                "type": "internal",
+                "teeth": 78,
+                "module": "2 mm",
+                "centre": ["0 mm", "0 mm"],
+            },
+            f"c{k}": {"type": "carrier", "centre": ["0 mm", "0 mm"]},
+        }
+    gears["s1"] |= {"support": "free", "held": True}
+    stiffness = {"stiffness": "2e6 N*m/rad"}
+    return ls.Case(
+        {
+            "operating": {"input": "r1", "output": "c1", "torque": "200 N*m"},
+            "gears": gears,
+            "meshes": dict.fromkeys(("s1-p1", "p1-r1", "s2-p2", "p2-r2"), stiffness),
+            "shafts": dict.fromkeys(("s1-s2", "c1-r2"), stiffness),
+            "errors": {"p11": {"pin": {"tangential": "-30 um"}}},
+        },
+        name="idle set",
+    )
+
+
+def test_sets_that_idle_beside_a_loose_sun_are_bounded() -> None:
+    case = idle_set_beside_a_floating_sun()
+    # Two planets carry half of the torque of the held sun each.
+    torque = ls.solve(case).positions[0].torque
+    assert torque["s1-p11"] == pytest.approx(-200.0 * 30.0 / 78.0 / 2.0, rel=1e-12)
+    (found,) = judged(case)["positions"]
+    assert found["outcome"] == "agrees"
+    assert max(b for b, _ in found["bound"]) < 1e-8
+    assert [(b, e) for b, e in found["bound"] if e > b and e > NO_TORQUE] == []
+
+
 def stiff_split() -> tuple[object, Equilibrium]:
     """Return a soft mesh in series with two branches 1e6 times as stiff, and the equilibrium."""
     base = ls.load_case("cases/branches/split_torque_2.toml")

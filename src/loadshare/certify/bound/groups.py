@@ -173,7 +173,7 @@ class SharedData:
         # A light element may open, and then move by any length: it carries no load, but may hold
         # what nothing else holds, where balance alone determines its force.
         others = whole.directions[~lasting]
-        borne, is_covered = held_moves(carrying.moves, others, self._force_at_end)
+        borne, shared = held_moves(carrying.moves, others, self._force_at_end)
         particular = np.zeros(whole.particular.shape)
         particular[lasting] = carrying.particular
         if lasting[first:].any():
@@ -186,7 +186,7 @@ class SharedData:
             particular[last] = part
         moves = whole.moves
         ended = self._force_at_end(moves) if moves.size else 0.0
-        return Operators(particular, whole.redundant, moves, ended, borne, is_covered)
+        return Operators(particular, whole.redundant, moves, ended, borne, not shared.size)
 
     def groups(self, acts: Acts, least: Array, most: Array) -> Groups:
         """Return the figures shared by the claims of each set.

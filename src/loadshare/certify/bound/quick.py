@@ -251,10 +251,10 @@ class _Group:
             self.is_covered = self._is_idle(free_moves(known.moves, opening))
             if len(opening):
                 # Elements that may open carry what nothing else does, if balance determines it.
-                self.held, is_determined = held_moves(
+                self.held, shared = held_moves(
                     known.moves, self.directions[left], self.claim.columns.force_at_end
                 )
-                self.is_covered &= is_determined or self._bears_none(self.held)
+                self.is_covered &= self._bears_none(shared)
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)
                 self.particular[~left] = known.particular

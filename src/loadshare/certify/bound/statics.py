@@ -108,7 +108,7 @@ def free_moves(moves: Array, directions: Array) -> Array:
 
 def held_moves(
     moves: Array, directions: Array, at_end: Callable[[Array], float]
-) -> tuple[Array, bool]:
+) -> tuple[Array, Array]:
     """Return moves (n, k) that others hold; their lengths bound all forces of these per load.
 
     The others may also let go, and the moves end elsewhere.
@@ -124,16 +124,18 @@ def held_moves(
 
     Returns
     -------
-    ndarray, shape (n, k)
-    bool
-        Whether balance alone determines the forces of those that hold something.
+    held : ndarray, shape (n, k)
+    shared : ndarray, shape (n, j)
+        Those held only by elements whose forces do not follow from balance alone.
     """
     if not (moves.size and directions.size):
-        return moves[:, :0], True
+        return moves[:, :0], moves[:, :0]
     along = directions @ moves
-    along = along[np.abs(along).max(axis=1) > BOUND.rank]
-    _, sizes, turn = np.linalg.svd(along, full_matrices=False)
+    holding = np.abs(along).max(axis=1) > BOUND.rank
+    part, sizes, turn = np.linalg.svd(along[holding])
     count = int((sizes > BOUND.rank).sum())
     held = moves @ turn[:count].T
     most = np.maximum(count**1.5 / sizes[:count], at_end(held))
-    return np.asarray(held * most), count == len(along)
+    # Balance determines the force of an element that takes part in no self-stress of the others.
+    alone = np.abs(part[:, count:]).max(axis=1, initial=0.0) < BOUND.idle
+    return np.asarray(held * most), free_moves(held, directions[holding][alone])
