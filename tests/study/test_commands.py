@@ -137,6 +137,17 @@ def test_inputs_that_are_not_shown_are_counted(command, monkeypatch):
     assert "not shown: 1 input of less effect, or none" in picture
 
 
+def test_without_stages_no_derivative_of_a_share_is_given_as_zero(command):
+    without = (RING, "--position", 1, "--set", "stages=")
+    note = "No stages are named, so there is no load-sharing coefficient."
+    result = command("sensitivity", *without, "rings.4.float")
+    (row,) = (line for line in result.stdout.splitlines() if line.startswith("rings.4.float"))
+    assert row.split()[-2:] == ["–", "–"]
+    assert note in result.stdout
+    assert "accurate" not in result.stdout
+    assert note in command("sweep", *without, "--over", "rings.4.float=0 um:4 um:2").stdout
+
+
 def test_sensitivity(command, tmp_path):
     file = tmp_path / "rates.nc"
     result = command("sensitivity", RING, "errors.*", "--position", 1, "-o", file)

@@ -16,6 +16,7 @@ from loadshare.train.elements import Stage
 from loadshare.train.train import Train
 
 Torque = TypeVar("Torque", float, Array)
+NO_STAGES = "No stages are named, so there is no load-sharing coefficient."
 
 
 @dataclass(frozen=True, eq=False)

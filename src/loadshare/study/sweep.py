@@ -28,6 +28,7 @@ from loadshare.output import csv_of, netcdf_of, write_whole
 from loadshare.pictures import Figure, picture
 from loadshare.results import Result
 from loadshare.results.dataset import unchanging, with_units
+from loadshare.results.share import NO_STAGES
 from loadshare.settings import ALLOWED
 from loadshare.study.parameter import (
     STUDY,
@@ -214,7 +215,10 @@ class Sweep(Viewed):
             for k, point in enumerate(self.points)
         )
         heads = [*(p.column for p in self.parameters), *(f"Ω {stage}" for stage in stages), *status]
-        return text_table(f"Sweep of {self.case}: largest Ω, by {mean}", heads, rows, status)
+        made = text_table(f"Sweep of {self.case}: largest Ω, by {mean}", heads, rows, status)
+        if list(stages) == ["system"]:
+            made.notes.append(NO_STAGES)
+        return made
 
     def _left_open(self) -> list[str]:
         failed = [p for p in self.points if p.status != CERTIFIED]

@@ -17,6 +17,7 @@ from loadshare.numbers import NONE, counted, decimals, fixed, small
 from loadshare.report import records, tables
 from loadshare.report.words import advice, undetermined_lines
 from loadshare.results import Position, Result
+from loadshare.results.share import NO_STAGES
 
 MOST = 6
 """Largest number of positions that are shown side by side."""
@@ -54,7 +55,7 @@ def print_result(result: Result, wanted: int, *, loads: bool = False, cycle: boo
 def print_omega(result: Result) -> None:
     """Print the largest Ω of every stage and of the system, and where each is reached."""
     if not result.stages:
-        say("\nNo stages are named, so there is no load-sharing coefficient.")
+        say(f"\n{NO_STAGES}")
         return
     show_table(tables.omega_table(result))
 

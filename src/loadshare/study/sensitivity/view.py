@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from loadshare.numbers import NONE
+from loadshare.results.share import NO_STAGES
 from loadshare.table import Table, text_table
 from loadshare.view import View, listed
 
@@ -62,12 +63,17 @@ def sensitivity_view(found: Sensitivity) -> View:
     tables = [_table("group", by_group), _table("stage", by_stage)]
     if tables[0].texts == tables[1].texts:
         tables = [_table("stage and group", by_group)]
-    tables[-1].notes.append("Every figure is accurate to one unit of its last digit.")
+    accurate = "Every figure is accurate to one unit of its last digit."
+    tables[-1].notes.append(accurate if _has_stages(found) else NO_STAGES)
     if any(slopes.is_kinked for slopes in (*by_group[:SHOWN], *by_stage[:SHOWN])):
         note = "A value under falling means that the derivative to that side differs."
         tables[-1].notes.append(note)
     tables[-1].notes.extend(_notes(found, {slopes.item.key for slopes in by_group[:SHOWN]}))
     return View("Sensitivities of Ω of the system", facts, tuple(tables))
+
+
+def _has_stages(found: Sensitivity) -> bool:
+    return any(len(of_stages) > 1 for of_stages in found.omega.values())
 
 
 def _ordered(found: Sensitivity, over: str) -> list[SideSlopes]:
@@ -96,7 +102,8 @@ def _table(over: str, ordered: list[SideSlopes]) -> Table:
     for slopes in ordered:
         figures = [slopes.rising, *([slopes.falling] if kinked else []), slopes.whole]
         if not any(_size(v) >= ROUND_OFF for v, _ in (*slopes[1:], slopes.whole)):
-            figures = [(0.0, 0.0)] * len(figures)
+            # What does not exist stays so.
+            figures = [(0.0 * v, 0.0) for v, _ in figures]
         texts = [good(*figure) for figure in figures]
         if kinked and not slopes.is_kinked:
             texts[1] = ""
