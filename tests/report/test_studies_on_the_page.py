@@ -127,6 +127,28 @@ def test_a_study_without_an_answer_is_part_of_the_page(case, bare):
     assert "rings.77" in Reader(report_page([one])).text
 
 
+def test_the_steps_before_a_refused_one_are_part_of_the_page():
+    """The third torque presses the teeth further than they are high."""
+    case = shipped("fgfbstts/full_float").replace(
+        {
+            "operating.power": None,
+            "operating.speed": None,
+            "operating.positions": None,
+            "operating.torque": ["1000 N*m", "2000 N*m", "4000 kN*m", "1000 N*m"],
+            "march": {"gear": "4", "revolutions": 1.0, "steps": 4},
+            "study": {"way": {"kind": "march"}},
+        }
+    )
+    part = run_part(case, "way")
+    assert part.title == "way: march"
+    assert part.facts["way"] == "2 steps, 0.25 revolutions of gear 4"
+    assert part.figures
+    assert [row[0] for table in part.tables for row in table.texts] == ["4", "5"]
+    refused, last = part.problems
+    assert refused.startswith("REFUSED  position 3: the displacements are too large")
+    assert last == "2 steps of 4 certified; each needs the one before."
+
+
 @pytest.mark.slow
 def test_from_python(case, scatter, tmp_path):
     (one,) = write_report([case], tmp_path / "report.html", studies={"mine": scatter})

@@ -155,6 +155,11 @@ def test_a_case_without_a_march_is_reported():
         ls.march(shipped("fgfbstts/full_float"), steps=3)
 
 
+def test_one_step_is_one_in_words():
+    found = ls.march(shipped("fgfbstts/full_float"), gear="4", revolutions=1.0, steps=1)
+    assert "way: 1 step, 0 revolutions of gear 4" in repr(found)
+
+
 def test_a_refused_step_leaves_those_before_it(monkeypatch):
     from loadshare.study import march as room
 

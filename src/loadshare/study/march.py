@@ -126,7 +126,7 @@ class March(Viewed):
         last = self.revolutions[-1] if steps else 0.0
         which = f"{steps} of {len(result.stamp.positions)}" if self.refused else "all"
         facts = (
-            ("way", f"{steps} steps, {last:g} revolutions of gear {self.gear}"),
+            ("way", f"{counted(steps, 'step')}, {last:g} revolutions of gear {self.gear}"),
             ("certified", f"{which} steps, worst residual {result.certificate.worst:.1e}"),
             ("largest Ω", by_name(result.omega)),
             ("dissipated", f"{self.dissipated:.4g} J"),

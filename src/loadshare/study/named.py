@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from loadshare.case import Case
 from loadshare.case.reader import opened
 from loadshare.case.words import did_you_mean
-from loadshare.errors import CaseError, Problem
+from loadshare.errors import CaseError, Problem, Refused
 
 if TYPE_CHECKING:
     from loadshare.job import Progress
@@ -71,6 +72,27 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
     run = getattr(import_module("loadshare"), block.kind)
     found: Found = run(case, **arguments, progress=progress)
     return found
+
+
+def found_by(ask: Callable[[], Any]) -> Any:
+    """Return the answer of a study, or what it found before an equilibrium was refused.
+
+    Parameters
+    ----------
+    ask : callable
+        Runs the study.
+
+    Raises
+    ------
+    Refused
+        If it found nothing before.
+    """
+    try:
+        return ask()
+    except Refused as refusal:
+        if refusal.study is None:
+            raise
+        return refusal.study
 
 
 _ARGUMENTS: dict[str, dict[str, str]] = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
@@ -59,21 +59,13 @@ def run(
     typer.Exit
         If it cannot be answered; the message says why.
     """
+    from loadshare.study.named import found_by
+
     with answered():
         case = open_case(file, change)
         with progress(what, total, rated=total is None) as tick:
             ask = getattr(import_module("loadshare"), kind)
-            return _found(partial(ask, case, **asked, progress=tick))
-
-
-def _found(ask: Callable[[], Any]) -> Any:
-    """Return the answer of a study, or what it found before an equilibrium was refused."""
-    try:
-        return ask()
-    except Refused as refusal:
-        if refusal.study is None:
-            raise
-        return refusal.study
+            return found_by(partial(ask, case, **asked, progress=tick))
 
 
 @contextmanager
@@ -339,7 +331,7 @@ def study(
     change: Changes = None,
 ) -> None:
     """Run a study of the case, [study.NAME]."""
-    from loadshare.study.named import run_study
+    from loadshare.study.named import found_by, run_study
 
     with answered():
         loaded = open_case(case, change)
@@ -354,7 +346,7 @@ def study(
             loaded = _varied(loaded, name, kind, varied)
         rated = kind == "tolerance"
         with progress(*(("samples", None) if rated else (name, 1)), rated=rated) as tick:
-            found = _found(partial(run_study, loaded, name, progress=tick))
+            found = found_by(partial(run_study, loaded, name, progress=tick))
     makers = makers_of(kind, found)
     for output in file or ():
         if output.form not in makers:

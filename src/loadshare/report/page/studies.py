@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import singledispatch
+from functools import partial, singledispatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,7 @@ from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.study.critical import Critical
 from loadshare.study.march import March
-from loadshare.study.named import run_study
+from loadshare.study.named import found_by, run_study
 from loadshare.study.sensitivity import Sensitivity
 from loadshare.study.sweep import sweep
 from loadshare.study.tolerance.result import Tolerance
@@ -78,7 +78,7 @@ def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
 def run_part(
     case: Case, name: str, *, kept: Path | None = None, progress: Progress | None = None
 ) -> StudyPart:
-    """Run a study that a case holds; an error becomes part of the page.
+    """Run a study that a case holds; an error becomes part of the page, with what was found before.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def run_part(
         if kept is not None:
             found: Viewed = tolerance(case, study=name, out=kept, progress=progress)
         else:
-            found = run_study(case, name, progress=progress)
+            found = found_by(partial(run_study, case, name, progress=progress))
         return study_part(name, found, case)
     except LoadshareError as error:
         kind = case.study[name].kind if name in case.study else "study"
