@@ -368,3 +368,22 @@ def test_files_are_written_though_nobody_reads_the_screen(tmp_path):
         process.stdout.close()
         assert process.wait() == 0
     assert ls.load_result(file).passed
+
+
+@pytest.mark.parametrize(
+    ("words", "file"),
+    [
+        (["run", "--set", "operating.torque=4e9 N*m"], "x.json"),
+        (["report", "--set", "operating.torque=4e9 N*m"], "x.html"),
+        (["sweep", "--over", "operating.torque=100 N*m, 4e9 N*m"], "x.csv"),
+    ],
+    ids=lambda words: words[0] if isinstance(words, list) else "",
+)
+def test_refusals_are_told_even_if_a_file_cannot_be_written(words, file, tmp_path):
+    (tmp_path / "no folder").touch()
+    lost = tmp_path / "no folder" / file
+    result = call(words[0], CASE, *words[1:], "-o", lost)
+    assert result.exit_code == 2
+    said = " ".join(result.stderr.split())
+    assert f"{lost}: cannot be written" in said
+    assert "the displacements are too large" in said

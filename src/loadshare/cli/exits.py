@@ -80,15 +80,20 @@ def ranges(numbers: list[int]) -> str:
     return ", ".join(runs(numbers, "-"))
 
 
-def fail_refused(refusal: Refused, more: Iterable[str] = ()) -> NoReturn:
-    """Write the lines of a refusal, and more, to stderr and leave with the code of a refusal.
+def fail_refused(refusal: Refused) -> NoReturn:
+    """Write the lines of a refusal to stderr and leave with its code.
 
     Raises
     ------
     typer.Exit
         Always.
     """
-    fail([*(f"REFUSED  {line}" for line in refusal_lines(refusal)), *more], REFUSED)
+    fail(marked_lines(refusal), REFUSED)
+
+
+def marked_lines(refusal: Refused) -> list[str]:
+    """Return the lines of a refusal, each marked as such."""
+    return [f"REFUSED  {line}" for line in refusal_lines(refusal)]
 
 
 def refused_document(refusal: Refused, case: str) -> dict[str, Any]:

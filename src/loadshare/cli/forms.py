@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from loadshare.cli.exits import UNUSABLE, fail, unwritten_line
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, unwritten_line
 from loadshare.cli.files import print_written
 from loadshare.cli.options import OUTPUT
 from loadshare.cli.waiting import erase_line
@@ -159,15 +159,33 @@ def outputs(*forms: str, what: str = "Write the answer") -> Any:
     )
 
 
-def write_all(wanted: Iterable[Output] | None, makers: Makers, *, err: bool = True) -> None:
+def write_all(
+    wanted: Iterable[Output] | None,
+    makers: Makers,
+    *,
+    err: bool = True,
+    missing: Iterable[str] = (),
+    code: int = REFUSED,
+) -> None:
     """Write the files asked for, each whole or not at all, and report them on stderr or stdout.
 
     A file that cannot be written does not keep the others from being written.
 
+    Parameters
+    ----------
+    wanted : iterable of Output or None
+    makers : mapping of form to callable
+    err : bool
+        Whether files that were written are reported on stderr.
+    missing : iterable of str
+        Lines on answers that are missing, such as refusals.
+    code : int
+        Exit code if answers are missing.
+
     Raises
     ------
     typer.Exit
-        If one cannot be made or written; the message names each of them.
+        If a file cannot be made or written, or answers are missing; the message names all of them.
     """
     lost = []
     for output in wanted or ():
@@ -186,8 +204,8 @@ def write_all(wanted: Iterable[Output] | None, makers: Makers, *, err: bool = Tr
             lost.append(unwritten_line(output.file, error))
         else:
             print_written(output.file, "" if err else ".", err=err)
-    if lost:
-        fail(lost, UNUSABLE)
+    if lines := [*lost, *missing]:
+        fail(lines, UNUSABLE if lost else code)
 
 
 def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:

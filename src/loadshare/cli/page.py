@@ -11,7 +11,7 @@ import typer
 
 from loadshare.cli.cases import find_cases, read_changes
 from loadshare.cli.console import progress
-from loadshare.cli.exits import REFUSED, UNUSABLE, fail
+from loadshare.cli.exits import REFUSED, UNUSABLE
 from loadshare.cli.forms import Output, outputs, write_all
 from loadshare.cli.options import CasePaths, Changes
 from loadshare.report import converter
@@ -63,13 +63,14 @@ def report(
     if not no_studies:
         chapters = _with_studies(chapters, named)
     written = file or [Output("html", Path("report.html"))]
-    write_all(written, {"html": lambda: report_page(chapters)}, err=False)
     bad = [one for one in chapters if one.outcome != CERTIFIED or one.unanswered]
-    if bad:
-        code = UNUSABLE if any(one.outcome == NOT_USABLE for one in bad) else REFUSED
-        fail(
-            [line for one in bad for line in (f"{one.file}: {one.outcome}", *one.unanswered)], code
-        )
+    write_all(
+        written,
+        {"html": lambda: report_page(chapters)},
+        err=False,
+        missing=[line for one in bad for line in (f"{one.file}: {one.outcome}", *one.unanswered)],
+        code=UNUSABLE if any(one.outcome == NOT_USABLE for one in bad) else REFUSED,
+    )
 
 
 def _named(text: str) -> tuple[str, Path | None]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache, partial
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 import typer
 
 from loadshare.cli.cases import open_case
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import fail_refused, refused_document, reporting_problems, writing
+from loadshare.cli.exits import marked_lines, refused_document, reporting_problems, writing
 from loadshare.cli.files import print_written
 from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
@@ -104,8 +104,7 @@ def run(
         _print_explanations(loaded, wanted if position else wanted[:1], how)
     if refusal is not None:
         _end_refused(refusal, loaded.name, file or ())
-    assert result is not None
-    if file:
+    elif file and result is not None:
         _write(file, result, loaded, str(case), picture)
 
 
@@ -134,13 +133,19 @@ def _print_explanations(case: Case, positions: Sequence[int], how: dict[str, Any
         print_explanation(index, answer)
 
 
-def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoReturn:
-    """Write the refusal as JSON, and print it with the files that were not written."""
+def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> None:
+    """Write the refusal as JSON, and print it with the files that were not written.
+
+    Raises
+    ------
+    typer.Exit
+        Always.
+    """
     written = [output for output in files if output.form == "json"]
     document = json_text(refused_document(refusal, case))
-    write_all(written, {"json": lambda: document})
     others = [output.file for output in files if output not in written]
-    fail_refused(refusal, (f"{file}: not written, as there is no answer" for file in others))
+    lines = [f"{file}: not written, as there is no answer" for file in others]
+    write_all(written, {"json": lambda: document}, missing=[*marked_lines(refusal), *lines])
 
 
 def _write(files: Sequence[Output], result: Result, given: Case, case: str, picture: str) -> None:

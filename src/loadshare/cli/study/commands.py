@@ -14,7 +14,7 @@ import typer
 from loadshare.cli.cases import open_case
 from loadshare.cli.completion import study_names
 from loadshare.cli.console import print_note, progress, stand
-from loadshare.cli.exits import REFUSED, UNUSABLE, fail, fail_refused, reporting_problems
+from loadshare.cli.exits import UNUSABLE, fail, fail_refused, reporting_problems
 from loadshare.cli.files import print_written
 from loadshare.cli.forms import FIGURES, FOLDER, TABLES, Output, outputs, write_all
 from loadshare.cli.options import (
@@ -96,9 +96,8 @@ def conclude(kind: str, found: Any, files: list[Output] | None) -> None:
     for output in files or ():
         if output.form == FOLDER:
             print_written(output.file, err=True)
-    write_all([o for o in files or () if o.form != FOLDER], makers_of(kind, found))
-    if lines := found._left_open():
-        fail(lines, REFUSED)
+    single = [o for o in files or () if o.form != FOLDER]
+    write_all(single, makers_of(kind, found), missing=found._left_open())
 
 
 Files = Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)]
