@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tests.report.pages import Reader
 from tests.support import CASES
 from typer.testing import CliRunner
 
@@ -87,6 +88,16 @@ def test_report_writes_a_page(command):
     result = command("report", STAR)
     assert (result.exit_code, result.stdout) == (0, "Wrote report.html.\n")
     assert "Star with 3 planets" in Path("report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["report", "run"])
+def test_the_page_of_a_changed_case_says_so_and_how_to_make_it_again(command, name):
+    change = "operating.torque=500 N*m"
+    assert command(name, STAR, "--set", change, "-o", "page.html").exit_code == 0
+    text = Reader(Path("page.html").read_text(encoding="utf-8")).text
+    assert f"Changed {change}" in text
+    for words in ("run {}", "report {} -o report.html"):
+        assert f"loadshare {words.format(STAR)} --set '{change}'" in text
 
 
 def test_a_report_is_html_and_nothing_else(command):

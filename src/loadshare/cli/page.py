@@ -58,7 +58,8 @@ def report(
     chapters = []
     with progress("cases", len(found)) as tick:
         for done, path in enumerate(found, start=1):
-            chapters.append(chapter_of_file(path, changes=changes))
+            made = chapter_of_file(path, changes=changes)
+            chapters.append(replace(made, changes=tuple(change or ())))
             tick(done, len(found))
     if not no_studies:
         chapters = _with_studies(chapters, named)

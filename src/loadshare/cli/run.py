@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
@@ -105,7 +106,8 @@ def run(
     if refusal is not None:
         _end_refused(refusal, loaded.name, file or ())
     elif file and result is not None:
-        _write(file, result, loaded, str(case), picture)
+        made = partial(_page, result, str(case), change or ())
+        _write(file, result, loaded, made, picture)
 
 
 def _solved(
@@ -148,14 +150,17 @@ def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> None:
     write_all(written, {"json": lambda: document}, missing=[*marked_lines(refusal), *lines])
 
 
-def _write(files: Sequence[Output], result: Result, given: Case, case: str, picture: str) -> None:
+def _page(result: Result, case: str, changes: Sequence[str]) -> str:
+    from loadshare.report.page import chapter, report_page
+
+    return report_page([replace(chapter(result.case, case, result=result), changes=changes)])
+
+
+def _write(
+    files: Sequence[Output], result: Result, given: Case, page: Callable[[], str], picture: str
+) -> None:
     from loadshare.exchange.spreadsheet import write_tables
     from loadshare.results.document import netcdf_content
-
-    def report() -> str:
-        from loadshare.report.page import chapter, report_page
-
-        return report_page([chapter(result.case, case, result=result)])
 
     def changed() -> str:
         from loadshare.tooth import written_in
@@ -179,7 +184,7 @@ def _write(files: Sequence[Output], result: Result, given: Case, case: str, pict
     frame = tables_of("run", result.to_frame)
     drawn = figure_of(lambda: getattr(result.plot, picture)())
     makers = {**frame, **drawn, "json": result.to_json, "nc": lambda: netcdf_content(result)}
-    makers |= {"html": report, "xlsx": workbook, "toml": changed}
+    makers |= {"html": page, "xlsx": workbook, "toml": changed}
     write_all(single, makers)
 
 

@@ -56,6 +56,8 @@ class Chapter:
     tables, inputs, derived : sequence of Table
     studies : sequence of StudyPart
         Studies of the case that were run or passed in.
+    changes : sequence of str
+        Changes to the file, as ``--set`` takes them.
     """
 
     file: str
@@ -73,6 +75,7 @@ class Chapter:
     inputs: Sequence[Table] = ()
     derived: Sequence[Table] = ()
     studies: Sequence[StudyPart] = ()
+    changes: Sequence[str] = ()
 
     @property
     def left_out(self) -> Mapping[str, str]:
@@ -97,9 +100,14 @@ class Chapter:
         """Commands that reproduce what is shown."""
         if not self.file:
             return []
-        name = shlex.quote(self.file)
-        studies = [f"loadshare study {name} {shlex.quote(s.name)}" for s in self.studies]
-        return [f"loadshare run {name}", f"loadshare report {name} -o report.html", *studies]
+        studies = [self.command("study", s.name) for s in self.studies]
+        return [self.command("run"), self.command("report", "-o", "report.html"), *studies]
+
+    def command(self, name: str, *words: str) -> str:
+        """Return a command on the file with its changes."""
+        changes = (word for change in self.changes for word in ("--set", change))
+        file = [self.file] if self.file else []
+        return shlex.join(["loadshare", name, *file, *words, *changes])
 
 
 def chapter_of_file(file: str | Path, changes: Mapping[str, Any] | None = None) -> Chapter:
