@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from tests.cli.conftest import CASES, on_a_screen_of
 
 import loadshare as ls
@@ -214,6 +215,22 @@ kind = "march"
     document = json.loads(files[1].read_text(encoding="utf-8"))
     assert f"REFUSED  {document['refused']}" == refused
     assert {row["position"] for row in document["rows"]} == {1, 2}
+
+
+def test_files_of_a_comparison_tell_units_and_whole_positions(command, measured, tmp_path):
+    """A figure without a position used to make the positions of all others 1.0."""
+    more = 'measured.more={torque={"6-10"="7000 N*m"}, torque_uncertainty="100 N*m"}'
+    files = [tmp_path / f"compared.{form}" for form in ("json", "csv", "nc")]
+    words = [word for file in files for word in ("-o", file)]
+    assert command("compare", measured, "--set", more, *words).exit_code == 0
+    rows = json.loads(files[0].read_text(encoding="utf-8"))["rows"]
+    assert [str(row["position"]) for row in rows] == ["1", "None"]
+    assert [row["unit"] for row in rows] == ["1", "N·m"]
+    with files[1].open(encoding="utf-8") as lines:
+        assert [row["position"] for row in csv.DictReader(lines)] == ["1", ""]
+    with xr.open_dataset(files[2]) as found:
+        assert found.position.fillna(0).values.tolist() == [1, 0]
+        assert found.unit.values.tolist() == ["1", "N·m"]
 
 
 def test_compare_and_fit(command, measured, tmp_path):

@@ -261,6 +261,8 @@ def _netcdf(name: str, frame: pd.DataFrame) -> bytes:
     from loadshare.output import netcdf_of
 
     table = frame.infer_objects()
+    # netCDF knows no whole number that is missing.
+    table = table.astype({name: float for name, kind in table.dtypes.items() if kind == "Int64"})
     words = table.select_dtypes(exclude=["number", "bool"])
     table = table.assign(**{str(c): words[c].map(_word) for c in words})
     arrays = table.rename_axis("row").to_xarray()

@@ -113,7 +113,7 @@ class Comparison(Viewed):
             | {name: getattr(d, name) for name in ("computed", "difference", "deviations")}
             for d in self.deviations
         ]
-        return pd.DataFrame(rows)
+        return pd.DataFrame(rows).astype({"position": "Int64"})
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the table of `to_frame`, with the unit of each figure next to it."""

@@ -114,7 +114,7 @@ class Kind(NamedTuple):
 KINDS = {
     "compare": Kind(
         show_view,
-        lambda found: found.to_frame(),
+        lambda found: found.to_dataframe(),
         lambda found: {"chi_square": found.chi_square},
     ),
     "critical": Kind(show_view, lambda found: found.to_dataframe(), _about_critical),
