@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import groupby
@@ -89,6 +90,11 @@ class Unit:
     def title(self, what: str) -> str:
         """Return the title of an axis or a column: ``torque [N·m]``."""
         return f"{what} [{self.name}]" if self.name else what
+
+
+def printed_unit(unit: str) -> str:
+    """Return a unit of a case file as it is printed: µm for um, N·m for N*m."""
+    return re.sub(r"\bum\b", "µm", unit).replace("*", "·")
 
 
 NUMBER = Unit("")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
+from tests.support import shipped
 
 import loadshare as ls
 from loadshare.report.figures.sweep import sweep
@@ -244,3 +245,24 @@ def test_a_study_without_figures_is_reported(scattered):
         tolerance(scattered.drop_vars("omega"))
     with pytest.raises(ls.LoadshareError, match="no sample"):
         tolerance(scattered.assign(omega=scattered["omega"] * np.nan))
+
+
+def test_pictures_print_units_alike():
+    """The picture of critical values used to have `um` next to the `µm` of the sweep's."""
+    found = ls.critical(
+        shipped("fgfbstts/limit_ring"), "rings.4.float", "8 um", "9 um", positions=[1]
+    )
+    text = str(found.plot().begin().spec)
+    assert "rings.4.float [µm]" in text
+    assert "[um]" not in text
+
+
+@pytest.mark.parametrize(
+    ("key", "told"), [("gears.planet4.centre.angle", True), ("operating.torque", False)]
+)
+def test_bars_of_falling_inputs_say_which_way_the_figure_goes(key, told):
+    """Ω rises to both sides, and the bar of the falling input points down."""
+    found = ls.sensitivity(shipped("planetary/four_planets"), key)
+    assert (
+        "as an input falls, Ω changes against its bar" in str(found.plot().begin().spec)
+    ) == told

@@ -426,6 +426,31 @@ def test_what_has_no_derivative_says_why():
         assert "gear 1" in remark.message
 
 
+def test_a_missing_derivative_is_shown_as_none_and_explained_once():
+    """Its row used to show zeros, and its reason came once for every position."""
+    case = shipped("fgfbstts/base").replace({"gears.1.support": "free"})
+    key = 'meshes."1-3".pressure_angle'
+    (made,) = sensitivity(case, key, positions=[1, 2])._view().tables
+    assert made.texts == [[key, "20 deg", "–", "–"]]
+    ways = [note for note in made.notes if note.startswith(key)]
+    assert [note.split(": ")[1] for note in ways] == [
+        f"has no derivative when it is {way}" for way in ("lowered", "raised")
+    ]
+    assert not any("position" in note for note in ways)
+
+
+def test_the_change_over_a_whole_value_has_the_sign_of_the_slope():
+    """The picture's bars have it."""
+    key = 'meshes."9-10".pressure_angle'
+    found = sensitivity(shipped("fgfbstts/limit_ring"), key, positions=[1])
+    row = dict(
+        zip(("input", "value", "slope", "whole"), found._view().tables[0].texts[0], strict=True)
+    )
+    (bar,) = found.plot().begin().spec["datasets"].values()
+    assert row["slope"].startswith("-")
+    assert float(row["whole"]) == pytest.approx(bar[0]["change"], rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("value", "error", "text"),
     [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from loadshare.numbers import Unit, printed_unit
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, hover
@@ -62,13 +63,14 @@ def critical(found: Critical) -> Figure:
     colours = {"domain": kinds, "range": list(COLOURS[: len(kinds)])}
     shapes = {"domain": kinds, "range": [SHAPES[n % len(SHAPES)] for n in range(len(kinds))]}
     legend: Any = {"title": None, "orient": "bottom", "columns": 2} if kinds else None
+    along = Unit(printed_unit(found.parameter.unit)).title(found.parameter.name)
     where = {
-        "x": axis("value:Q", found.parameter.column, [found.start, found.stop]),
+        "x": axis("value:Q", along, [found.start, found.stop]),
         "y": channel("element:N", title=None, scale={"domain": elements}, axis=looks),
         "color": channel("event:N", scale=colours, legend=legend),
         "shape": channel("event:N", scale=shapes, legend=legend),
         "tooltip": hover(
-            ("value:Q", found.parameter.column, ".8g"),
+            ("value:Q", along, ".8g"),
             "position:Q",
             "element:N",
             "event:N",

@@ -97,6 +97,7 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
     name = "the system" if stage == "system" else f"stage {stage}"
     subtitle = [
         f"first order, by the mean of the {over}",
+        "as an input falls, Ω changes against its bar" if CALLED["falling"] in sides else "",
         f"not shown: {counted(left, 'input')} of less effect, or none" if left else "",
     ]
     return marks.figure("sensitivity", drawing, f"Inputs that affect Ω of {name}", subtitle)

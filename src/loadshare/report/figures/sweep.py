@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ import numpy as np
 
 from loadshare.errors import LoadshareError
 from loadshare.libraries import xr
-from loadshare.numbers import Unit, engineering
+from loadshare.numbers import Unit, engineering, printed_unit
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import (
@@ -206,8 +205,7 @@ def _refused(data: xr.Dataset) -> str:
 def _parameter(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
     """Return the values of a parameter as given, and the title of its axis."""
     units = str(data[name].attrs.get("units", ""))
-    pretty = re.sub(r"\bum\b", "µm", units).replace("*", "·")
-    return data[name].values, Unit("" if units == "1" else pretty).title(name)
+    return data[name].values, Unit("" if units == "1" else printed_unit(units)).title(name)
 
 
 def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) -> Drawing:

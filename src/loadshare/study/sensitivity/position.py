@@ -112,7 +112,8 @@ class PositionSensitivity:
 
     def _without(self, key: str, side: str, why: Exception) -> Rates:
         """Add a remark on why a side has no derivative, and return NaN for it."""
-        self._remark(key, side, f"has no derivative when it is {_word(side)}: {why}")
+        reason = str(why).removeprefix(f"position {self.position}: ")
+        self._remark(key, side, f"has no derivative when it is {_word(side)}: {reason}")
         return self._nothing()
 
     def _differenced(self, varied: Variation, sign: float, step: float | None) -> Rates:

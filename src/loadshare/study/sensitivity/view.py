@@ -38,9 +38,9 @@ class SideSlopes(NamedTuple):
     @property
     def whole(self) -> Figure:
         """Change of Ω over the input's whole value, to first order."""
-        slope, error = max(self.falling, self.rising, key=lambda figure: _size(figure[0]))
+        slope, error = max(self.rising, self.falling, key=lambda figure: _size(figure[0]))
         over = abs(self.item.value.number)
-        return abs(slope) * over, error * over
+        return slope * over, error * over
 
     @property
     def is_kinked(self) -> bool:
@@ -103,7 +103,7 @@ def _table(over: str, ordered: list[SideSlopes]) -> Table:
         figures = [slopes.rising, *([slopes.falling] if kinked else []), slopes.whole]
         if not any(_size(v) >= ROUND_OFF for v, _ in (*slopes[1:], slopes.whole)):
             # What does not exist stays so.
-            figures = [(0.0 * v, 0.0) for v, _ in figures]
+            figures = [f if math.isnan(f[0]) else (0.0, 0.0) for f in figures]
         texts = [good(*figure) for figure in figures]
         if kinked and not slopes.is_kinked:
             texts[1] = ""
