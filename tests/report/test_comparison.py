@@ -11,6 +11,7 @@ from tests.support import shipped
 import loadshare as ls
 from loadshare.report.page import chapter, report_page
 from loadshare.report.page.comparison import comparison
+from loadshare.report.page.inputs import written
 
 BEARING = "force on the bearing or pin"
 MADE = datetime(2024, 5, 1, 12, 30, tzinfo=UTC)
@@ -29,6 +30,16 @@ def test_a_case_beside_itself_differs_in_nothing(star):
     inputs, figures, *rests = comparison(["a", "b"], [ls.solve(star), ls.solve(star)])
     assert inputs.rows == figures.rows == rests == []
     assert "inputs are the same" in inputs.notes[0]
+
+
+def test_cases_that_share_nothing_have_no_count_of_what_they_share():
+    results = [ls.solve(shipped(n)) for n in ("planetary/star", "planetary/differential")]
+    _, figures, *_ = comparison(["a", "b"], results)
+    assert not any("0 other" in note for note in figures.notes)
+
+
+def test_words_of_an_input_are_those_of_a_case_file():
+    assert written({"held": True, "centre": ["0 mm", "1 mm"]}) == "held true; centre 0 mm, 1 mm"
 
 
 def test_twice_the_load_is_twice_every_torque():

@@ -465,3 +465,10 @@ def test_keys_that_can_be_read_only_once_are_tied():
     ends = {"start": "9 um", "stop": "10 um", "positions": [1]}
     once = ls.critical(shipped("fgfbstts/limit_ring"), iter(keys), **ends)
     assert once.parameter.keys == tuple(keys)
+
+
+def test_a_range_without_events_says_so():
+    found = ls.critical(
+        shipped("fgfbstts/limit_ring"), "rings.4.float", "8.5 um", "9 um", positions=[1]
+    )
+    assert "events: none" in repr(found)

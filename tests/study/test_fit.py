@@ -365,3 +365,10 @@ def test_an_input_that_the_data_bound_to_one_side_only_is_not_determined():
     assert found.unknowns[0].value == pytest.approx(8.34992, abs=1e-4)
     assert found.unknowns[0].deviation == math.inf
     assert found.warnings == (f"The data do not determine {key} to one side of its value.",)
+
+
+def test_one_figure_is_one_in_words():
+    case = shipped("fgfbstts/limit_ring").replace(
+        {"measured.a": {"omega": {"II": 1.0}, "uncertainty": 0.01}}
+    )
+    assert "over 1 figure'" in str(ls.compare(case).plot().begin().spec)

@@ -110,11 +110,12 @@ class Critical(Viewed):
     def _view(self) -> View:
         """Show the interval, what is not proved, and the events, alike positions in one row."""
         name, unit = self.parameter.name, self.parameter.unit
-        doubtful = not all(e.confirmed for e in self.events)
+        sure = sum(e.confirmed for e in self.events)
+        doubtful = sure < len(self.events)
         facts = (
             (name, f"{self.start:g} to {self.stop:g} {unit}".rstrip()),
-            ("events", f"{len(self.events)}, {sum(e.confirmed for e in self.events)} confirmed"),
-            ("not proved", f"{len(self.unproved)} intervals" if self.unproved else "nothing"),
+            ("events", f"{len(self.events)}, {sure} confirmed" if self.events else "none"),
+            ("not proved", counted(len(self.unproved), "interval") if self.unproved else "nothing"),
         )
         alike: dict[tuple[str, ...], list[int]] = {}
         for e in sorted(self.events, key=lambda e: float(f"{e.value:.9g}")):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from loadshare.numbers import counted
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, hover, padded
@@ -61,7 +62,7 @@ def comparison(found: Comparison) -> Figure:
     ]
     drawing = panel(layers, WIDTH, ROW * len(rows))
     subtitle = [
-        f"χ² = {found.chi_square:.4g} over {len(rows)} figures",
+        f"χ² = {found.chi_square:.4g} over {counted(len(rows), 'figure')}",
         f"grey: ±{EXPECTED:g} standard deviations of the measurement",
     ]
     return marks.figure("comparison", drawing, "Measured against computed", subtitle)

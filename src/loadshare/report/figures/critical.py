@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from loadshare.numbers import Unit, printed_unit
+from loadshare.numbers import Unit, counted, printed_unit
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, hover
@@ -82,5 +82,5 @@ def critical(found: Critical) -> Figure:
     points = events or [{"value": None, "element": "no event"}]
     layers.append(layer("point", points, where, filled=True, opacity=1, size=60))
     drawing = panel(layers, WIDTH, ROW * len(elements))
-    open_ = f"{len(found.unproved)} intervals not proved, grey" if found.unproved else ""
+    open_ = f"{counted(len(found.unproved), 'interval')} not proved, grey" if found.unproved else ""
     return marks.figure("critical", drawing, "Where contacts, floats and splines change", open_)

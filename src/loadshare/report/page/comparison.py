@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from loadshare.case import Case
 from loadshare.case.content import ABOUT
 from loadshare.case.keys import dotted, values_in
-from loadshare.numbers import NONE, engineering, omega, significant
+from loadshare.numbers import NONE, counted, engineering, omega, significant
 from loadshare.report.page.inputs import written
 from loadshare.report.words import rest_lines
 from loadshare.results import Result
@@ -49,7 +49,8 @@ def _differing_inputs(names: Sequence[str], cases: Sequence[Case]) -> Table:
         if len({one.get(key) for one in found}) > 1
     ]
     columns = [Column("input"), *map(Column, names)]
-    notes = [f"{len(keys) - len(rows)} other inputs are the same."]
+    alike = len(keys) - len(rows)
+    notes = [f"The same in all cases: {counted(alike, 'other input')}."] if alike else []
     if not rows:
         notes = [f"All {len(keys)} inputs are the same."]
     return Table("Inputs that differ", columns, rows, notes, folded=len(rows) > FOLDED)
@@ -82,9 +83,10 @@ def _differing_figures(names: Sequence[str], results: Sequence[Result]) -> Table
     columns = [Column("figure"), Column("of")]
     columns += [Column(name, True) for name in names]
     columns += [Column(against.format(name), True) for name in names[1:]]
+    alike = len(shared) - len(rows)
     notes = [
-        "The largest over the positions; changes are relative to the first case's figure. "
-        f"{len(shared) - len(rows)} other figures agree within round-off."
+        "The largest over the positions; changes are relative to the first case's figure.",
+        *([f"Equal within round-off: {counted(alike, 'other figure')}."] if alike else []),
     ]
     return Table("Figures that differ", columns, [cells for _, _, cells in rows], notes)
 

@@ -57,4 +57,4 @@ def written(value: Any) -> str:
     if isinstance(value, list | tuple):
         nested = any(isinstance(item, list | tuple) for item in value)
         return (" | " if nested else ", ").join(written(item) for item in value)
-    return str(value)
+    return str(value).lower() if isinstance(value, bool) else str(value)
