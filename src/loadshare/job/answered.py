@@ -80,8 +80,8 @@ class MachineSamples:
         """Figures of the answers, as arrays in the order of `there`."""
         solved, answers = self.solved, self.solved.found.equilibria
         proved = solved.found.verdicts.bounds.relative.copy()
-        hot = [k for k in self.there.tolist() if k not in self.others]
-        found = {**solved.least(hot), **{k: a.equilibrium for k, a in self.others.items()}}
+        numbers = self.there.tolist()
+        solved.to_least_norm([k for k in numbers if k not in self.others])
         for number, answer in self.others.items():
             answers.put(number, answer.equilibrium)
             proved[number] = answer.certificate.proved
@@ -89,7 +89,10 @@ class MachineSamples:
             solved.machine.train,
             solved.situations.take(self.there),
             answers.take(self.there),
-            [found[k].undetermined if k in found else {} for k in self.there.tolist()],
+            [
+                self.others[k].equilibrium.undetermined if k in self.others else solved.ranges(k)
+                for k in numbers
+            ],
             proved[self.there],
         )
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -14,12 +14,12 @@ from loadshare.certify.certificate import in_groups
 from loadshare.contact.plan import Plan, Role
 from loadshare.job.answer import Answer
 from loadshare.job.engines import available_engine
-from loadshare.job.least import least_places
+from loadshare.job.least import least_places, open_ranges
 from loadshare.job.machine import Answers, Machine
 from loadshare.settings import JOB
 from loadshare.solver import Record
 from loadshare.solver.position import coordinates_of
-from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
@@ -45,7 +45,7 @@ class HotAnswers:
     situations: Situations
     found: Answers
     tolerance: float
-    _least: dict[int, Equilibrium] = field(default_factory=dict, init=False)
+    _placed: set[int] = field(default_factory=set, init=False)
 
     @cached_property
     def small(self) -> Flags:
@@ -80,14 +80,18 @@ class HotAnswers:
                 )
         return found
 
-    def least(self, rows: Sequence[int]) -> dict[int, Equilibrium]:
-        """Move answers with open displacements to least norm, and return these by number."""
-        loose = [r for r in rows if r not in self._least and not self.found.determined[r]]
+    def to_least_norm(self, rows: Sequence[int]) -> None:
+        """Move answers with open displacements to least norm."""
+        loose = [r for r in rows if r not in self._placed and not self.found.determined[r]]
         if loose:
-            self._least |= least_places(
-                self.machine, self.situations, self.found, loose, self.tolerance
-            )
-        return {r: self._least[r] for r in rows if r in self._least}
+            least_places(self.machine, self.situations, self.found, loose, self.tolerance)
+            self._placed.update(loose)
+
+    def ranges(self, row: int) -> Mapping[str, Range]:
+        """Return least and largest values of what the forces of an answer leave undetermined."""
+        if self.found.determined[row]:
+            return {}
+        return open_ranges(self.machine, self.situations, self.found, row)
 
 
 @dataclass(eq=False)
@@ -114,9 +118,10 @@ class _Placed:
     @cached_property
     def _every(self) -> list[tuple[Equilibrium, Certificate]]:
         solved, train = self.solved, self.train
-        least, found = solved.least(self.rows), solved.found
+        solved.to_least_norm(self.rows)
+        found = solved.found
         placed = [
-            least[row] if row in least else found.equilibria.one(row, index)
+            replace(found.equilibria.one(row, index), undetermined=solved.ranges(row))
             for row, index in zip(self.rows, self.indices, strict=True)
         ]
         rows = np.array(self.rows)

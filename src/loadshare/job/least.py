@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from loadshare.job.machine import Answers, Machine
+from loadshare.later import Later
 from loadshare.scene.assemble import scene_of
-from loadshare.solver.position import of_least_norm, with_ranges
-from loadshare.train.equilibrium import Equilibrium
+from loadshare.scene.scene import Scene
+from loadshare.solver.hot.answer import equilibria
+from loadshare.solver.hot.least_norm import least_norm
+from loadshare.solver.position import of_least_norm, ranges_of
+from loadshare.train.equilibrium import Range
 from loadshare.train.situations import Situations
 
 
@@ -19,8 +23,8 @@ def least_places(
     found: Answers,
     rows: Sequence[int],
     tolerance: float,
-) -> dict[int, Equilibrium]:
-    """Move some answers to least norm, in place, and return them with the ranges left open.
+) -> None:
+    """Move some answers to least norm, in place.
 
     An answer stays where it is if it is not certified at least norm, because round-off of a long
     move shows in a stiff element or in the bound, or if it is refused there as too far away for the
@@ -36,33 +40,48 @@ def least_places(
         Numbers of the answers to move.
     tolerance : float
         Largest scaled residual of a certified answer.
-
-    Returns
-    -------
-    dict of int to Equilibrium
-        All of these answers, by number.
     """
-    scenes = {
-        row: scene_of(
-            machine.structure, situations.take(slice(row, row + 1)), found.loading.one(row)
-        )
-        for row in rows
-    }
-    claimed = {row: found.equilibria.one(row, scene.position) for row, scene in scenes.items()}
-    least = {row: of_least_norm(scenes[row], claimed[row]) for row in rows}
-    moved = [row for row in rows if least[row].displacement is not claimed[row].displacement]
-    if not moved:
-        return least
-    placed = found.equilibria.take(np.array(moved))
-    for k, row in enumerate(moved):
-        placed.put(k, least[row])
-    here = situations.take(np.array(moved))
-    verdicts = machine.judge.judge(here, placed, tolerance)
-    near = machine.measuring.worst(here, placed, verdicts.deflection, refusal=True) < 1.0
-    for row, passed in zip(moved, (verdicts.passed & near).tolist(), strict=True):
-        if passed:
-            found.equilibria.put(row, least[row])
-        else:
-            least[row] = claimed[row]
-        least[row] = with_ranges(least[row], scenes[row])
-    return least
+    if not rows:
+        return
+    every = np.array(rows, dtype=np.intp)
+    here, iterate = situations.take(every), found.iterate.take(every)
+    places = least_norm(machine.structure, here, found.loading.take(every), iterate)
+    iterate.x[:] = places.x
+    placed, moved = equilibria(machine.structure, here, iterate), places.moved
+    for k in np.flatnonzero(~places.known).tolist():
+        row = int(every[k])
+        scene = _scene(machine, situations, found, row)
+        claimed = found.equilibria.one(row, scene.position)
+        least = of_least_norm(scene, claimed)
+        moved[k] = least.displacement is not claimed.displacement
+        placed.put(k, least)
+    if not moved.any():
+        return
+    some = np.flatnonzero(moved)
+    ours, here, every = placed.take(some), here.take(some), every[some]
+    verdicts = machine.judge.judge(here, ours, tolerance)
+    near = machine.measuring.worst(here, ours, verdicts.deflection, refusal=True) < 1.0
+    passed = verdicts.passed & near
+    for name in ("rotation", "displacement"):
+        getattr(found.equilibria, name)[every[passed]] = getattr(ours, name)[passed]
+
+
+def open_ranges(
+    machine: Machine, situations: Situations, found: Answers, row: int
+) -> Mapping[str, Range]:
+    """Return least and largest values of what the forces of an answer leave undetermined.
+
+    They follow from its own place, however that was found, as in the check of a loaded result, and
+    are computed when they are first read.
+    """
+
+    def ranges() -> Mapping[str, Range]:
+        scene = _scene(machine, situations, found, row)
+        return ranges_of(found.equilibria.one(row, scene.position), scene)
+
+    return Later(ranges)
+
+
+def _scene(machine: Machine, situations: Situations, found: Answers, row: int) -> Scene:
+    here = situations.take(slice(row, row + 1))
+    return scene_of(machine.structure, here, found.loading.one(row))

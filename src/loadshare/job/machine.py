@@ -33,6 +33,7 @@ from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import pin, without_noise
 from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Engine
+from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.rule import Rule, samples_to_learn
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
@@ -63,6 +64,8 @@ class Answers:
     ----------
     loading : Loading
         The numbers of the samples.
+    iterate : Iterate
+        Where the solver ended.
     equilibria : Equilibria
     verdicts : Verdicts
     passed : ndarray of bool, shape (S,)
@@ -78,6 +81,7 @@ class Answers:
     """
 
     loading: Loading
+    iterate: Iterate
     equilibria: Equilibria
     verdicts: Verdicts
     passed: Flags
@@ -252,6 +256,7 @@ class Machine:
                 break
         return Answers(
             loading,
+            iterate,
             judging.answers,
             verdicts,
             found.solved & verdicts.passed,

@@ -23,6 +23,10 @@ class Places(NamedTuple):
     """How far a point may lie outside, in sizes of the region: round-off of what bounds it."""
     almost: float = 1e-6
     """Distance to a bound, in sizes of the region, at which an interior-point answer reaches it."""
+    few: int = 3
+    """Shares of a part, at most, whose least place is found for many samples at once."""
+    limits: int = 8
+    """Limits of such a part, at most: every set of them that may be reached is tried."""
     far: float = 1e6
     """Distance, in sizes of the region, beyond which a place counts as unlimited."""
     passes: int = 20

@@ -47,7 +47,7 @@ def determined(
     compiled : bool
         Whether to use Numba; the answer is the same.
     """
-    least, batch = PLACES.carries * pushes(loading), _Batch(structure, loading, iterate)
+    least, batch = PLACES.carries * pushes(loading), Batch(structure, loading, iterate)
     if compiled:
         return batch.compiled(states, held, least)
     first, last = structure.springs, structure.columns.contacts.stop
@@ -60,12 +60,12 @@ def determined(
     rest = np.flatnonzero(~found)
     if len(rest):
         carry = iterate.force[rest, first:last] > carries[rest, None]
-        for alike, some in _alike(np.hstack([carry.astype(np.int8), kinds[rest]])):
+        for alike, some in alike_of(np.hstack([carry.astype(np.int8), kinds[rest]])):
             found[rest[alike]] = batch.fixed(some, rest[alike])
     return np.asarray(found)
 
 
-def _alike(sets: NDArray[Any]) -> Iterator[tuple[Numbers, NDArray[Any]]]:
+def alike_of(sets: NDArray[Any]) -> Iterator[tuple[Numbers, NDArray[Any]]]:
     """Yield the samples that share a set, and the set."""
     order = np.lexsort(sets.T) if sets.shape[1] else np.arange(len(sets))
     changes = np.flatnonzero((sets[order][1:] != sets[order][:-1]).any(axis=1)) + 1
@@ -104,7 +104,7 @@ class _Touched(NamedTuple):
         return np.asarray(every[self.flags[sample]])
 
 
-class _Batch(NamedTuple):
+class Batch(NamedTuple):
     """Samples and their iterate."""
 
     structure: Structure
@@ -125,7 +125,7 @@ class _Batch(NamedTuple):
             fixed[number],
             np.flatnonzero(touching.met([of.met for of in left_by]) > few[number]),
         )
-        for alike, (at_set,) in _alike(number[rest, None]) if len(rest) else ():
+        for alike, (at_set,) in alike_of(number[rest, None]) if len(rest) else ():
             found[rest[alike]] = self.fixed(touching.sets[at_set], rest[alike])
         return np.asarray(found)
 

@@ -9,12 +9,15 @@ of a rigid shaft gave its name to the coordinate. Source: formulation, section 4
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from loadshare.array_types import Array
+from loadshare.scene.coordinates import Rotation
 from loadshare.scene.scene import Scene
+from loadshare.train.train import Train
 
 
 class Norm(NamedTuple):
@@ -24,7 +27,7 @@ class Norm(NamedTuple):
     ----------
     root : ndarray, shape (n,)
         Square roots of the coordinates' weights [-].
-    origin : ndarray, shape (n,)
+    origin : ndarray, shape (n,) or (S, n)
         Where the norm is least [m]; not 0 for gears on a rigid shaft with clocking.
     """
 
@@ -38,12 +41,30 @@ class Norm(NamedTuple):
 
 def norm_of(scene: Scene) -> Norm:
     """Return the norm of a scene's coordinates."""
-    weight, moment = np.ones(scene.size), np.zeros(scene.size)
-    turning = [r.index for r in scene.rotation.values() if r.index is not None]
+    turned = np.array([[*scene.turned.values()]])
+    root, origin = norms_of(scene.train, scene.rotation, scene.size, turned)
+    return Norm(root, origin[0])
+
+
+def norms_of(train: Train, rotation: Mapping[str, Rotation], size: int, turned: Array) -> Norm:
+    """Return the norm of the coordinates of a train, with the origins (S, n) of S samples.
+
+    Parameters
+    ----------
+    train : Train
+    rotation : mapping of gear to Rotation
+        How each gear turns with the coordinates.
+    size : int
+        Number of coordinates n.
+    turned : ndarray, shape (S, gears)
+        Rotations at zero coordinates [rad].
+    """
+    weight, moment = np.ones(size), np.zeros((len(turned), size))
+    turning = [r.index for r in rotation.values() if r.index is not None]
     weight[turning] = 0.0
-    for gear, r in scene.rotation.items():
+    for gear, r in rotation.items():
         if r.index is not None:
-            radius = scene.train.gears[gear].base_radius
+            radius = train.gears[gear].base_radius
             weight[r.index] += (radius * r.rate) ** 2
-            moment[r.index] += radius**2 * r.rate * scene.turned[gear]
+            moment[:, r.index] += radius**2 * r.rate * turned[:, train.order[gear]]
     return Norm(np.sqrt(weight), -moment / weight)

@@ -8,7 +8,7 @@ behind which all of the float lies, and the values may be too far out by about t
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -50,7 +50,9 @@ def places(free: FreeSet) -> Places:
     free : FreeSet
         Its places (see `free_set`).
     """
-    parts = [_Part(free, moves) for moves in _independent(free)]
+    limits = [v[None] for v in free.vectors] + [a.relative for a in free.arcs]
+    limits += [r.radial.matrix for r in free.rounds]
+    parts = [_Part(free, moves) for moves in independent(free.moves, free.norm.root, limits)]
     moved = [part for part in parts if part.moves_to_least]
     x = free.x
     for part in moved:
@@ -222,13 +224,22 @@ class _Part:
         return Region(np.vstack(limits), np.concatenate(bounds), self.discs)
 
 
-def _independent(free: FreeSet) -> Iterator[Array]:
-    """Yield groups of moves (n, d) that nothing couples to the others."""
-    projector = free.moves @ free.moves.T
+def independent(moves: Array, root: Array, limits: Iterable[Array]) -> Iterator[Array]:
+    """Yield groups of moves (n, d) that nothing couples to the others.
+
+    Parameters
+    ----------
+    moves : ndarray, shape (n, d)
+        All of them, in lengths y, orthonormal.
+    root : ndarray, shape (n,)
+        Lengths per coordinate.
+    limits : iterable of ndarray, shape (…, n)
+        What limits them, in coordinates.
+    """
+    projector = moves @ moves.T
     together = np.abs(projector) > PLACES.loose
-    limits = [v[None] for v in free.vectors] + [a.relative for a in free.arcs]
-    for matrix in (*limits, *(r.radial.matrix for r in free.rounds)):
-        meets = (np.abs(matrix / free.norm.root @ projector) > PLACES.loose).any(axis=0)
+    for matrix in limits:
+        meets = (np.abs(matrix / root @ projector) > PLACES.loose).any(axis=0)
         together |= np.outer(meets, meets)
     for _ in range(len(together).bit_length()):
         together = (together.astype(int) @ together) > 0
