@@ -17,10 +17,10 @@ from pydantic import (
     ValidationError,
     model_validator,
 )
-from pydantic_core import InitErrorDetails, PydanticCustomError
+from pydantic_core import InitErrorDetails
 
 from loadshare.case.keys import Path, look_up
-from loadshare.case.quantity import Quantity
+from loadshare.case.quantity import Quantity, refusal
 from loadshare.case.table import fixed
 from loadshare.readable import CONTROL
 from loadshare.settings import ALLOWED
@@ -51,6 +51,16 @@ class Rule:
     allowed: str = ""
     hint: str = ""
 
+    @classmethod
+    def exclusive(cls, key: str, other: str, allowed: str = "") -> Rule:
+        """Return the rule that is broken where a key is given besides another."""
+        return cls(f"cannot be combined with {other}: give one or the other", (key,), allowed)
+
+    @classmethod
+    def required(cls, key: str, other: str, allowed: str = "") -> Rule:
+        """Return the rule that is broken where a key is missing that another one needs."""
+        return cls("is missing", (key,), allowed, f"It is required with {other}.")
+
 
 class Element(BaseModel):
     """Base of the tables of a case file."""
@@ -80,11 +90,7 @@ class Element(BaseModel):
     def _keep_rules(self) -> Self:
         broken = [
             InitErrorDetails(
-                type=PydanticCustomError(
-                    "message",
-                    "{message}. {allowed} {hint}",
-                    {"message": rule.message, "allowed": rule.allowed, "hint": rule.hint},
-                ),
+                type=refusal(rule.message, rule.allowed, rule.hint),
                 loc=rule.path,
                 input=look_up(written(self), rule.path) if rule.path else None,
             )
@@ -179,6 +185,11 @@ def elements_in(annotation: Any) -> Iterator[type[Element]]:
         yield from elements_in(inner)
 
 
+def fields_by_key(model: type[Element]) -> dict[str, str]:
+    """Return the names of an element's fields by their keys in a case file."""
+    return {about.alias or name: name for name, about in model.model_fields.items()}
+
+
 def shaped(allowed: str, *, limits: tuple[str, ...] = ()) -> Discriminator:
     """Return a discriminator that picks a union's member by shape: one problem, not several.
 
@@ -218,13 +229,8 @@ Turns = Annotated[float, Strict(), Field(gt=0, le=ALLOWED.revolutions, allow_inf
 
 def _readable(text: str) -> str:
     if found := CONTROL.search(text):
-        message = f"holds a control character, {found[0]!a}"
-        context = {
-            "message": message,
-            "allowed": "printable characters, line breaks and tabs",
-            "hint": "",
-        }
-        raise PydanticCustomError("message", "{message}. Allowed: {allowed}. {hint}", context)
+        allowed = "printable characters, line breaks and tabs"
+        raise refusal(f"holds a control character, {found[0]!a}", allowed)
     return text
 
 

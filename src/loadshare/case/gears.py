@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, Strict, Tag
-from pydantic_core import PydanticCustomError
 
 from loadshare.case.element import (
     LIST,
@@ -38,6 +37,7 @@ from loadshare.case.quantity import (
     Radius,
     Stiffness,
     Temperature,
+    refusal,
 )
 from loadshare.involute import InvoluteTooth
 from loadshare.settings import ALLOWED
@@ -115,12 +115,8 @@ AGAINST = {"-x": "[-1, 0, 0]", "-y": "[0, -1, 0]", "-z": "[0, 0, -1]"}
 def _along(axis: Any) -> Any:
     """Return an axis as it was given; raise an error for the opposite of a word, such as -x."""
     if isinstance(axis, str) and axis in AGAINST:
-        context = {
-            "message": "is not one of the allowed words",
-            "allowed": AXES,
-            "hint": f"The opposite of {axis[1]} is {AGAINST[axis]}.",
-        }
-        raise PydanticCustomError("message", "{message}. Allowed: {allowed}. {hint}", context)
+        hint = f"The opposite of {axis[1]} is {AGAINST[axis]}."
+        raise refusal("is not one of the allowed words", AXES, hint)
     return axis
 
 
@@ -346,10 +342,10 @@ class Gear(Element):
         if radii and self.type != "face":
             yield Rule("is for face gears only", (radii[0],), hint="Give base_radius.")
         elif radii and self.base_radius is not None:
-            yield Rule("cannot be combined with base_radius: give one or the other", (radii[0],))
+            yield Rule.exclusive(radii[0], "base_radius")
         elif len(radii) == 1:
             missing = "outer_radius" if radii == ["inner_radius"] else "inner_radius"
-            yield Rule("is missing", (missing,), hint=f"It is required with {radii[0]}.")
+            yield Rule.required(missing, radii[0])
         elif not radii and self.base_radius is None and self.module is None:
             other = "inner_radius and outer_radius" if self.type == "face" else "module and teeth"
             hint = f"Or give {other}."
@@ -381,7 +377,7 @@ class Gear(Element):
         elif isinstance(self.ovalisation, str):
             needed = {"rim": self.rim or self.outside_diameter, "face_width": self.face_width}
             for key in (key for key, value in needed.items() if value is None):
-                yield Rule("is missing", (key,), LENGTH.allowed, "It is required with ovalisation.")
+                yield Rule.required(key, "ovalisation", LENGTH.allowed)
 
     def _axis_rules(self) -> Iterator[Rule]:
         if not isinstance(self.axis, str) and not any(self.axis):
@@ -401,8 +397,7 @@ class Gear(Element):
             return
         for missing in ("module", "teeth"):
             if getattr(self, missing) is None:
-                with_it = self.given("module", *OF_TEETH)[0]
-                yield Rule("is missing", (missing,), hint=f"It is required with {with_it}.")
+                yield Rule.required(missing, self.given("module", *OF_TEETH)[0])
         if self.helix_angle is not None and abs(self.helix_angle.si) > STEEPEST_HELIX:
             yield Rule("is steeper than 60 deg", ("helix_angle",), ANGLE.allowed)
             return
@@ -410,7 +405,7 @@ class Gear(Element):
             if getattr(self, key) is not None and self.type != kind:
                 yield Rule(f"is for {kind} gears only", (key,))
         if self.web is not None and self.rim is None:
-            yield Rule("is missing", ("rim",), LENGTH.allowed, "It is required with web.")
+            yield Rule.required("rim", "web", LENGTH.allowed)
         tooth = self.tooth
         if tooth is None:
             return

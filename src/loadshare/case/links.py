@@ -84,14 +84,14 @@ class Shaft(Element):
         if self.stiffness is not None:
             for key in ("diameter", "length", "bore", "shear_modulus"):
                 if key in self.model_fields_set:
-                    yield Rule("cannot be combined with stiffness: give one or the other", (key,))
+                    yield Rule.exclusive(key, "stiffness")
             return
         if not sizes:
             hint = "Or give diameter and length."
             yield Rule("is missing", ("stiffness",), TORSION.allowed, hint)
             return
         for key in {"diameter", "length"} - set(sizes):
-            yield Rule("is missing", (key,), LENGTH.allowed, f"It is required with {sizes[0]}.")
+            yield Rule.required(key, sizes[0], LENGTH.allowed)
         if self.diameter is None or self.length is None:
             return
         outer, inner = values(self.diameter), values(self.bore)
@@ -284,7 +284,7 @@ class RollingElements(Element):
             return
         needed, idle = ("diameter", "length") if kinds == ["balls"] else ("length", "diameter")
         if getattr(self, needed) is None:
-            yield Rule("is missing", (needed,), LENGTH.allowed, f"It is required with {kinds[0]}.")
+            yield Rule.required(needed, kinds[0], LENGTH.allowed)
         if getattr(self, idle) is not None:
             yield Rule(f"does not apply to {kinds[0]}", (idle,))
 
@@ -332,7 +332,7 @@ class Bearing(Element):
         if not given:
             yield Rule("is missing", ("stiffness",), f"one of {', '.join(BEARING_LAWS)}")
         elif len(given) > 1:
-            yield Rule(f"cannot be combined with {given[0]}: give one or the other", (given[1],))
+            yield Rule.exclusive(given[1], given[0])
 
     @property
     def wall(self) -> tuple[float, float]:

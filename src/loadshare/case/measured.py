@@ -47,9 +47,6 @@ class Measurement(Element):
         if not given and not self.torque:
             yield Rule("contains no measured value", allowed=", ".join(("torque", *COEFFICIENTS)))
         if self.torque and self.torque_uncertainty is None:
-            yield Rule(
-                "is missing", ("torque_uncertainty",), TORQUE.allowed, "It is required with torque."
-            )
+            yield Rule.required("torque_uncertainty", "torque", TORQUE.allowed)
         if given and self.uncertainty is None:
-            hint = f"It is required with {given[0]}."
-            yield Rule("is missing", ("uncertainty",), "a number above 0", hint)
+            yield Rule.required("uncertainty", given[0], "a number above 0")

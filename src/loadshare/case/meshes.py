@@ -221,7 +221,7 @@ class Mesh(Element):
             hint = f"Drop {' or '.join(laws)}; an inherited one with `remove`."
             yield Rule(f"has {len(laws)} deformation laws: {', '.join(laws)}", hint=hint)
         if self.gap is not None and self.power_law is not None and any(values(self.power_law.a)):
-            yield Rule("cannot be combined with law.a: give one or the other", ("gap",))
+            yield Rule.exclusive("gap", "law.a")
         if self.gap is not None and (self.law_file or self.geometry):
             source = "geometry" if self.geometry else "law_file"
             hint = "Leave it out; errors of the gears also open the mesh."
@@ -231,9 +231,7 @@ class Mesh(Element):
         if self.rated_torque is not None and not self.law_is_of_contact:
             yield Rule('applies only to law = "ltca"', ("rated_torque",))
         if self.backlash is not None and self.normal_backlash is not None:
-            yield Rule(
-                "cannot be combined with backlash: give one or the other", ("normal_backlash",)
-            )
+            yield Rule.exclusive("normal_backlash", "backlash")
         if self.helix_angle is not None and abs(self.helix_angle.si) >= math.pi / 2:
             yield Rule("is 90 deg or more", ("helix_angle",), ANGLE.allowed)
 

@@ -97,11 +97,9 @@ class Operating(Element):
         """Yield the broken rules on torque, power, speed, input and output."""
         allowed = "torque, or power and speed"
         if self.torque is not None and self.power is not None:
-            yield Rule("cannot be combined with torque: give one or the other", ("power",), allowed)
+            yield Rule.exclusive("power", "torque", allowed)
         elif self.power is not None and self.speed is None:
-            yield Rule(
-                "is missing", ("speed",), ANGULAR_SPEED.allowed, "It is required with power."
-            )
+            yield Rule.required("speed", "power", ANGULAR_SPEED.allowed)
         elif self.torque is None and self.power is None:
             yield Rule("has no load", allowed=allowed)
         for key in ("torque", "power") if self.cycle == "common" else ():

@@ -213,8 +213,7 @@ class Dimension:
     def _problem(
         self, message: str, *, hint: str = "", number: str | None = None
     ) -> PydanticCustomError:
-        context = {"message": message, "allowed": self._allowed(number), "hint": hint}
-        return PydanticCustomError("message", "{message}. Allowed: {allowed}. {hint}", context)
+        return refusal(message, self._allowed(number), hint)
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -234,6 +233,13 @@ class Dimension:
             "pattern": f"^({'|'.join((*self.words, number))})$",
             "examples": [*self.words, self.example],
         }
+
+
+def refusal(message: str, allowed: str = "", hint: str = "") -> PydanticCustomError:
+    """Return an error for pydantic to raise, from which `translate` takes the words."""
+    text = "{message}. Allowed: {allowed}. {hint}" if allowed else "{message}. {hint}"
+    context = {"message": message, "allowed": allowed, "hint": hint}
+    return PydanticCustomError("message", text, context)
 
 
 _GROUPED = re.compile(
