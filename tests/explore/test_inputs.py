@@ -34,6 +34,11 @@ def test_sliders_hold_their_value_and_have_round_steps(name):
         assert one.about
 
 
+def test_a_gear_named_like_a_key_is_described_as_a_gear():
+    inputs = PageInputs(shipped("planetary/four_planets")).every
+    assert inputs["gears.carrier.centre[0]"].about == inputs["gears.sun.centre[0]"].about
+
+
 def test_round_steps():
     assert [_step(w) for w in (1.0, 3.0, 7.0, 17.0)] == [0.001, 0.002, 0.005, 0.01]
 

@@ -1,4 +1,4 @@
-"""Which keys of a case take whole numbers, and the SI units of the others."""
+"""Which keys of a case take whole numbers, and the dimensions of the others."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, get_args, get_origin
 
 from loadshare.case.content import Content
-from loadshare.case.element import Element
+from loadshare.case.described import kinds_at
 from loadshare.case.keys import Path
 from loadshare.case.quantity import Dimension
 
@@ -21,44 +21,19 @@ def takes_count(path: Path) -> bool:
     path : tuple of str or int
         The key; it need not be in a case.
     """
-    return any(map(_is_whole, _kinds(path)))
+    return any(map(_is_whole, kinds_at(Content, path)))
 
 
 @cache
-def unit_of(path: Path) -> str:
-    """Return the SI unit of a key's value; empty for a bare number.
+def dimension_of(path: Path) -> Dimension | None:
+    """Return the dimension of a key's value; None for a bare number.
 
     Parameters
     ----------
     path : tuple of str or int
         The key; it need not be in a case.
     """
-    return next((d.unit for kind in _kinds(path) for d in _dimensions(kind)), "")
-
-
-def _kinds(path: Path) -> list[Any]:
-    """Return the annotations of the value at a key."""
-    kinds: list[Any] = [Content]
-    for step in path:
-        kinds = [below for kind in kinds for below in _below(kind, step)]
-    return kinds
-
-
-def _below(kind: Any, step: str | int) -> Iterator[Any]:
-    """Yield the annotations of what such a value holds at a key or list index."""
-    if isinstance(kind, type) and issubclass(kind, Element):
-        fields = {about.alias or name: about for name, about in kind.model_fields.items()}
-        if step in fields:
-            yield fields[str(step)].annotation
-            yield from fields[str(step)].metadata
-    elif get_origin(kind) is dict:
-        yield get_args(kind)[1]
-    elif get_origin(kind) is tuple:
-        if isinstance(step, int):
-            yield get_args(kind)[0]
-    else:
-        for inner in get_args(kind):
-            yield from _below(inner, step)
+    return next((d for kind in kinds_at(Content, path) for d in _dimensions(kind)), None)
 
 
 def _dimensions(kind: Any) -> Iterator[Dimension]:

@@ -12,14 +12,64 @@ import textwrap
 from collections.abc import Iterator
 from functools import cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, get_args, get_origin
 
-from loadshare.case.element import Element, elements_in
+from loadshare.case.element import Element, elements_in, fields_by_key
+from loadshare.case.keys import Path
 
 
 def description(model: type[Element], field: str) -> str:
     """Return the description of a field of an element; empty where there is none."""
     return next((texts[field] for m in model.__mro__ if field in (texts := _texts(m))), "")
+
+
+def about(model: type[Element], path: Path) -> str:
+    """Return the first line that describes a key, or else the nearest table above it."""
+    for *above, step in (path[:length] for length in range(len(path), 0, -1)):
+        for table in tables_at(model, tuple(above)):
+            field = fields_by_key(table).get(str(step))
+            text = description(table, field) if field else ""
+            if text:
+                return text.splitlines()[0]
+    return ""
+
+
+def kinds_at(model: type[Element], path: Path) -> list[Any]:
+    """Return the annotations of what an element may hold at a key."""
+    kinds: list[Any] = [model]
+    for step in path:
+        kinds = [below for kind in kinds for below in _below(kind, step)]
+    return kinds
+
+
+def tables_at(model: type[Element], path: Path) -> list[type[Element]]:
+    """Return the elements that an element may hold at a key."""
+    return [table for kind in kinds_at(model, path) for table in _tables(kind)]
+
+
+def _below(kind: Any, step: str | int) -> Iterator[Any]:
+    """Yield the annotations of what such a value holds at a key or list index."""
+    if get_origin(kind) is dict:
+        yield get_args(kind)[1]
+    elif get_origin(kind) is tuple:
+        if isinstance(step, int):
+            yield get_args(kind)[0]
+    elif isinstance(kind, type) and issubclass(kind, Element):
+        if (field := fields_by_key(kind).get(str(step))) is not None:
+            yield kind.model_fields[field].annotation
+            yield from kind.model_fields[field].metadata
+    else:
+        for inner in get_args(kind):
+            yield from _below(inner, step)
+
+
+def _tables(kind: Any) -> Iterator[type[Element]]:
+    """Yield the elements that an annotation allows, outside lists and tables."""
+    if isinstance(kind, type) and issubclass(kind, Element):
+        yield kind
+    elif get_origin(kind) not in (dict, tuple):
+        for inner in get_args(kind):
+            yield from _tables(inner)
 
 
 def schema_of(model: type[Element], **settings: Any) -> dict[str, Any]:

@@ -6,11 +6,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
-from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from loadshare.case.described import description
-from loadshare.case.element import MARK, Element, Rule, elements_in
+from loadshare.case.described import about, tables_at
+from loadshare.case.element import MARK, Element, Rule, elements_in, fields_by_key
 from loadshare.case.keys import Path
 from loadshare.case.origin import Origin
 from loadshare.case.words import choices, did_you_mean
@@ -99,7 +98,7 @@ def hint_at(key: object, model: type[Element] | None, known: Iterable[str]) -> s
     places = [
         f"[{section}]" if section in SINGLE else f"[{section}.NAME]"
         for section, found in own.items()
-        if name in _by_key(found)
+        if name in fields_by_key(found)
     ]
     if not places:
         return ""
@@ -176,7 +175,7 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
     if kind == "message":
         return Rule(context["message"], path, context["allowed"], context["hint"])
     if kind == "extra_forbidden":
-        keys = list(map(str, _fields(model, path[:-1])))
+        keys = _keys(model, path[:-1])
         own = model if len(path) == 1 else None
         hint = hint_at(path[-1], own, keys) if own else did_you_mean(path[-1], keys)
         if not hint and isinstance(error["input"], Mapping):
@@ -185,10 +184,7 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
     if kind == "missing" and isinstance(path[-1], int):
         return Rule(f"has {counted(path[-1])}, but more are needed", path[:-1])
     if kind == "missing":
-        holder = _table(model, path[:-1])
-        names = {about.alias or n: n for n, about in holder.model_fields.items()} if holder else {}
-        text = description(holder, names[str(path[-1])]) if holder and path[-1] in names else ""
-        return Rule("is missing", path, hint=text.split("\n")[0])
+        return Rule("is missing", path, hint=about(model, path))
     if kind == "literal_error":
         words = context["expected"].replace(" or ", ", ").replace("'", "").split(", ")
         hint = did_you_mean(error["input"], words)
@@ -200,26 +196,12 @@ def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
         hint = f"""Write it in quotes; in a shell, in single and double ones, as '"{given}"'."""
         return Rule("is a number, but a text is needed", path, f'a text such as "{given}"', hint)
     wanted = WANTED.get(kind, "another value").format_map(context)
-    inner = _fields(model, path) if wanted == "a table" else {}
+    inner = _keys(model, path) if wanted == "a table" else []
     if inner:
-        wanted += f" of {choices(map(str, inner))}"
+        wanted += f" of {choices(inner)}"
     return Rule("is not valid here", path, wanted)
 
 
-def _fields(model: type[Element], path: Path) -> dict[str | int, FieldInfo]:
-    """Return the fields, by key, of the table at a path; empty if there is no such table."""
-    table = _table(model, path)
-    return _by_key(table) if table else {}
-
-
-def _table(model: type[Element], path: Path) -> type[Element] | None:
-    """Return the type of the table at a path; None if there is no such table."""
-    found: type[Element] | None = model
-    for step in path:
-        fields = _by_key(found) if found else {}
-        found = next(elements_in(fields[step].annotation), None) if step in fields else None
-    return found
-
-
-def _by_key(model: type[Element]) -> dict[str | int, FieldInfo]:
-    return {about.alias or name: about for name, about in model.model_fields.items()}
+def _keys(model: type[Element], path: Path) -> list[str]:
+    """Return the keys of the table at a path; none if there is no such table."""
+    return [key for table in tables_at(model, path)[:1] for key in fields_by_key(table)]

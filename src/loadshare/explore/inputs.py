@@ -9,16 +9,15 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 
 from loadshare.case import Case
 from loadshare.case.content import Content
-from loadshare.case.described import description
-from loadshare.case.element import Element, elements_in
+from loadshare.case.counts import dimension_of
+from loadshare.case.described import about
 from loadshare.case.keys import Path, dotted, look_up, parse
-from loadshare.case.quantity import Dimension
 from loadshare.errors import CaseError, Problem
 from loadshare.settings import EXPLORE
 from loadshare.study.parameter import Value, leaves, matches, read_value, split_outside
@@ -226,9 +225,8 @@ class PageInputs:
         value = read_value(given)
         if value is None or (isinstance(given, str) and not value.unit):
             return None
-        about, dimension = _described(path)
         whole, turning = isinstance(given, int), value.unit != "" and path[-1] in ANGLES
-        low, high = _reach(path, value, dimension, turning)
+        low, high = _reach(path, value, turning)
         return PageInput(
             key=dotted(path),
             text=given if isinstance(given, str | int | float) else str(given),
@@ -239,7 +237,7 @@ class PageInputs:
             step=1.0 if whole else _step(high - low),
             whole=whole,
             turning=turning,
-            about=about,
+            about=about(Content, path),
             assumed=self.case.is_assumed(dotted(path)),
             geometry=whole or (path[0] == "gears" and value.si_unit in FITTING),
         )
@@ -262,47 +260,9 @@ def _polar(given: list[Any], plane: Vector) -> dict[str, str]:
     return {"amount": f"{amount!r} {x.unit}", "direction": f"{direction!r} deg"}
 
 
-def _described(path: Path) -> tuple[str, Dimension | None]:
-    """Return the description of an input, and its dimension."""
-    model: Any = Content
-    words, dimension = "", None
-    for step in path:
-        fields = {
-            about.alias or name: (name, about)
-            for name, about in getattr(model, "model_fields", {}).items()
-        }
-        if step in fields:
-            name, field = fields[str(step)]
-            lines = description(model, name).splitlines()
-            words = lines[0] if lines else words
-            # Where a field may hold several elements, the one that has the next step.
-            models = list(elements_in(field.annotation))
-            following = path[path.index(step) + 1 :]
-            model = _knowing(models, following)
-            parts = [*field.metadata, *_parts(field.annotation)]
-            dimension = next((p for p in parts if isinstance(p, Dimension)), dimension)
-    return words, dimension
-
-
-def _knowing(models: list[type[Element]], steps: Path) -> Any:
-    for model in models:
-        names = {about.alias or name for name, about in model.model_fields.items()}
-        if names & {*map(str, steps)}:
-            return model
-    return models[0] if models else None
-
-
-def _parts(annotation: Any) -> Iterator[Any]:
-    for inner in get_args(annotation):
-        yield inner
-        yield from _parts(inner)
-
-
-def _reach(
-    path: Path, value: Value, dimension: Dimension | None, turning: bool
-) -> tuple[float, float]:
+def _reach(path: Path, value: Value, turning: bool) -> tuple[float, float]:
     """Return the ends of a slider, around the input and within its bounds."""
-    number, factor = value.number, value.factor
+    number, factor, dimension = value.number, value.factor, dimension_of(path)
     if turning:
         turn = round(2.0 * math.pi / factor, 6)
         low = -0.5 * turn if number <= 0.5 * turn else 0.0

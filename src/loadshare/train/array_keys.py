@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from loadshare import case as spec
 from loadshare.case.checks.meshing import turning_is_given
-from loadshare.case.counts import unit_of
+from loadshare.case.counts import dimension_of
 from loadshare.train.columns import Column
 
 _OF_SPLINES = (
@@ -28,7 +28,10 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
     column : Column
         Its loads may press other flanks than those of the case: see `pressed_flanks`.
     """
-    return unit_of(column.path) if _becomes_array(case, column) else None
+    if not _becomes_array(case, column):
+        return None
+    dimension = dimension_of(column.path)
+    return dimension.unit if dimension else ""
 
 
 def _becomes_array(case: spec.Case, column: Column) -> bool:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from loadshare import case as spec
 from loadshare.array_types import Array, Flags, Numbers
-from loadshare.case.element import Element
+from loadshare.case.element import Element, fields_by_key
 from loadshare.case.keys import Path, dotted
 from loadshare.case.recent import Recent
 from loadshare.errors import CaseError
@@ -204,7 +204,7 @@ def _with(part: Any, values: Mapping[Path, Any]) -> Any:
     for path, array in values.items():
         below.setdefault(path[0], {})[path[1:]] = array
     if isinstance(part, Element):
-        named = {field.alias or name: name for name, field in type(part).model_fields.items()}
+        named = fields_by_key(type(part))
         names = {named[str(step)]: inner for step, inner in below.items()}
         changes = {name: _with(getattr(part, name), inner) for name, inner in names.items()}
         # The own `model_copy` of a case refuses changes, which nobody would check.
