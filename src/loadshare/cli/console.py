@@ -9,21 +9,15 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from loadshare.cli.files import is_stdout_taken
 from loadshare.cli.waiting import echo, erase_line, is_hushed
+from loadshare.progress import Progress
 from loadshare.readable import readable
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-
-class Tick(Protocol):
-    """Callback of progress, with the number done and the total."""
-
-    def __call__(self, done: int, total: int) -> None:
-        """Report that `done` of `total` are finished."""
 
 
 @dataclass
@@ -100,7 +94,7 @@ def print_note(note: str) -> None:
 
 
 @contextmanager
-def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[Tick]:
+def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[Progress]:
     """Count what is done, and show on a terminal how much that is and how long the rest will take.
 
     Parameters

@@ -18,7 +18,8 @@ from loadshare.job.engines import available_engine
 from loadshare.job.hot import HotAnswers
 from loadshare.job.ladder import AUTO, climb
 from loadshare.job.machine import Machine
-from loadshare.job.positions import Progress, result_of, share, wanted_of
+from loadshare.job.positions import result_of, share, wanted_of
+from loadshare.progress import Progress
 from loadshare.results.figures import Figures
 from loadshare.results.result import Result
 from loadshare.settings import CERTIFY, JOB

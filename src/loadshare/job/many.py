@@ -27,9 +27,10 @@ from loadshare.job.allocation import keep_freed_memory
 from loadshare.job.block import Block, solve_block
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
-from loadshare.job.positions import Progress, wanted_of
+from loadshare.job.positions import wanted_of
 from loadshare.job.table import USUAL, AnswerTable, checked
 from loadshare.one_thread import one_thread
+from loadshare.progress import Progress
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.columns import SampleTable, columns_of
 from loadshare.train.samples import Samples, groups_of, samples_of, unusable

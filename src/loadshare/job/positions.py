@@ -9,7 +9,6 @@ from functools import partial
 from numbers import Integral
 from pathlib import Path
 from threading import Lock
-from typing import Protocol
 
 from loadshare._version import __version__
 from loadshare.arguments import one_of
@@ -25,6 +24,7 @@ from loadshare.job.hot import HOT, SEARCHED, left_out
 from loadshare.job.ladder import AUTO, climb_all
 from loadshare.job.machine import Machine
 from loadshare.later import known
+from loadshare.progress import Progress
 from loadshare.results.derive import positions_of, result_from
 from loadshare.results.result import Result, Stamp
 from loadshare.scene.units import units_of
@@ -35,13 +35,6 @@ from loadshare.train.alike import train_alike
 from loadshare.train.build import train_of, with_laws
 from loadshare.train.geometry import Geometry, geometry_of
 from loadshare.train.shape import shape_of
-
-
-class Progress(Protocol):
-    """Called after every position."""
-
-    def __call__(self, done: int, total: int) -> None:
-        """Report that `done` of `total` positions are finished."""
 
 
 def solve(

@@ -24,7 +24,7 @@ from loadshare.train.train import Train
 if TYPE_CHECKING:
     import xarray as xr
 
-    from loadshare.job.positions import Progress
+    from loadshare.progress import Progress
 
 
 EVERY = ("sample", "position")

@@ -13,10 +13,11 @@ from loadshare.case import Case
 from loadshare.case.keys import dotted
 from loadshare.case.measured import COEFFICIENTS, Measurement
 from loadshare.errors import CaseError
-from loadshare.job import Progress, solve
+from loadshare.job import solve
 from loadshare.libraries import pd
 from loadshare.numbers import counted
 from loadshare.pictures import Figure, picture
+from loadshare.progress import Progress
 from loadshare.results import Position, Result
 from loadshare.study.positions import loaded
 from loadshare.table import text_table

@@ -14,11 +14,11 @@ from pathlib import Path as FilePath
 
 from loadshare.case import Case
 from loadshare.errors import CaseError, Problem
-from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
 from loadshare.libraries import pd
 from loadshare.numbers import counted, runs
 from loadshare.pictures import Figure, picture
+from loadshare.progress import Progress
 from loadshare.study.events import Event, events_of, flanks_changed
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import ChangeSearch

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
 from typing import Any
@@ -18,6 +18,7 @@ from loadshare.errors import CaseError, Refused
 from loadshare.libraries import pd, special
 from loadshare.numbers import counted
 from loadshare.pictures import Figure, picture
+from loadshare.progress import Progress
 from loadshare.settings import FIT
 from loadshare.study.compare import Comparison, Deviation, computed
 from loadshare.study.least_squares import LeastSquares
@@ -156,7 +157,7 @@ def fit(
     *,
     starts: int = 1,
     seed: int = 0,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> Fit:
     """Fit inputs of a case to measured figures.
 

@@ -19,13 +19,13 @@ from loadshare.case import Case
 from loadshare.case.reader import opened
 from loadshare.equality import Comparable
 from loadshare.errors import CaseError, Refused
-from loadshare.job import Progress
 from loadshare.job.answer import Answer
 from loadshare.job.positions import result_of
 from loadshare.libraries import pd, xr
 from loadshare.numbers import counted
 from loadshare.one_thread import one_thread
 from loadshare.pictures import Figure, picture
+from loadshare.progress import Progress
 from loadshare.results import Result
 from loadshare.results.dataset import unchanging
 from loadshare.settings import CERTIFY, MARCH

@@ -13,7 +13,7 @@ from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
 
 if TYPE_CHECKING:
-    from loadshare.job import Progress
+    from loadshare.progress import Progress
     from loadshare.study.compare import Comparison
     from loadshare.study.critical import Critical
     from loadshare.study.fit import Fit

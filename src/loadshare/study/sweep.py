@@ -19,13 +19,13 @@ from loadshare.array_types import Array
 from loadshare.case import Case
 from loadshare.equality import Comparable
 from loadshare.errors import CaseError, Problem
-from loadshare.job import Progress
 from loadshare.job.answered import SampleAnswers, answer_samples
 from loadshare.later import known
 from loadshare.libraries import pd, xr
 from loadshare.numbers import counted, omega
 from loadshare.output import csv_of, netcdf_of, write_whole
 from loadshare.pictures import Figure, picture
+from loadshare.progress import Progress
 from loadshare.results import Result
 from loadshare.results.dataset import unchanging, with_units
 from loadshare.results.share import NO_STAGES

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 from loadshare.case import Case, load_case
 from loadshare.case.reader import load_draft
 from loadshare.errors import CaseError, LoadshareError, Refused
-from loadshare.job import Progress, solve
+from loadshare.job import solve
 from loadshare.numbers import NONE, omega, small
+from loadshare.progress import Progress
 from loadshare.report import records, tables
 from loadshare.report.figure import Figure
 from loadshare.report.figures.train import train as draw

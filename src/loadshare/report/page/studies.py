@@ -22,7 +22,7 @@ from loadshare.table import Table
 from loadshare.view import Viewed
 
 if TYPE_CHECKING:
-    from loadshare.job import Progress
+    from loadshare.progress import Progress
 
 LONG = "tolerance"
 """Kind of study that is run for a page only when it is asked for by name."""

@@ -13,8 +13,8 @@ from loadshare.case import Case
 from loadshare.case.keys import parse
 from loadshare.case.reader import opened
 from loadshare.errors import CaseError
-from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
+from loadshare.progress import Progress
 from loadshare.results.share import shares
 from loadshare.settings import SENSITIVITY
 from loadshare.study.positions import each_certified, loaded

@@ -17,10 +17,10 @@ from loadshare.case import Case, Study
 from loadshare.case.keys import dotted
 from loadshare.case.reader import opened
 from loadshare.errors import CaseError, Problem
-from loadshare.job import Progress
 from loadshare.job.engines import ENGINES, chosen
 from loadshare.job.positions import wanted_positions
 from loadshare.lock import alone_in
+from loadshare.progress import Progress
 from loadshare.settings import CERTIFY, JOB, TOLERANCE
 from loadshare.study.positions import loaded
 from loadshare.study.tolerance.figures import KIND_OVER, KINDS, SYSTEM

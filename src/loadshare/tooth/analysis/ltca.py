@@ -5,7 +5,7 @@ Source: formulation, section 9.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from math import ceil
@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 from loadshare.errors import Refused
+from loadshare.progress import Progress
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import LineLoad, Ltca, Sampled
 from loadshare.tooth.analysis.sampling import at_each, cells
@@ -110,7 +111,7 @@ def ltca(
     loads: Sequence[float] = LOADS,
     compliance: PairCompliance | Model = "finite elements",
     points: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
     *,
     means: bool = False,
 ) -> Ltca:

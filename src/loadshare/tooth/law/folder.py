@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loadshare._version import __version__
+from loadshare.progress import Progress
 from loadshare.settings import TEETH
 from loadshare.tooth.law.file import MeshLaw, law_of, law_text, parsed_law
 from loadshare.user_cache import digest_of, read_entry, write_entry
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from loadshare.tooth.analysis.result import Ltca
     from loadshare.tooth.pair.file import PairFile
 
-Tick = Callable[[int, int], None]
-
 
 def known_law(pair: PairFile) -> MeshLaw | None:
     """Return the law that the cache holds for a pair; None if it holds none."""
@@ -26,7 +24,7 @@ def known_law(pair: PairFile) -> MeshLaw | None:
     return None if text is None else parsed_law(text)
 
 
-def computed_law(pair: PairFile, progress: Tick | None = None) -> MeshLaw:
+def computed_law(pair: PairFile, progress: Progress | None = None) -> MeshLaw:
     """Analyse a pair, and cache and return its law.
 
     Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from contextlib import suppress
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -20,6 +20,7 @@ from loadshare.errors import CaseError, Problem
 from loadshare.input import Unreadable, read_file, real
 from loadshare.involute import distance_without_backlash
 from loadshare.numbers import counted
+from loadshare.progress import Progress
 from loadshare.settings import ALLOWED
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from loadshare.tooth.law.file import MeshLaw
     from loadshare.tooth.pair.file import PairFile
 
-Tick = Callable[[int, int], None]
 Problems = dict[Problem, None]
 """Problems, as keys: one that several meshes share is reported once."""
 
@@ -48,7 +48,7 @@ def affects_laws(path: KeyPath) -> bool:
     return fnmatchcase("gears", section) or path == ("operating", "positions")
 
 
-def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = ()) -> Case:
+def resolve(case: Case, progress: Progress | None = None, leave: Collection[str] = ()) -> Case:
     """Replace `geometry`, `law_file` and keywords for `law` of the meshes of a case by numbers.
 
     Laws of pairs are computed at the positions of the case, once for each pair file, and kept on
@@ -294,7 +294,7 @@ def _distance_hint(pair: tuple[Gear, Gear], distance: float) -> str:
     return ""
 
 
-def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLaw]:
+def _laws(pairs: dict[str, PairFile], progress: Progress | None) -> dict[str, MeshLaw]:
     """Return laws by the hash of their pair: from the cache or, if not there, computed."""
     from loadshare.tooth.law.folder import computed_law, known_law
 
@@ -307,7 +307,7 @@ def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLa
     return laws
 
 
-def _from(progress: Tick | None, before: int, total: int) -> Tick | None:
+def _from(progress: Progress | None, before: int, total: int) -> Progress | None:
     """Return a callback that counts the progress of one pair as that of all."""
     if progress is None:
         return None

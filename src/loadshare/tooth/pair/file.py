@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -23,6 +23,7 @@ from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.input import stem
 from loadshare.one_thread import one_thread
+from loadshare.progress import Progress
 from loadshare.settings import CERTIFY
 from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
 from loadshare.tooth.analysis.result import Ltca
@@ -45,8 +46,6 @@ from loadshare.tooth.pair.model import (
 )
 from loadshare.tooth.problems import refuse
 from loadshare.tooth.unloaded.positions import touching
-
-Tick = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +134,7 @@ class PairFile:
         return replace(self, content=content.model_copy(update=update))
 
     @one_thread()
-    def analyse(self, progress: Tick | None = None) -> Ltca:
+    def analyse(self, progress: Progress | None = None) -> Ltca:
         """Analyse the loaded contact at all positions.
 
         Parameters
