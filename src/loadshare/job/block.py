@@ -42,7 +42,7 @@ class Block:
     certified : ndarray of bool, shape (S, positions)
     residual : ndarray, shape (S, positions)
         Largest scaled residual; NaN without an answer.
-    bound : ndarray, shape (S, positions)
+    torque_bound : ndarray, shape (S, positions)
         Largest distance of a torque from the exact one, over the largest torque; NaN likewise.
     determined : ndarray of bool, shape (S, positions)
         Whether the equilibrium determines every displacement.
@@ -63,7 +63,7 @@ class Block:
     equilibria: tuple[Equilibria, ...]
     certified: Flags
     residual: Array
-    bound: Array
+    torque_bound: Array
     determined: Flags
     displaced: Array
     convex: Flags
@@ -96,7 +96,7 @@ class Block:
 NONE = "the sample has no such position"
 UNANSWERED = {
     **dict.fromkeys(("certified", "determined", "convex"), False),
-    **dict.fromkeys(("residual", "bound", "displaced", "arc_curvature"), np.nan),
+    **dict.fromkeys(("residual", "torque_bound", "displaced", "arc_curvature"), np.nan),
     "rung": np.int8(0),
 }
 """Values in the arrays of a block where there is no answer."""
@@ -164,7 +164,7 @@ class _Open:
             (block.determined, found.determined),
             (block.rung, np.where(found.searched, RUNGS.index(SEARCHED), RUNGS.index(HOT))),
             (block.residual, verdicts.worst),
-            (block.bound, verdicts.bounds.relative),
+            (block.torque_bound, verdicts.bounds.relative),
             (block.displaced, verdicts.displaced),
             (self.deflection, verdicts.deflection),
             (self.load, verdicts.load),
@@ -180,13 +180,13 @@ class _Open:
         self.equilibria[p].put(row, found.equilibrium)
         block.certified[at], block.rung[at] = True, RUNGS.index(found.rung)
         block.determined[at], block.displaced[at] = not found.equilibrium.undetermined, np.nan
-        block.residual[at], block.bound[at] = certificate.worst, certificate.proved
+        block.residual[at], block.torque_bound[at] = certificate.worst, certificate.proved
         self.deflection[at], self.load[at] = certificate.deflection, certificate.load
 
     def refuse(self, row: int, p: int, why: str) -> None:
         """Record that a sample has no answer at a position."""
         block = self.block
-        for name in ("certified", "rung", "residual", "bound", "displaced"):
+        for name in ("certified", "rung", "residual", "torque_bound", "displaced"):
             getattr(block, name)[row, p] = UNANSWERED[name]
         self.equilibria[p].forget(row)
         position = block.positions[p]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import starmap
 from typing import TYPE_CHECKING, Any
@@ -55,34 +54,19 @@ def checked(names: Any) -> tuple[str, ...]:
     return every
 
 
-@dataclass(frozen=True, slots=True)
-class Each:
-    """A variable of each sample at each position.
-
-    Attributes
-    ----------
-    field : str
-        Field of a block.
-    long_name, units : str
-    """
-
-    field: str
-    long_name: str
-    units: str = "1"
-
-
 EACH = {
-    "residual": Each("residual", "largest scaled residual of the certificate"),
-    "torque_bound": Each(
-        "bound", "largest distance of a torque from the exact one, over the largest torque"
+    "residual": Variable((), "1", "largest scaled residual of the certificate"),
+    "torque_bound": Variable(
+        (), "1", "largest distance of a torque from the exact one, over the largest torque"
     ),
-    "certified": Each("certified", "whether the answer is certified"),
-    "determined": Each("determined", "whether every displacement is determined"),
-    "displaced": Each("displaced", "displacements over the bound of a warning"),
-    "convex": Each("convex", "whether nothing that is not convex carries"),
-    "arc_curvature": Each("arc_curvature", "stiffness that arcs take across them", "N/m"),
-    "rung": Each("rung", "rung (method) that answered"),
+    "certified": Variable((), "1", "whether the answer is certified"),
+    "determined": Variable((), "1", "whether every displacement is determined"),
+    "displaced": Variable((), "1", "displacements over the bound of a warning"),
+    "convex": Variable((), "1", "whether nothing that is not convex carries"),
+    "arc_curvature": Variable((), "N/m", "stiffness that arcs take across them"),
+    "rung": Variable((), "1", "rung (method) that answered"),
 }
+"""Variables of each sample at each position, which a block has as fields."""
 
 
 def _refused(where: tuple[int, int], why: str) -> str:
@@ -144,7 +128,7 @@ class AnswerTable:
         if later and "torque" not in written:
             written.append("torque")
         self.variables = {name: self._empty(np.nan, KEPT[name].dims) for name in written}
-        self.each = {name: self._empty(UNANSWERED[e.field], ()) for name, e in EACH.items()}
+        self.each = {name: self._empty(UNANSWERED[name], ()) for name in EACH}
         self.message: dict[tuple[int, int], str] = {}
 
     def _empty(self, value: Any, dims: tuple[str, ...]) -> np.ndarray:
@@ -164,8 +148,8 @@ class AnswerTable:
         rows = block.rows
         # Samples of one train often follow one another; a slice is written at once.
         place = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] == len(rows) - 1 else rows
-        for name, each in EACH.items():
-            self.each[name][place] = getattr(block, each.field)
+        for name, values in self.each.items():
+            values[place] = getattr(block, name)
         self.message |= block.message
         for p, answers in enumerate(block.equilibria):
             torques = mesh_torques(answers.names.train, answers.flank_force)
@@ -208,18 +192,15 @@ class AnswerTable:
         """Return everything with labels."""
         import xarray as xr
 
-        found = [(name, *KEPT[name].labelled(self._values(name), *EVERY)) for name in self.keep]
-        for name, each in EACH.items():
-            attributes: dict[str, object] = {"units": each.units, "long_name": each.long_name}
-            if name == "rung":
-                # Numbers are named as in the climate and forecast (CF) conventions.
-                attributes["flag_values"] = np.arange(len(RUNGS), dtype=np.int8)
-                attributes["flag_meanings"] = " ".join(r.replace(" ", "_") for r in RUNGS)
-            found.append((name, EVERY, self.each[name], attributes))
+        found = {name: KEPT[name].labelled(self._values(name), *EVERY) for name in self.keep}
+        found |= {name: each.labelled(self.each[name], *EVERY) for name, each in EACH.items()}
         data = {
             name: xr.Variable(dims, values, attributes, fastpath=True)
-            for name, dims, values, attributes in found
+            for name, (dims, values, attributes) in found.items()
         }
+        # Numbers are named as in the climate and forecast (CF) conventions.
+        data["rung"].attrs["flag_values"] = np.arange(len(RUNGS), dtype=np.int8)
+        data["rung"].attrs["flag_meanings"] = " ".join(r.replace(" ", "_") for r in RUNGS)
         used = {dim for variable in data.values() for dim in variable.dims} - {"sample"}
         labels = {dim: tuple(names) for dim, names in self.coords.items() if dim in used}
         count = len(self.coords["sample"])
