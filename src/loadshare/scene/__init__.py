@@ -6,8 +6,7 @@ why the rest is not. A :class:`~loadshare.contact.programme.Programme` is what a
 """
 
 from loadshare.contact.plan import Plan
-from loadshare.contact.programme import Programme
 from loadshare.scene.assemble import assemble
 from loadshare.scene.scene import Scene
 
-__all__ = ["Plan", "Programme", "Scene", "assemble"]
+__all__ = ["Plan", "Scene", "assemble"]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from loadshare.case.place import Vector
+from loadshare.case.place import Vector, dot
 from loadshare.exchange.rexs.model import (
     BEARINGS,
     COUPLINGS,
@@ -21,7 +21,7 @@ from loadshare.exchange.rexs.model import (
     may_turn,
     transmits,
 )
-from loadshare.exchange.rexs.places import Places, ahead, dot
+from loadshare.exchange.rexs.places import Places, ahead
 
 Stage = tuple[Component, Component, Component]
 """A stage and both its gears."""

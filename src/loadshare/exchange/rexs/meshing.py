@@ -6,12 +6,11 @@ import math
 from collections import Counter, deque
 
 from loadshare.case.gears import YOUNG
-from loadshare.case.place import minus
+from loadshare.case.place import dot, minus
 from loadshare.exchange.imported import Data
 from loadshare.exchange.rexs.gearing import Gearing
 from loadshare.exchange.rexs.links import Links
 from loadshare.exchange.rexs.model import Component
-from loadshare.exchange.rexs.places import dot
 from loadshare.exchange.rexs.shafts import material_of
 
 LIKE_STEEL = 0.05

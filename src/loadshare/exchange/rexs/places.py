@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.case.place import Vector, minus
+from loadshare.case.place import Vector, dot, minus
 from loadshare.exchange.rexs.model import GEARS, Component, Model
 
 FIRST = ("1", "1.0", "1.0.0")
@@ -136,11 +136,6 @@ class Places:
             if size > 0.5 * math.hypot(*w) > 0.0:
                 return np.cross(square / size, u), square / size
         raise AssertionError("one of two directions square to each other is square enough to u")
-
-
-def dot(one: Vector, other: Vector) -> float:
-    """Return the scalar product of two vectors."""
-    return sum(a * b for a, b in zip(one, other, strict=True))
 
 
 def ahead(there: Vector, here: Vector, axis: Vector) -> float:
