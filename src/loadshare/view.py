@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from loadshare.equality import Comparable
+from loadshare.numbers import NONE
 from loadshare.table import Table
 
 ROWS = 8
@@ -106,7 +107,7 @@ class Viewed(Comparable):
 
 def figure(value: float | None, form: str = ".4g") -> str:
     """Return a number as text; a dash for None or NaN."""
-    return "–" if value is None or value != value else format(value, form)
+    return NONE if value is None or value != value else format(value, form)
 
 
 def by_name(figures: Any, form: str = ".4f") -> str:

@@ -15,11 +15,12 @@ from benchmarks.critical_paths.draw import random_path
 from benchmarks.critical_paths.judge import Outcome, followed, judged, shown
 from benchmarks.critical_paths.table import text
 from loadshare.case.starter import starter_case
+from loadshare.study.critical import Critical, Unproved
 from loadshare.study.follow.active import switch_names
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import ChangeSearch
 from loadshare.study.follow.zero import first_zero
-from loadshare.study.parameter import read_parameter
+from loadshare.study.parameter import Parameter, read_parameter
 from loadshare.study.positions import certified
 from loadshare.study.sensitivity.branch import Setting
 from loadshare.train import build_train
@@ -472,3 +473,10 @@ def test_a_range_without_events_says_so():
         shipped("fgfbstts/limit_ring"), "rings.4.float", "8.5 um", "9 um", positions=[1]
     )
     assert "events: none" in repr(found)
+
+
+def test_a_single_interval_is_no_intervals():
+    parameter = Parameter("float", ("rings.4.float",), "um")
+    found = Critical(parameter, 0.0, 1.0, (), (Unproved(1, 0.0, 1.0, "of a test"),))
+    assert dict(found._view().facts)["not proved"] == "1 interval"
+    assert found.plot().spec["title"]["subtitle"] == ["1 interval not proved, grey"]

@@ -16,6 +16,7 @@ from loadshare.job.answer import Answer
 from loadshare.job.engines import available_engine
 from loadshare.job.least import least_places, open_ranges
 from loadshare.job.machine import Answers, Machine
+from loadshare.numbers import counted
 from loadshare.settings import JOB
 from loadshare.solver import Record
 from loadshare.solver.position import coordinates_of
@@ -165,7 +166,7 @@ def _record(machine: Machine, found: Answers, row: int) -> Record:
     return Record(
         solver=HOT,
         method="force",
-        kind=f"force method, {redundants} redundant{'' if redundants == 1 else 's'}",
+        kind=f"force method, {counted(redundants, 'redundant')}",
         iterations=(),
         plan=Plan(rows, radials),
         rounds=int(found.turns[row]),

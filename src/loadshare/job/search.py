@@ -19,6 +19,7 @@ from loadshare.job.answer import Answer
 from loadshare.job.ladder import climb_all
 from loadshare.job.machine import Machine
 from loadshare.job.positions import prepared, wanted_positions
+from loadshare.numbers import counted
 from loadshare.scene.loading import loading_of
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
@@ -62,11 +63,7 @@ class Search(Viewed):
     @property
     def text(self) -> str:
         """What was done and found, as a sentence."""
-        found = (
-            "no other answer"
-            if not self.others
-            else f"{len(self.others)} other answer{'s' if len(self.others) > 1 else ''}"
-        )
+        found = counted(len(self.others), "other answer") if self.others else "no other answer"
         return (
             f"Search: {found} from {self.starts} of {JOB.starts} random starts that were "
             f"certified; the path from generous clearance {self.way}."

@@ -29,7 +29,7 @@ from loadshare.results.view import position_view, result_view
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
-from loadshare.view import View, Viewed
+from loadshare.view import View, Viewed, by_name
 
 if TYPE_CHECKING:
     from loadshare.case import Case
@@ -287,10 +287,9 @@ class Result(Comparable):
     def __repr__(self) -> str:
         """Show what was solved, how good the answer is, and how load is shared."""
         done, requested = len(self.positions), len(self.stamp.positions)
-        omega = ", ".join(f"{s} {'–' if v is None else f'{v:.4f}'}" for s, v in self.omega.items())
         return (
             f"Result of {self.stamp.case}: {done} of {requested} positions certified, "
-            f"worst residual {self.certificate.worst:.1e}\nlargest Ω: {omega}"
+            f"worst residual {self.certificate.worst:.1e}\nlargest Ω: {by_name(self.omega)}"
         )
 
     @property

@@ -192,7 +192,7 @@ class Sweep(Viewed):
         facts = []
         for p, values in zip(self.parameters, self.grids, strict=True):
             ends = f"{values[0]:g} to {values[-1]:g} {p.unit}".rstrip()
-            facts.append((p.name, f"{ends}, {len(values)} values"))
+            facts.append((p.name, f"{ends}, {counted(len(values))}"))
         counts = Counter(p.status for p in self.points)
         facts.append(("points", ", ".join(f"{count} {status}" for status, count in counts.items())))
         facts.append(("mind", " ".join(self._left_open())))

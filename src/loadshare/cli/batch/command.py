@@ -29,6 +29,7 @@ from loadshare.cli.stop import Stop
 from loadshare.cli.waiting import echo, is_hushed
 from loadshare.errors import LoadshareError
 from loadshare.json_text import json_text
+from loadshare.numbers import counted
 from loadshare.output import STANDARD, clear, make_folder, write_whole
 
 
@@ -169,7 +170,7 @@ def counts(outcomes: Sequence[Outcome]) -> str:
     """Return the number of cases with each outcome, in words."""
     found = Counter(done.outcome for done in outcomes)
     text = ", ".join(f"{number} {outcome}" for outcome, number in found.most_common())
-    return f"{len(outcomes)} cases: {text}" if len(outcomes) != 1 else f"1 case: {text}"
+    return f"{counted(len(outcomes), 'case')}: {text}"
 
 
 def summary_document(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from loadshare.numbers import counted
+from loadshare.numbers import NONE, counted
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, hover, padded
@@ -33,7 +33,7 @@ def comparison(found: Comparison) -> Figure:
             "measured": d.target.value,
             "uncertainty": d.target.uncertainty,
             "computed": d.computed,
-            "unit": d.target.unit or "–",
+            "unit": d.target.unit or NONE,
         }
         for d in found.deviations
     ]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from loadshare.numbers import MILLIMETRE, significant
+from loadshare.numbers import MILLIMETRE, counted, significant
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import axis, heading, hover
@@ -90,7 +90,7 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     ]
     subtitle = [
         title,
-        f"contact lines of {len(found.positions)} positions on the driver's flank at "
+        f"contact lines of {counted(len(found.positions), 'position')} on the driver's flank at "
         f"{significant(found.rated)} N·m; {BELOW} {significant(top, 3)} N/mm",
     ]
     return marks.figure("load_map", panel(layers, WIDTH, HEIGHT), "Load on the flank", subtitle)
@@ -126,7 +126,7 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
         panels.append(areas | {"width": WIDTH, "height": HEIGHT, "title": called})
     subtitle = [
         title,
-        f"areas of contact at {len(found.positions)} positions and "
+        f"areas of contact at {counted(len(found.positions), 'position')} and "
         f"{significant(found.rated)} N·m; {BELOW} {significant(top, 3)} MPa",
     ]
     return marks.figure("contact_pattern", joined("vconcat", panels), "Contact pattern", subtitle)

@@ -9,7 +9,7 @@ import numpy as np
 
 from loadshare.errors import LoadshareError
 from loadshare.libraries import xr
-from loadshare.numbers import significant
+from loadshare.numbers import counted, significant
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks as drawn
 from loadshare.report.figures.marks import axis, heading, hover, rules
@@ -203,7 +203,8 @@ def _inputs(one: xr.Dataset) -> Drawing:
         span = where | {"x": channel("low:Q"), "x2": channel("high")}
         layers.append(layer("rule", rows, span, color=INK))
     left = len(names) - len(shown)
-    title = heading("Causes of the scatter", f"and {left} less influential inputs" if left else "")
+    others = f"and {counted(left, 'less influential input')}" if left else ""
+    title = heading("Causes of the scatter", others)
     return panel(layers, 260, ROW * len(shown), title=title)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from loadshare.case import Case
 from loadshare.case.content import ABOUT, Content
 from loadshare.case.keys import dotted
+from loadshare.numbers import NONE
 from loadshare.table import Cell, Column, Table
 
 
@@ -43,7 +44,7 @@ def _elements(case: Case, section: str, title: str, found: Mapping[str, Any]) ->
 
 def _cell(case: Case, path: tuple[str, ...], value: Any) -> Cell:
     if value is None:
-        return Cell("–")
+        return Cell(NONE)
     assumed = case.is_assumed(dotted(path))
     if isinstance(value, Mapping) and not assumed:
         assumed = any(case.is_assumed(dotted((*path, key))) for key in value)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from loadshare.numbers import NONE
+from loadshare.numbers import NONE, counted
 from loadshare.results.share import NO_STAGES
 from loadshare.table import Table, text_table
 from loadshare.view import View, listed
@@ -56,7 +56,7 @@ def sensitivity_view(found: Sensitivity) -> View:
     facts = (
         ("positions", listed(found.positions)),
         ("inputs", f"{len(found.inputs)}, {len(found.skipped)} left out"),
-        ("on the verge", f"{len(found.kinks)} positions" if found.kinks else ""),
+        ("on the verge", counted(len(found.kinks), "position") if found.kinks else ""),
         ("remarks", str(len(found.remarks)) if found.remarks else ""),
     )
     by_group, by_stage = (_ordered(found, over) for over in ("group", "stage"))
