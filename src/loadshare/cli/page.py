@@ -52,8 +52,8 @@ def report(
     found = find_cases(cases)
     converter.start()
     from loadshare.report.page import chapter_of_file, report_page
-    from loadshare.report.page.chapter import CERTIFIED
     from loadshare.report.page.chapter import UNUSABLE as NOT_USABLE
+    from loadshare.study.sweep import CERTIFIED
 
     chapters = []
     with progress("cases", len(found)) as tick:

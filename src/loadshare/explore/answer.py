@@ -24,9 +24,9 @@ from loadshare.results import Position, Result
 from loadshare.results.share import largest
 from loadshare.settings import ALLOWED, EXPLORE
 from loadshare.study.parameter import read_value
+from loadshare.study.sweep import CERTIFIED, INVALID, PARTLY, REFUSED
 from loadshare.table import Cell, Record, Table, table
 
-CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
 Plain = dict[str, Any]
 Setting = Mapping[str, object]
 MOVING = ("gears.", "meshes.", "errors.", "operating.")

@@ -22,12 +22,13 @@ from loadshare.report.plots import Plots
 from loadshare.report.teeth import teeth_tables
 from loadshare.report.verdict import trust, verdict_tables
 from loadshare.results import Result
+from loadshare.study.sweep import CERTIFIED, PARTLY, REFUSED
 from loadshare.table import Cell, Table, table
 
 if TYPE_CHECKING:
     from loadshare.report.page.studies import StudyPart
 
-CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused", "cannot be used"
+UNUSABLE = "cannot be used"
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from loadshare.array_types import Array
+from loadshare.case.element import Rule
 from loadshare.case.study import NUMBERS, Spread
 from loadshare.libraries import special, stats
 from loadshare.settings import TOLERANCE
@@ -74,16 +75,7 @@ class Distribution:
         return f"{self.kind} {numbers} {self.unit}" if numbers else self.kind
 
 
-@dataclass(frozen=True, slots=True)
-class Wrong:
-    """A fault of a number in a distribution, or of all of it, with an empty `key`."""
-
-    key: str
-    message: str
-    allowed: str = ""
-
-
-def read_distribution(spread: Spread) -> Distribution | list[Wrong]:
+def read_distribution(spread: Spread) -> Distribution | list[Rule]:
     """Read a distribution from a case's table, or list what is wrong with it.
 
     Parameters
@@ -92,15 +84,16 @@ def read_distribution(spread: Spread) -> Distribution | list[Wrong]:
 
     Returns
     -------
-    Distribution or list of Wrong
+    Distribution or list of Rule
     """
     names = NUMBERS[spread.distribution]
     values: dict[str, Value] = {}
-    wrong: list[Wrong] = []
+    wrong: list[Rule] = []
     for name in names:
         value = read_value(getattr(spread, name))
         if value is None:
-            wrong.append(Wrong(name, "cannot be read", 'a value with its unit, as in "20 um"'))
+            allowed = 'a value with its unit, as in "20 um"'
+            wrong.append(Rule("cannot be read", (name,), allowed))
         else:
             values[name] = value
     if wrong:
@@ -111,29 +104,29 @@ def read_distribution(spread: Spread) -> Distribution | list[Wrong]:
         try:
             numbers[name] = value.in_unit(unit).number
         except ValueError as error:
-            wrong.append(Wrong(name, str(error)))
+            wrong.append(Rule(str(error), (name,)))
     found = Distribution(spread.distribution, numbers, unit)
     return wrong or list(_unsound(found)) or found
 
 
-def _unsound(found: Distribution) -> Iterator[Wrong]:
+def _unsound(found: Distribution) -> Iterator[Rule]:
     numbers = found.numbers
     for name in ("deviation", "scale"):
         if name in numbers and not numbers[name] > 0.0:
-            yield Wrong(name, "is not positive")
+            yield Rule("is not positive", (name,))
             return
     if "low" in numbers and not numbers["low"] < numbers["high"]:
-        yield Wrong("high", "is not above low")
+        yield Rule("is not above low", ("high",))
     elif found.kind == "truncated normal":
         # Far out in a tail the quantile function has no digits left.
         nearest = max(numbers["low"] - numbers["mean"], numbers["mean"] - numbers["high"], 0.0)
         if nearest > 8.0 * numbers["deviation"]:
             allowed = "limits that include some of the distribution within 8 deviations of the mean"
-            yield Wrong("", "has its limits too far from its mean", allowed)
+            yield Rule("has its limits too far from its mean", allowed=allowed)
         elif numbers["high"] - numbers["low"] < 1e-9 * numbers["deviation"]:
             # The share of the normal distribution between them has no digits left.
             allowed = "at least 1e-9 deviations apart; or a uniform distribution, which is the same"
-            yield Wrong("", "has its limits too close together for its deviation", allowed)
+            yield Rule("has its limits too close together for its deviation", allowed=allowed)
 
 
 @dataclass(frozen=True, eq=False)

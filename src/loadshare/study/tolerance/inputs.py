@@ -203,8 +203,7 @@ class _Reader:
         if isinstance(found, Distribution):
             return found
         for wrong in found:
-            tail = (wrong.key,) if wrong.key else ()
-            self._wrong((*path, *tail), wrong.message, wrong.allowed)
+            self._wrong((*path, *wrong.path), wrong.message, wrong.allowed)
         return None
 
     def _read_by_class(

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import Field, Strict
 
 from loadshare._version import __version__
-from loadshare.case.element import Element, Rule, written
+from loadshare.case.element import Element, Positions, Rule, written
 from loadshare.case.meshes import Bending, Hertz
 from loadshare.case.origin import Origin
 from loadshare.case.quantity import Angle, Length
@@ -28,7 +28,7 @@ from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.geometry.body import HALVED, HEIGHTS, RIM
 from loadshare.tooth.pair.file import PairFile
 from loadshare.tooth.pair.gears import PairGears, gears_of
-from loadshare.tooth.pair.model import Load, Number, Positions
+from loadshare.tooth.pair.model import Load, Number
 
 MISSED = 0.01
 """Part of the mean deflection that positions may miss without a finding."""

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
-from loadshare.case.element import Element, Rule, Text
+from loadshare.case.element import Element, Positions, Rule, Text
 from loadshare.case.quantity import ANGLE, LENGTH, TORQUE, Angle, Dimension, Length, Quantity
 from loadshare.numbers import counted
 from loadshare.settings import ALLOWED, TEETH
@@ -23,7 +23,6 @@ Modulus = Annotated[Quantity, PRESSURE.bounded(above=0)]
 Load = Annotated[Quantity, TORQUE.bounded(above=0)]
 Number = Annotated[float, Strict(), Field(ge=-ALLOWED.shape, le=ALLOWED.shape, allow_inf_nan=False)]
 Teeth = Annotated[int, Strict(), Field(ge=4, le=ALLOWED.teeth)]
-Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
 
 Deviations = Annotated[tuple[Length, ...], Field(min_length=1)]
 
