@@ -8,7 +8,7 @@ the reference circle, and moves the teeth of an internal gear inwards.
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 
 def inv(angle: float) -> float:
@@ -16,6 +16,8 @@ def inv(angle: float) -> float:
     return math.tan(angle) - angle
 
 
+# Every case made from another one asks for the same pairs again.
+@lru_cache(maxsize=1 << 12)
 def inverse_inv(value: float) -> float:
     """Return the pressure angle [rad] of an involute value, 0 ≤ α < π/2.
 

@@ -534,6 +534,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"\| 220 N·m",
     ),
     "measured on a machine, by the benchmark that the text names": (
+        r"with JAX [\d.]+ it gave .* agreed to 4e-16",
         r"^A million samples of this case.*$",
         r"^disk\. A loop over CVXPY.*$",
         r"−6 to 62 µrad at 20 positions, at most 5 % of the loaded error",

@@ -61,6 +61,13 @@ def test_round_off_does_not_look_like_a_difference(read):
         assert low < 0.995 < 1.005 < high
 
 
+def test_sensitivities_of_no_share_are_not_drawn():
+    bare = shipped("fgfbstts/base").replace({"stages": None})
+    found = ls.sensitivity(bare, ["gears.4.base_radius"], positions=[1])
+    with pytest.raises(ls.LoadshareError, match="no input is known to change Ω of the system"):
+        found.plot()
+
+
 def test_no_share_without_stages_or_load():
     base = shipped("fgfbstts/base")
     bare = ls.solve(base.replace({"stages": None}), positions=[1])

@@ -135,6 +135,13 @@ def test_what_is_not_there_is_reported(line, settings, message):
         sweep(line, **settings)
 
 
+def test_a_sweep_without_any_value_is_not_drawn(line):
+    """A case without stages has no Ω."""
+    none = line.assign(omega=line["omega"] * np.nan)
+    with pytest.raises(ls.LoadshareError, match="no value of omega at any point"):
+        sweep(none)
+
+
 def test_three_parameters_cannot_be_drawn(plane):
     with pytest.raises(ls.LoadshareError, match="over 3 parameters"):
         sweep(plane.expand_dims("r"))

@@ -148,7 +148,7 @@ def sweep_frame(sweep: Sweep) -> pd.DataFrame:
         columns[name] = arrays[name][point, position].reshape(-1) if len(point) else []
     columns["worst_residual"] = np.repeat(worst[point, position], len(meshes))
     table = pd.DataFrame(columns, index=number)
-    empty = [k for k in range(len(sweep.points)) if k not in set(point.tolist())]
+    empty = np.setdiff1d(np.arange(len(sweep.points)), point).tolist()
     if empty:
         table = pd.concat([table, pd.DataFrame({"position": [pd.NA] * len(empty)}, index=empty)])
     else:

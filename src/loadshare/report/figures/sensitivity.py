@@ -73,6 +73,9 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
     order = sorted(bars, key=lambda key: -max((abs(r["change"]) for r in bars[key]), default=0.0))
     shown = [key for key in order if any(row["change"] for row in bars[key])][:MOST]
     rows = [row for key in shown for row in bars[key]]
+    name = "the system" if stage == "system" else f"stage {stage}"
+    if not rows:
+        raise LoadshareError(f"no input is known to change Ω of {name}, so nothing can be drawn")
     sides = [side for side in (BOTH, *CALLED.values()) if any(r["side"] == side for r in rows)]
     axis = {"domain": False, "ticks": False, "labelLimit": LABEL}
     colours = {"domain": sides, "range": list(COLOURS[: len(sides)])}
@@ -94,7 +97,6 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
     size = {"width": WIDTH, "height": ROW * max(len(shown), 1)}
     drawing = layer("bar", rows, bar) | size
     left = len(found.inputs) - len(shown)
-    name = "the system" if stage == "system" else f"stage {stage}"
     subtitle = [
         f"first order, by the mean of the {over}",
         "as an input falls, Ω changes against its bar" if CALLED["falling"] in sides else "",

@@ -158,6 +158,8 @@ def _shown(
         raise LoadshareError(f"no {by} {', '.join(wrong)}. Allowed: {', '.join(known)}")
     values = variable.transpose(by, *parameters).values[[known.index(n) for n in wanted]]
     keep = [k for k in range(len(wanted)) if np.isfinite(values[k]).any()]
+    if not keep:
+        raise LoadshareError(f"the sweep has no value of {show} at any point: nothing can be drawn")
     si = str(data[show].attrs.get("units", "1"))
     unit = engineering(values[np.isfinite(values)], si)
     wanted = [wanted[k] for k in keep]
