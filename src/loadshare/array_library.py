@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from loadshare.array_types import Array, Flags
+from loadshare.array_types import Array, Flags, Numbers
 
 
 def library_of(array: Any) -> Any:
@@ -47,7 +47,13 @@ def lengths(vectors: Array) -> Array:
     return found
 
 
-def in_places(values: Array, place: Array) -> Array:
+def columns(values: Array, at: Numbers) -> Array:
+    """Return some columns of values (k, n), each in one piece, so that rows are compared faster."""
+    found: Array = library_of(values).take(values.T, at, axis=0).T
+    return found
+
+
+def in_places(values: Array, place: Numbers) -> Array:
     """Return columns of values (k, n) in other places (k, m); zero or false in those without one.
 
     Parameters
@@ -58,8 +64,7 @@ def in_places(values: Array, place: Array) -> Array:
     """
     xp = library_of(values)
     none = xp.zeros((values.shape[0], 1), dtype=values.dtype, device=values.device)
-    found: Array = xp.take(xp.concat([values, none], axis=1), place, axis=1)
-    return found
+    return columns(xp.concat([values, none], axis=1), place)
 
 
 def put_rows(these: Flags, values: Array, others: Array) -> Array:

@@ -130,7 +130,7 @@ class OnSet:
         """Take the laws of the scalar elements, and the roots at which they are renewed."""
         loading, rows, given = self.loading, self.rows, self.library.asarray
         shape = len(rows), len(columns)
-        power = np.flatnonzero((loading.hertz[:, columns] > 0.0).any(axis=0))
+        power = np.flatnonzero(loading.curved[columns])
         table = np.flatnonzero(loading.tabulated[columns] >= 0)
         nonlinear = np.concatenate([power, table])
         self.power, self.table, self.nonlinear = given(power), given(table), columns[nonlinear]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from loadshare.array_library import cube_root, in_places, largest, lengths, library_of
+from loadshare.array_library import columns, cube_root, in_places, largest, lengths, library_of
 from loadshare.array_types import Array, Flags
 from loadshare.contact.law import roots
 from loadshare.settings import HOT
@@ -32,13 +32,11 @@ def run(on: OnSet, patient: Flags) -> None:
     for number in range(HOT.passes):
         x, force = on.x, on.force
         _pass(on, _tangents_of_radials(on))
-        before = on.root
         laws = _renew_laws(on)
         on.lean = on.x, on.force
         if number % HOT.swing >= HOT.swing - HOT.damped:
             # Newton steps that swing to and fro around an answer settle at the mean.
             on.lean = 0.5 * (x + on.x), 0.5 * (force + on.force)
-            on.root = 0.5 * (before + on.root)
         if curved and number < 2:
             _give_up_gross(on, (laws <= HOT.nearly) & ~patient)
         yielded = largest(on.compression[:, on.contact])
@@ -153,8 +151,8 @@ def _renew_laws(on: OnSet) -> Array:
     misfit: Array = xp.zeros_like(on.push)
     if on.power.shape[0]:
         b, c = on.bending_of_power, on.hertz
-        force = xp.take(on.force, on.power, axis=1)
-        compression = xp.take(on.compression, on.power, axis=1)
+        force = columns(on.force, on.power)
+        compression = columns(on.compression, on.power)
         root, floor = on.root[:, : on.power.shape[0]], on.floor[:, None]
         touching = (force > 0.0) & (compression > 0.0)
         off = b * force + c * cube_root(xp.maximum(force, 0.0)) ** 2 - compression
@@ -168,7 +166,7 @@ def _renew_laws(on: OnSet) -> Array:
         )
         following.append(xp.maximum(next_root, floor))
     if on.table.shape[0]:
-        compression = xp.take(on.compression, on.table, axis=1)
+        compression = columns(on.compression, on.table)
         start, force, slope = piece(*on.points[::-1], compression)
         force = force + slope * (compression - start)
         following.append(cube_root(xp.maximum(force, 0.0)))
@@ -183,13 +181,13 @@ def _tangents_of_radials(on: OnSet) -> list[RadialTangent]:
         if j in on.linear:
             found.append(on.linear[j])
             continue
-        columns = slice(k, k + 2)
+        pair = slice(k, k + 2)
         x, force = on.lean
         offset = on.offset(j, x)
         law = on.graph(j, offset)
         on.refused = on.refused | ~law.valid
         push = on.library.maximum(on.push, 1e-300)
-        now = tangent(columns, status, law, offset, force[:, columns], push)
+        now = tangent(pair, status, law, offset, force[:, pair], push)
         if status in (at.STICK, at.PINNED) and j in on.fixed:
             on.linear[j] = now
         found.append(now)

@@ -25,9 +25,12 @@ def wrong_elements(on: OnSet, sign: float) -> tuple[Flags, States]:
     pulls = in_places(on.force[:, on.contact] < -force_band[:, None], on.contact_of)
     wrong = xp.where(on.acts, pulls, on.room() < -length_band[:, None])
     pulled = wrong & on.burst[:, None] & on.closed
-    # Passes that did not settle may still show which flank is open.
-    opening = in_places((on.loose >= HOT.patience) & ~on.settled[:, None], on.power_of)
-    wrongs = [(wrong & on.settled[:, None]) | pulled | opening]
+    wrong = (wrong & on.settled[:, None]) | pulled
+    late = (on.loose >= HOT.patience) & ~on.settled[:, None]
+    if xp.any(late):
+        # Passes that did not settle may still show which flank is open.
+        wrong = wrong | in_places(late, on.power_of)
+    wrongs = [wrong]
     other = 1 - xp.astype(on.closed, xp.int8)
     moves = [xp.broadcast_to(other[None, :], wrong.shape)]
     acting = {j: k for j, _, k in on.radial}
