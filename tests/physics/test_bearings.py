@@ -461,6 +461,26 @@ def test_what_nothing_presses_rests_at_the_end_of_its_clearance(law, torque):
 
 
 @pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
+def test_a_wall_that_nothing_presses_begins_at_the_load_of_its_own_position(law):
+    """A force that is faint under another position's load may be 1e-7 of the load here."""
+    idler = {"centre": ["160 mm", "160 mm"], "base_radius": "50 mm"}
+    wall = {"clearance": "3 um", law[0]: law[1], "offset": ["10 um", "0 um"]}
+    case = pair().replace(
+        {
+            "gears.idler": idler,
+            "meshes.b-idler": {"stiffness": "1e6 N*m/rad"},
+            "bearings": {"idler": wall},
+            "operating.external": {"idler": "0 N*m"},
+            "operating.torque": ["1000 N*m", "0.01 N*m"],
+            "operating.positions": 2,
+        }
+    )
+    found = ls.solve(case).positions[1]
+    assert found.torque == pytest.approx({"a-b": 0.01, "b-idler": 0.0}, abs=1e-12)
+    assert found.displacement["idler"] == pytest.approx((7e-6, 0.0), abs=1e-13)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
 def test_what_nothing_presses_finds_room_without_a_search(law):
     """Room ends at the clearance, not where the tangent of the wall at a pressed gear begins."""
     machine = Machine(build_train(between_planets(*law[:2], 100.0)))

@@ -223,7 +223,7 @@ def round_ring_law(radius: float, stiffness: float) -> RadialLaw:
 
 
 def tangent_wall(
-    reach: Array, stiffness: Array, power: Array, radius: Array, faint: float
+    reach: Array, stiffness: Array, power: Array, radius: Array, faint: Array | float
 ) -> tuple[Array, Array]:
     """Return the tangent of a wall F = K (R − reach)^power: its start [m] and stiffness [N/m].
 
@@ -233,7 +233,7 @@ def tangent_wall(
         [m], K [N/m^power], above 1.
     radius : ndarray
         R at which the tangent touches [m].
-    faint : float
+    faint : float or ndarray
         Least force at the point of tangency [N]: without a force there is no stiffness.
     """
     xp = library_of(radius)

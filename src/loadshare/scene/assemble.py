@@ -13,7 +13,6 @@ from loadshare.contact.radial import RadialLaw, RollingLaw, round_ring_law
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.scene import GearRadial, Scene
 from loadshare.scene.structure import ArcElement, RadialElement, Structure, structure_of
-from loadshare.settings import LAWS
 from loadshare.train.elements import Spline
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.placed import train_at
@@ -67,11 +66,13 @@ def scene_of(structure: Structure, situation: Situations, loading: Loading | Non
                 r.name,
                 r.matrix,
                 centre,
-                source := _source(structure, situation, r),
+                source := _source(structure, situation, r, float(faint) * force),
                 {} if isinstance(source, RadialLaw | RollingLaw) else levers(r.gear),
                 gear=r.gear,
             )
-            for r, centre in zip(structure.radials, centres, strict=True)
+            for r, centre, faint in zip(
+                structure.radials, centres, loading.radial[0, :, 7], strict=True
+            )
         ),
         rotation=structure.coordinates.rotation,
         turned=dict(zip(structure.train.gears, turned, strict=True)),
@@ -99,15 +100,18 @@ def _arc(situation: Situations, element: ArcElement, law: Law) -> ArcRow:
 
 
 def _source(
-    structure: Structure, here: Situations, radial: RadialElement
+    structure: Structure, here: Situations, radial: RadialElement, faint: float
 ) -> RadialLaw | RollingLaw | FollowingLaw:
-    """Return the law of a radial element, or the object from which it follows."""
+    """Return the law of a radial element, or the object from which it follows.
+
+    A wall with a power is taken to begin at the force `faint` [N].
+    """
     k, train = radial.number, structure.train
     if radial.kind == "ring":
         arrays = here.round_radius, here.round_stiffness, here.round_power
         reach, stiffness, power = (float(v[0, k]) for v in arrays)
         if power != 1.0:
-            return RollingLaw(reach, stiffness, power, LAWS.wall_start * structure.force)
+            return RollingLaw(reach, stiffness, power, faint)
         return round_ring_law(reach, stiffness)
     spline = _spline(train.splines[radial.gear], *here.spline[0, k].tolist())
     parts: dict[str, FollowingLaw] = {

@@ -14,6 +14,7 @@ import numpy as np
 
 from loadshare.array_types import Array, Flags, Numbers
 from loadshare.scene.structure import Structure
+from loadshare.settings import LAWS
 from loadshare.train.situations import Situations
 
 
@@ -39,10 +40,10 @@ class Loading:
     clearance : ndarray, shape (S or 1, arcs)
     relative : ndarray, shape (arcs, 3, n)
         Matrices from the coordinates to the relative displacement of an arc's centres.
-    radial : ndarray, shape (S or 1, radials, 7)
+    radial : ndarray, shape (S or 1, radials, 8)
         First stiffness (K_w; 0 inside a ring), S1 (NaN for F_m/K_w), S2 or the ring's radius, F_m
         (NaN if it follows the torque), τ/radius [1/m], stiffness beyond S2, power of the force
-        there.
+        there, and the force at which a wall with a power is taken to begin.
     carried : ndarray, shape (radials, m)
         Torque that reaches the gear of each element over its spline, per unit of each force [m].
     """
@@ -150,9 +151,10 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
     load = situations.torque @ structure.load_per_torque
     if situations.push.any():
         load = load + situations.push.reshape(len(situations.push), -1) @ structure.load_per_force
+    load = load / force
     return Loading(
         count=situations.count,
-        load=load / force,
+        load=load,
         gap=_side_by_side(structure, gaps, 1.0 / length),
         bending=_side_by_side(structure, bends, force / length),
         hertz=_side_by_side(
@@ -166,7 +168,7 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
         shift=situations.arc_shift.reshape(len(situations.arc_shift), -1, 3) / length,
         clearance=situations.arc_clearance.reshape(len(situations.arc_clearance), -1) / length,
         relative=structure.relative,
-        radial=_radials(structure, situations),
+        radial=_radials(structure, situations, np.abs(load).max(axis=1, initial=0.0)),
         carried=structure.levers,
     )
 
@@ -192,14 +194,27 @@ def _side_by_side(structure: Structure, blocks: list[Block], factor: float) -> A
     return table
 
 
-def _radials(structure: Structure, situations: Situations) -> Array:
-    """Return the numbers of every radial law, in the units of the force method."""
+def _radials(structure: Structure, situations: Situations, push: Array) -> Array:
+    """Return the numbers of every radial law, in the units of the force method.
+
+    Parameters
+    ----------
+    structure : Structure
+    situations : Situations
+    push : ndarray, shape (S or 1,)
+        Largest load of every sample, over the force unit.
+    """
     here, radials = situations, structure.radials
-    count = max(map(len, (here.spline, here.round_radius, here.round_stiffness)))
-    table = np.zeros((count, len(radials), 7))
+    bent = bool((here.round_power != 1.0).any())
+    varying = (here.spline, here.round_radius, here.round_stiffness, push if bent else push[:1])
+    table = np.zeros((max(map(len, varying)), len(radials), 8))
     if not radials:
         return table
     table[:, :, 6] = 1.0
+    if bent:
+        # Of the sample's own load: a force that is faint under a large load of another sample is
+        # none under a small one.
+        table[:, :, 7] = LAWS.wall_start * np.where(push > 0.0, push, 1.0)[:, None]
     stiffness, stick, reach, bound, per_torque = np.moveaxis(here.spline, 2, 0)
     for j, radial in enumerate(radials):
         k, row = radial.number, table[:, j]
@@ -220,5 +235,5 @@ def _radials(structure: Structure, situations: Situations) -> Array:
                 room = reach[:, k] - bound[:, k] / stiffness[:, k]
                 row[:, 2], row[:, 5] = np.maximum(room, 0.0), np.inf
     stiff = structure.force / structure.length
-    table /= [stiff, structure.length, structure.length, structure.force, 1.0, stiff, 1.0]
+    table /= [stiff, structure.length, structure.length, structure.force, 1.0, stiff, 1.0, 1.0]
     return table

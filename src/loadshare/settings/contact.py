@@ -11,8 +11,8 @@ class Laws(NamedTuple):
     written: float = 1e-6
     """Relative excess of K_w S1 over F_m that the digits of a written S1 explain: six are usual."""
     wall_start: float = 1e-12
-    """Force, in those of the problem, at which the wall of a bearing that begins without stiffness
-    is taken to begin."""
+    """Force, over the load, at which the wall of a bearing that begins without stiffness is taken
+    to begin."""
 
 
 class Contact(NamedTuple):

@@ -301,8 +301,8 @@ def test_a_ring_without_play_relieves_a_spline_that_would_pin_its_gear_too():
 def test_a_spline_without_an_end_beside_a_rolling_bearing_has_its_graph():
     """The wall of a ball bearing is its tangent, 1.5 K √gap (R − begin); warnings are errors."""
     spline, ball = (
-        [1.0, np.nan, np.inf, 2.0, np.nan, 1.0, 1.0],
-        [0, np.nan, 1e-5, 0, np.nan, 1e9, 1.5],
+        [1.0, np.nan, np.inf, 2.0, np.nan, 1.0, 1.0, 1e-12],
+        [0, np.nan, 1e-5, 0, np.nan, 1e9, 1.5, 1e-12],
     )
     found = at.graph(np.array([spline, ball]), np.zeros(2), np.array([0.0, 2e-5]))
     assert found.reach.tolist() == pytest.approx([np.inf, 1e-5 + 1e-5 / 3.0])
@@ -310,7 +310,7 @@ def test_a_spline_without_an_end_beside_a_rolling_bearing_has_its_graph():
 
 
 def test_friction_without_an_end_stands_beside_a_ball_bearing():
-    friction = [0.0, np.nan, np.inf, 2.0, np.nan, np.inf, 1.0]
-    ball = [0.0, 0.0, 1e-5, 0.0, np.nan, 8e6, 1.5]
+    friction = [0.0, np.nan, np.inf, 2.0, np.nan, np.inf, 1.0, 1e-12]
+    ball = [0.0, 0.0, 1e-5, 0.0, np.nan, 8e6, 1.5, 1e-12]
     found = at.graph(np.array([friction, ball]), np.zeros(2), np.array([np.inf, 2e-5]))
     assert found.reach[0] == found.last[0] == np.inf

@@ -52,7 +52,7 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
 
     Parameters
     ----------
-    numbers : ndarray, shape (S or 1, 7)
+    numbers : ndarray, shape (S or 1, 8)
         See :class:`loadshare.scene.loading.Loading`.
     torque : ndarray, shape (S,)
         Torque over force unit [m] that the element transmits.
@@ -81,7 +81,7 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
         # The tangent is not used where the law is not a power, such as friction without a stop.
         with np.errstate(invalid="ignore"):
             begin, slope = tangent_wall(
-                reach, last, power, radius + xp.zeros_like(reach), LAWS.wall_start
+                reach, last, power, radius + xp.zeros_like(reach), numbers[:, 7]
             )
         reach, last = (xp.where(power != 1.0, v, w) for v, w in ((begin, reach), (slope, last)))
     found = (first, stick, bound, reach, last, valid)
@@ -95,7 +95,7 @@ def reached(numbers: Array, size: Array) -> Array:
 
     Parameters
     ----------
-    numbers : ndarray, shape (k, 7)
+    numbers : ndarray, shape (k, 8)
     size : ndarray, shape (k,)
     """
     return np.asarray(numbers[:, 2] + (size / numbers[:, 5]) ** (1.0 / numbers[:, 6]))

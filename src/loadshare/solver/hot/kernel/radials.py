@@ -27,7 +27,7 @@ def graph(s, i, j, torque, radius):  # type: ignore[no-untyped-def]
         valid = first * given <= bound * (1.0 + LAWS.written) and reach >= stick
     last, power = s.radial[here, j, 5], s.radial[here, j, 6]
     if power != 1.0:
-        gap = max(radius - reach, (LAWS.wall_start / last) ** (1.0 / power))
+        gap = max(radius - reach, (s.radial[here, j, 7] / last) ** (1.0 / power))
         reach += gap * (1.0 - 1.0 / power)
         last *= power * gap ** (power - 1.0)
     return first, stick, bound, reach, last, valid
