@@ -226,6 +226,35 @@ def test_what_cannot_stand_in_a_cell_is_not_written(box) -> None:
         dict(case_frames({"notes": "one line\rand another"}))
 
 
+@pytest.mark.parametrize(
+    ("law", "cell"),
+    [
+        ({"stiffness": ["1e6 N*m/rad"]}, "1e6;"),
+        ({"law": {"b": ["1e-6 rad/(N*m)"]}}, "1e-6;"),
+        ({"table": {"torque": ["50 N*m"], "deflection": [["1 mrad"]]}}, "1 |"),
+        ({"table": {"torque": ["5 N*m", "9 N*m"], "deflection": [["1 mrad", "2 mrad"]]}}, "1; 2 |"),
+    ],
+)
+def test_a_list_of_one_stays_a_list(box, law, cell) -> None:
+    case = ls.Case(import_tables(box()).case().to_dict() | {"meshes": {"a-b": law}})
+    tables = {name: csv_of(frame) for name, frame in case_frames(case.to_dict())}
+    assert tables["meshes"].splitlines()[1].endswith(f",{cell}")
+    assert import_tables(box(**tables)).case() == case
+
+
+def test_an_empty_end_of_a_longer_list_is_an_entry(box) -> None:
+    tables = box(meshes="name,stiffness [N*m/rad]\na-b,1e6; 2e6;\n")
+    with pytest.raises(CaseError, match="not a number followed by a unit"):
+        import_tables(tables).case()
+
+
+def test_a_text_that_fits_no_cell_is_named_with_its_element(box) -> None:
+    data = import_tables(box()).case().to_dict()
+    data["stages"] = {"I": {"meshes": ["a-b"]}, "II": {"meshes": ["m;n"]}}
+    with pytest.raises(CaseError, match=r'stages\.II\.meshes = \["m;n"\]: cannot be written'):
+        dict(case_frames(data))
+
+
 def test_a_cell_of_a_table_may_be_as_long_as_the_table(box, tmp_path) -> None:
     """The loads of some ten thousand steps are; Python's CSV reader stops at 131,072 characters."""
     case = import_tables(box()).case().replace({"notes": "x" * 200_000})

@@ -1,7 +1,7 @@
 """Cells: what a key takes decides how the text of a cell is read and a value is written.
 
-``;`` separates the entries of a list, ``|`` the lists of a list. A unit in the head of a
-column belongs to every number below it.
+``;`` separates the entries of a list, ``|`` the lists of a list; at the end of a single entry they
+make it a list of one. A unit in the head of a column belongs to every number below it.
 """
 
 from __future__ import annotations
@@ -96,9 +96,9 @@ def value_of(text: str, unit: str, options: Sequence[Schema]) -> Any:
         ]
         nested = [option for option in inner if option.get("type") == "array"]
         if nested and ("|" in text or len(nested) == len(inner)):
-            return [value_of(part, unit, nested) for part in text.split("|")]
+            return [value_of(part, unit, nested) for part in _entries(text, "|")]
         flat = [option for option in inner if option.get("type") != "array"]
-        return [value_of(part, unit, flat) for part in text.split(";")]
+        return [value_of(part, unit, flat) for part in _entries(text, ";")]
     text = text.strip()
     kinds = {option.get("type") for option in others}
     is_number = NUMBER.fullmatch(text) is not None
@@ -114,11 +114,19 @@ def value_of(text: str, unit: str, options: Sequence[Schema]) -> Any:
     return text[1:] if text.startswith("'") and FORMULA.match(text[1:]) else text
 
 
-def text_of(value: Any) -> str:
-    """Return a value as the text of a cell."""
+def _entries(text: str, separator: str) -> list[str]:
+    """Return the entries of a list; a single one may end with the separator."""
+    first, *others = text.split(separator)
+    return [first] if [other.strip() for other in others] == [""] else [first, *others]
+
+
+def text_of(value: Any, options: Sequence[Schema]) -> str:
+    """Return a value as the text of a cell of a key that takes these forms."""
     if isinstance(value, list):
-        between = " | " if any(isinstance(item, list) for item in value) else "; "
-        return between.join(map(text_of, value))
+        separator = " |" if any(isinstance(item, list) for item in value) else ";"
+        text = f"{separator} ".join(text_of(item, options) for item in value)
+        alone = len(value) == 1 and value_of(text, "", options) != value
+        return text + separator if alone else text
     if isinstance(value, bool):
         return str(value).lower()
     return value if isinstance(value, str) else repr(value)

@@ -142,21 +142,24 @@ def case_frames(data: Mapping[str, Any]) -> Iterator[tuple[str, pd.DataFrame]]:
         above: Path = () if name == ABOUT else (name,)
         if name == ABOUT or name in ALONE:
             leaves = dict(values_in(value))
-            cells = [_column(path, [leaf], above) for path, leaf in leaves.items()]
+            cells = [_column(path, [leaf], [above]) for path, leaf in leaves.items()]
             yield name, _texts(["key", "value"], [[head, text] for head, (text,) in cells])
             continue
         rows = {element: dict(values_in(keys)) for element, keys in value.items()}
+        elements = [(name, element) for element in rows]
         columns = [list(rows)]
         heads = ["name"]
         for path in dict.fromkeys(path for keys in rows.values() for path in keys):
-            head, texts = _column(path, [keys.get(path) for keys in rows.values()], (name, "x"))
+            head, texts = _column(path, [keys.get(path) for keys in rows.values()], elements)
             heads.append(head)
             columns.append(texts)
         yield name, _texts(heads, [list(row) for row in zip(*columns, strict=True)])
 
 
-def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]:
+def _column(path: Path, values: list[Any], above: Sequence[Path]) -> tuple[str, list[str]]:
     """Return the head of a column and its cells; None makes an empty one.
+
+    `above` has the element of every cell.
 
     Raises
     ------
@@ -166,23 +169,23 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
     given = [value for value in values if value is not None]
     unit, shown = with_common_unit(given)
     head = with_unit(dotted(path), unit)
-    texts = iter([text_of(value) for value in shown])
-    cells = ["" if value is None else next(texts) for value in values]
-    read, read_unit = head_of(head, above)
+    read, read_unit = head_of(head, above[0])
     options = taken(read)
-    for value, cell in zip(values, cells, strict=True):
+    texts = iter([text_of(value, options) for value in shown])
+    cells = ["" if value is None else next(texts) for value in values]
+    for value, cell, element in zip(values, cells, above, strict=True):
         # An empty text counts as none.
         if value not in (None, "") and (
-            (read, read_unit) != ((*above, *path), unit)
+            (read, read_unit) != ((*above[0], *path), unit)
             or value_of(cell, unit, options) != value
             # A lone carriage return, which CSV takes for a line end.
             or "\r" in cell.replace("\r\n", "")
         ):
             what = "cannot be written to a cell as it is"
-            where = dotted((above[0], "…", *path) if len(above) > 1 else (*above, *path))
             spaces = isinstance(value, str) and value != value.strip()
             hint = "A cell loses leading and trailing spaces." if spaces else ""
-            raise CaseError([Problem("", where, text_of(value), what, hint=hint)])
+            where = dotted((*element, *path))
+            raise CaseError([Problem("", where, as_given(value), what, hint=hint)])
     return head, cells
 
 
