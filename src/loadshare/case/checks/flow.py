@@ -46,11 +46,16 @@ def check_output_reached(draft: Draft) -> Iterator[Problem]:
     """Yield the output if no path of meshes and shafts leads to it."""
     if not _known(draft) or draft.operating is None:
         return
-    reached = reach([draft.operating.input], _steps(draft))
+    source, taken = draft.operating.input, _steps(draft)
+    reached = reach([source], taken)
     if draft.operating.output not in reached:
-        source = draft.operating.input
         message = f'no path of meshes (driver to driven) and shafts leads here from gear "{source}"'
         hint = f"The torque reaches {choices(name for name in draft.gears if name in reached)}."
+        back = [
+            n for n, m in draft.meshes.items() if m.driven in reached and m.driver not in reached
+        ]
+        if back and draft.operating.output in reach([source], [*taken, *backwards(taken)]):
+            hint += f" Meshes are named driver-driven, but these lead back: {choices(back)}."
         yield draft.problem(("operating", "output"), message, hint=hint)
 
 
