@@ -45,39 +45,6 @@ def test_a_file_stands_whole_or_not_at_all(tmp_path, monkeypatch):
     assert [f.name for f in file.parent.iterdir()] == ["file.txt"]
 
 
-PAIR = """
-kind = "helicoid"
-torque = "400 N*m"
-driver = { module = "1.6 mm", teeth = 32, pressure_angle = "20 deg", face_width = "30 mm" }
-driven = { teeth = 124, face_width = "30 mm" }
-analysis = { compliance = "slices", positions = 1, points = 4 }
-"""
-
-
-@pytest.mark.parametrize(
-    "words", [("run",), ("fit", "--over", "shafts.wheel1-pinion1.clocking=0 mrad:2 mrad")]
-)
-def test_a_case_names_the_teeth_of_its_meshes_where_they_are_found(tmp_path, words):
-    (tmp_path / "pair.toml").write_text(PAIR)
-    teeth = {"geometry": "pair.toml"}
-    torque = {"in-wheel1": "190 N*m"}
-    case = ls.examples("two_path/from_teeth").replace(
-        {
-            **{f'meshes."in-wheel{number}"': teeth for number in (1, 2)},
-            "measured.a": {"position": 1, "torque": torque, "torque_uncertainty": "1 N*m"},
-        }
-    )
-    (tmp_path / "case.toml").write_text(case.to_toml())
-    command, *more = words
-    for folder, named in ((tmp_path, "pair.toml"), (tmp_path / "other", None)):
-        file = folder / "again.toml"
-        done = call(command, tmp_path / "case.toml", *more, "-q", "-o", file)
-        assert (done.exit_code, done.output) == (0, "")
-        again = ls.load_case(file)
-        assert again.meshes["in-wheel1"].geometry == named
-        assert ls.solve(again).passed
-
-
 LEFT = ".file.txt.0123456789abcdef"
 
 

@@ -23,7 +23,6 @@ from loadshare.libraries import pd
 from loadshare.output import STANDARD, csv_of, write_whole
 
 if TYPE_CHECKING:
-    from loadshare.case import Case
     from loadshare.report.figure import Figure
 
 FORMS = {
@@ -207,13 +206,6 @@ def write_all(
             print_written(output.file, "" if err else ".", err=err)
     if lines := [*lost, *missing]:
         fail(lines, UNUSABLE if lost else code)
-
-
-def case_in(case: Case, files: Iterable[Output]) -> str:
-    """Return a case as the text for the files of that form among some."""
-    from loadshare.tooth import written_in
-
-    return written_in(case, [o.file.parent for o in files if o.form == "toml"]).to_toml()
 
 
 def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:

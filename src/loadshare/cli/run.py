@@ -13,7 +13,7 @@ from loadshare.cli.cases import open_case
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import marked_lines, refused_document, reporting_problems, writing
 from loadshare.cli.files import print_written
-from loadshare.cli.forms import FOLDER, Output, case_in, figure_of, outputs, tables_of, write_all
+from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
 from loadshare.errors import Refused
 from loadshare.json_text import json_text
@@ -162,6 +162,12 @@ def _write(
     from loadshare.exchange.spreadsheet import write_tables
     from loadshare.results.document import netcdf_content
 
+    def changed() -> str:
+        from loadshare.tooth import written_in
+
+        folders = [output.file.parent for output in files if output.form == "toml"]
+        return written_in(given, folders).to_toml()
+
     made = cache(partial(_tables, result))
 
     def workbook() -> bytes:
@@ -178,7 +184,7 @@ def _write(
     frame = tables_of("run", result.to_frame)
     drawn = figure_of(lambda: getattr(result.plot, picture)())
     makers = {**frame, **drawn, "json": result.to_json, "nc": lambda: netcdf_content(result)}
-    makers |= {"html": page, "xlsx": workbook, "toml": partial(case_in, given, files)}
+    makers |= {"html": page, "xlsx": workbook, "toml": changed}
     write_all(single, makers)
 
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict
-from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from loadshare._version import __version__
 from loadshare.cli.console import say, say_all
-from loadshare.cli.forms import Makers, Output, case_in, figure_of, tables_of
+from loadshare.cli.forms import Makers, figure_of, tables_of
 from loadshare.cli.tables.table import show_view
 from loadshare.json_text import json_text
 from loadshare.libraries import pd
@@ -138,14 +137,16 @@ KINDS = {
 }
 
 
-def makers_of(kind: str, found: Any, files: Sequence[Output]) -> Makers:
-    """Return the functions that make these files of an answer: of its table, arrays and picture."""
+def makers_of(kind: str, found: Any) -> Makers:
+    """Return the functions that make files of an answer: of its table, arrays and picture."""
     _, table_of, about = KINDS[kind]
     made = {**tables_of(kind, lambda: table_of(found), **about(found)), **figure_of(found.plot)}
     if hasattr(type(found), "dataset"):
         made["nc"] = lambda: netcdf_of(found.dataset)
     if kind == "fit":
-        made["toml"] = partial(case_in, found.case, files)
+        from loadshare.tooth import written_in
+
+        made["toml"] = lambda: written_in(found.case).to_toml()
     if kind == "tolerance":
         made["json"] = lambda: json_text(statistics_document(found))
     return made

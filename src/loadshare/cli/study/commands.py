@@ -97,7 +97,7 @@ def conclude(kind: str, found: Any, files: list[Output] | None) -> None:
         if output.form == FOLDER:
             print_written(output.file, err=True)
     single = [o for o in files or () if o.form != FOLDER]
-    write_all(single, makers_of(kind, found, single), missing=found._left_open())
+    write_all(single, makers_of(kind, found), missing=found._left_open())
 
 
 Files = Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)]
@@ -346,7 +346,7 @@ def study(
         rated = kind == "tolerance"
         with progress(*(("samples", None) if rated else (name, 1)), rated=rated) as tick:
             found = found_by(partial(run_study, loaded, name, progress=tick))
-    makers = makers_of(kind, found, ())
+    makers = makers_of(kind, found)
     for output in file or ():
         if output.form not in makers:
             can = ", ".join(f".{form}" for form in makers)
