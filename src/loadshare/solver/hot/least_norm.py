@@ -153,7 +153,7 @@ class _Samples:
         force = np.maximum(iterate.force[:, structure.columns.contacts], 0.0)
         b, c = (v[:, structure.columns.contacts] for v in (loading.bending, loading.hertz))
         # A force that counts as none may still compress a soft contact far.
-        self.compressed = b * force + c * np.cbrt(force) ** 2
+        self.compressed = _compression(b, c, force)
         drums = [arc.drum for arc in structure.arcs]
         floats = situations.stop.max(axis=2)[:, drums] / structure.length
         distance = np.linalg.norm(self.arcs.nominal, axis=1)
@@ -278,12 +278,16 @@ def _least_in(limits: Array, bounds: Array, unit: Array) -> tuple[Array, Flags]:
     return least, found
 
 
+def _compression(b: Array, c: Array, force: Array) -> Array:
+    return np.asarray(b * force + c * np.cbrt(force) ** 2)
+
+
 def _length_units(structure: Structure, loading: Loading) -> Array:
     """Return the unit of length of every sample, (S,), as `Scene.length_unit` has it."""
     kinds = np.array(structure.kinds[structure.columns.flanks])
     drives = structure.columns.flanks.start + np.flatnonzero(kinds == "drive flank")
     push = pushes(loading)[:, None]
     b, c, gap = (v[:, drives] for v in (loading.bending, loading.hertz, loading.gap))
-    yielded = np.median(b * push + c * np.cbrt(push) ** 2, axis=1)
+    yielded = np.median(_compression(b, c, push), axis=1)
     found = np.maximum(yielded, CONTACT.of_gaps * np.abs(gap).max(axis=1))
     return np.broadcast_to(found, (loading.count,))
