@@ -61,7 +61,7 @@ def renew_bound(s, work, t, width):  # type: ignore[no-untyped-def]
 
 @bare
 def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
-    """Renew directions and tangents of the radial elements; see `hot.radials.block`."""
+    """Renew directions and tangents of the radial elements; see `hot.radials.tangent`."""
     one, two = work.one, work.two
     for t in range(s.turning_radials.shape[0]):
         status = s.states[s.first_radial - s.first_column + s.turning_radials[t]]
