@@ -168,7 +168,7 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
         shift=situations.arc_shift.reshape(len(situations.arc_shift), -1, 3) / length,
         clearance=situations.arc_clearance.reshape(len(situations.arc_clearance), -1) / length,
         relative=structure.relative,
-        radial=_radials(structure, situations, np.abs(load).max(axis=1, initial=0.0)),
+        radial=_radials(structure, situations, load),
         carried=structure.levers,
     )
 
@@ -194,19 +194,19 @@ def _side_by_side(structure: Structure, blocks: list[Block], factor: float) -> A
     return table
 
 
-def _radials(structure: Structure, situations: Situations, push: Array) -> Array:
+def _radials(structure: Structure, situations: Situations, load: Array) -> Array:
     """Return the numbers of every radial law, in the units of the force method.
 
     Parameters
     ----------
     structure : Structure
     situations : Situations
-    push : ndarray, shape (S or 1,)
-        Largest load of every sample, over the force unit.
+    load : ndarray, shape (S or 1, n)
+        Over the force unit.
     """
     here, radials = situations, structure.radials
     bent = bool((here.round_power != 1.0).any())
-    varying = (here.spline, here.round_radius, here.round_stiffness, push if bent else push[:1])
+    varying = (here.spline, here.round_radius, here.round_stiffness, load if bent else load[:1])
     table = np.zeros((max(map(len, varying)), len(radials), 8))
     if not radials:
         return table
@@ -214,6 +214,7 @@ def _radials(structure: Structure, situations: Situations, push: Array) -> Array
     if bent:
         # Of the sample's own load: a force that is faint under a large load of another sample is
         # none under a small one.
+        push = np.abs(load).max(axis=1, initial=0.0)
         table[:, :, 7] = LAWS.wall_start * np.where(push > 0.0, push, 1.0)[:, None]
     stiffness, stick, reach, bound, per_torque = np.moveaxis(here.spline, 2, 0)
     for j, radial in enumerate(radials):

@@ -71,10 +71,11 @@ def put_pairs(
     lateral = sign * np.minimum(across, softest * most[:, None])
     free = np.maximum(BOUND.yielding * most[:, None], 100.0 * np.abs(lateral))
     along = np.where(act == Act.SLIP, free, yields)
-    spring = _first_pieces(claim, act)
-    along, lateral = (np.where(lined, v, spring) for v in (along, lateral))
     x, y = line[:, :, 0], line[:, :, 1]
     diagonal = np.stack([along * x * x + lateral * y * y, along * y * y + lateral * x * x], axis=2)
+    # At its centre, an element on its first piece yields as well, though it has no line there.
+    spring = _first_pieces(claim, act)
+    diagonal = np.where(lined[:, :, None], diagonal, spring[:, :, None])
     found.soft[:, first:] = diagonal.reshape(count, -1)
     found.skew[:] = np.where(lined, (along - lateral) * x * y, 0.0)
     misfit = np.where(

@@ -261,7 +261,7 @@ def put_pulls(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-de
                 covered &= distance > 0.0 or force == 0.0
             if near <= 0.0 or distance == 0.0:
                 # On the first piece, or pinned: a spring about the centre.
-                soft = soft if force > 0.0 else 0.0
+                soft = soft if near < 0.0 or force > 0.0 else 0.0
                 misfit_x, misfit_y = x - fx * soft, y - fy * soft
                 longest = max(longest, distance + force * soft)
             else:
