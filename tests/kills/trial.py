@@ -247,9 +247,8 @@ def _kill(
     """Kill the target; return whether it existed, and which worker it was."""
     if target == "worker":
         while process.poll() is None:
-            workers = workers()
-            if workers:
-                victim = workers[int(random.integers(len(workers)))]
+            if found := workers():
+                victim = found[int(random.integers(len(found)))]
                 with suppress(psutil.NoSuchProcess):
                     victim.kill()
                     return True, victim
