@@ -48,6 +48,7 @@ HOLDS: dict[str, dict[str, Any]] = {
     "ring": {"rings": {"radius": "0 um", "stiffness": SOFT}},
     "bearing": {"bearings": {"clearance": "0 um", "stiffness": SOFT}},
     "ball bearing": {"bearings": {"clearance": "0 um", "ball_stiffness": "2e9 N/m^1.5"}},
+    "roller bearing": {"bearings": {"clearance": "0 um", "roller_stiffness": "1e7 N/m^(10/9)"}},
 }
 ROUNDING = 1e-15
 
@@ -110,3 +111,43 @@ def test_the_bound_contains_the_error(held_by, gap, floating):
     for rigorous in (False, True):
         assert bounds(columns, situations, claim, rigorous=rigorous).relative[0] >= least
     assert judged(columns, situations, claim)[1][0] >= least
+
+
+def planetary(count: int, torque: str) -> ls.Case:
+    """Return a set that is alike all round, with sun and ring in roller bearings without play."""
+    planets = {f"p{k + 1}": f"{360.0 * k / count} deg" for k in range(count)}
+    fixed = {"centre": ["0 mm", "0 mm"], "support": "free"}
+    gears = {
+        "sun": {"base_radius": "50.743402 mm", **fixed},
+        "ring": {"base_radius": "118.40127 mm", "type": "internal", "held": True, **fixed},
+        "carrier": {"type": "carrier", **fixed, "support": ["4e6 N/m", "1e8 N/m"]},
+    }
+    for planet, angle in planets.items():
+        gears[planet] = {
+            "base_radius": "33.828934 mm",
+            "centre": {"distance": "90 mm", "angle": angle},
+            "carrier": "carrier",
+            "support": "free",
+        }
+    law = {"b": "9e-7 rad/(N*m)", "c": "8e-7 rad/(N*m)^(2/3)"}
+    inner = {f"sun-{planet}": {"stiffness": "7e6 N*m/rad"} for planet in planets}
+    outer = {f"{planet}-ring": {"law": law} for planet in planets}
+    meshes = {name: {"pressure_angle": "20 deg", **mesh} for name, mesh in (inner | outer).items()}
+    bearings = {planet: {"clearance": "10 um", "stiffness": "8e8 N/m"} for planet in planets}
+    for gear, stiffness in (("sun", "4e9 N/m^(10/9)"), ("ring", "3e10 N/m^(10/9)")):
+        bearings[gear] = {"clearance": "0 um", "roller_stiffness": stiffness}
+    operating = {"input": "sun", "output": "carrier", "torque": torque}
+    return ls.Case(
+        {"operating": operating, "gears": gears, "meshes": meshes, "bearings": bearings}
+        | {"assumed": []}
+    )
+
+
+@pytest.mark.parametrize("torque", ["600 N*m", "3000 N*m"])
+@pytest.mark.parametrize("count", [3, 4, 5])
+def test_sets_that_are_alike_all_round_are_proved(count, torque):
+    """Rounding alone decides where their members rest."""
+    position = ls.solve(planetary(count, torque)).positions[0]
+    assert position.certificate.proved < 1e-12
+    shares = [position.torque[f"sun-p{k + 1}"] for k in range(count)]
+    np.testing.assert_allclose(shares, float(torque.split()[0]) / count, rtol=1e-12)

@@ -262,6 +262,13 @@ def test_a_case_that_gives_way_too_much_is_refused_everywhere():
     assert "tooth height" in refused[0]
 
 
+@pytest.mark.parametrize("tolerance", [CERTIFY.tolerance, 1e-18])
+def test_too_large_displacements_are_the_reason_whatever_the_certificate_says(tolerance):
+    """Their rounding alone may be beyond the tolerance."""
+    with pytest.raises(ls.Refused, match="displacements are too large for the geometry"):
+        ls.solve(loaded(shipped("fgfbstts/base"), "5e5 N*m"), tolerance=tolerance)
+
+
 def test_a_warning_stands_in_the_result_and_outlives_a_file(tmp_path):
     case = loaded(shipped("fgfbstts/base"), "6e4 N*m")
     result = ls.solve(case, positions=[1])

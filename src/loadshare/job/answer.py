@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from loadshare.certify import Certificate
-from loadshare.certify.validity import Validity, refusal_text
+from loadshare.certify.validity import Measure, Validity, refusal_text
 from loadshare.errors import Refused
 from loadshare.later import known
 from loadshare.results.result import Effort
@@ -111,12 +111,15 @@ class Answer(Viewed):
     def refused(self) -> Refused | None:
         """Return the refusal for its displacements; None if they are not refused."""
         beyond = {} if self.small else self.validity.refused
-        if not beyond:
-            return None
-        text = f"position {self.index}: {refusal_text(beyond)}"
-        return Refused(text, {name: m.value for name, m in beyond.items()})
+        return refusal_of(self.index, beyond) if beyond else None
 
     def _view(self) -> View:
         from loadshare.job.views import answer_view
 
         return answer_view(self)
+
+
+def refusal_of(index: int, beyond: Mapping[str, Measure]) -> Refused:
+    """Return the refusal of a position (1-based) whose displacements are beyond their bounds."""
+    text = f"position {index}: {refusal_text(beyond)}"
+    return Refused(text, {name: m.value for name, m in beyond.items()})

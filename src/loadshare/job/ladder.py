@@ -22,14 +22,14 @@ from loadshare.certify.validity import LABELS, Validity, refusal_text
 from loadshare.contact.findings import StepBudget
 from loadshare.contact.runaway import runaway
 from loadshare.errors import Refused
-from loadshare.job.answer import Answer
+from loadshare.job.answer import Answer, refusal_of
 from loadshare.job.hot import hot_answers
 from loadshare.job.machine import Machine
 from loadshare.one_thread import one_thread
 from loadshare.scene.assemble import assemble, scene_of
 from loadshare.scene.scene import Scene
 from loadshare.scene.structure import structure_of
-from loadshare.settings import JOB, PLACES
+from loadshare.settings import CERTIFY, JOB, PLACES
 from loadshare.solver import Iteration, Options, solve_scene
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.balancing import balancing
@@ -300,6 +300,10 @@ def _with_large(refusal: Refused, part: _Part | None) -> Refused:
 
 def uncertified(index: int, certificate: Certificate) -> Refused:
     """Return the refusal of an answer whose certificate does not pass."""
+    far = certificate.claims.validities[certificate.row].refused
+    if far and certificate.worst <= CERTIFY.largest:
+        # Near an equilibrium; rounding of such displacements may be all that is wrong.
+        return refusal_of(index, far)
     figures = {name: r.scaled for name, r in certificate.failing.items()}
     if figures:
         shortfall = f"the answer is not an equilibrium: {certificate.shortfall}"

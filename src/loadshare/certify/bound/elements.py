@@ -46,6 +46,9 @@ class Elements:
         Change of friction that is put aside, per torque [1/m].
     begins : ndarray of bool, shape (S, pairs)
         Slips that are zero so far: u is the direction of the friction.
+    centred : ndarray, shape (S, pairs)
+        Largest compliance of power-law walls that carry nothing at their centre [m/N], see `pairs`;
+        0 for all others.
     """
 
     act: Acts
@@ -68,3 +71,4 @@ class Elements:
     shrinks: Array
     spare: Array
     begins: Flags
+    centred: Array

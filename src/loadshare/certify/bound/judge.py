@@ -206,7 +206,8 @@ def _proved(
         force, coordinate = _fine(fine, act[rows], scale[rows])
         found = _largest(columns, force, flanks[rows]) / largest[rows]
         _improve(box, relative, rows, (force, coordinate, found))
-    ways = (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ()
+    of_pairs = (_with_walls_at_centre, _with_locked, _with_light_friction, _with_open_slips)
+    ways = of_pairs if columns.pairs else ()
     left = np.flatnonzero(~(relative <= CERTIFY.largest) & finite)
     together = [left[at : at + BOUND.together] for at in range(0, len(left), BOUND.together)]
     # Together, claims are bounded less closely than alone.
@@ -223,6 +224,19 @@ def _proved(
     box.force[unproved], box.coordinate[unproved], relative[unproved] = np.inf, np.inf, np.inf
     box.force[:, held.shared] = np.inf
     return box, relative
+
+
+def _with_walls_at_centre(claim: Claim, scale: Array) -> tuple[Array, Array]:
+    """Bound S claims with rolling bearings without clearance that carry nothing at their centre."""
+    act, here = first_acts(claim), claim.situations
+    first = act.shape[1] - len(claim.columns.claims.radials)
+    bearings = act[:, first : first + here.round_power.shape[1]]
+    there = (bearings == Act.OPEN) & (here.round_power != 1.0) & (here.round_radius == 0.0)
+    if not there.any():
+        return _unproved(claim)
+    bearings[there] = Act.STICK
+    box = quick_boxes(claim, act, scale)
+    return box.force, box.coordinate
 
 
 def _with_locked(claim: Claim, scale: Array) -> tuple[Array, Array]:

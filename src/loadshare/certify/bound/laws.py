@@ -43,7 +43,7 @@ def elements(
     force[:, columns.flanks] = np.maximum(force[:, columns.flanks], 0.0)
     lengths, sizes = claim.lengths
     flat = ("rounding", "soft", "width", "curve")
-    paired = ("skew", "size", "along", "bent", "stiff_error", "follows", "shrinks")
+    paired = ("skew", "size", "along", "bent", "stiff_error", "follows", "shrinks", "centred")
     found = Elements(
         act=act,
         active=acting(claim, act),

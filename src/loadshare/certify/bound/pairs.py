@@ -7,6 +7,10 @@ Arcs and radial elements push along the line from their centre and yield as
 with u the direction and |d| the distance from the centre: a turn of the direction is a compliance
 too. Where a slip only begins, |d| = 0, u is the direction of the friction F. The slip follows it,
 so that the direction is off by no more than 2 |ΔF|/F: the element is held across u.
+
+A wall F = K |d|^p without play that carries nothing at its centre has no direction. Up to a force
+F' it is nowhere stiffer than its tangent there, and no change of its force by f > f' moves it by
+more than 2 (f'/K)^(1/p) f/f', since 1/p < 1.
 Source: formulation, sections 3, 5, 6 and 16.
 """
 
@@ -94,6 +98,7 @@ def put_pairs(
     found.begins[:], found.along[:] = begins, yields
     if claim.rolls:
         _bends(claim, acts, found, arcs, by_force)
+        _put_centred(claim, acts, found, least)
     true = np.where(size > 0.0, sign / across, 0.0)
     wrong = np.where(begins, 0.0, np.abs(true - 1.0 / lateral) * (1.0 + EPS))
     wrong += np.where(act == Act.SLIP, 1.0 / along, 0.0)
@@ -178,7 +183,7 @@ def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int, by_force: Flags
     """Write the curvature of the other power-law walls, and the tangents' misfit at the claim."""
     power = claim.situations.round_power
     rounds = slice(arcs, arcs + power.shape[1])
-    acting = (power != 1.0) & (acts[:, : power.shape[1]] != Act.OPEN) & ~by_force
+    acting = (power != 1.0) & (acts[:, : power.shape[1]] == Act.STOP) & ~by_force
     size = np.abs(found.size[:, rounds])
     compliance = found.along[:, rounds]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -190,6 +195,45 @@ def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int, by_force: Flags
     touched = (found.distance[:, rounds] - begin) / np.where(acting, compliance, 1.0)
     left = np.where(acting, found.bent[:, rounds] * (size - touched) ** 2, 0.0)
     found.width[:, columns.all_of(columns.claims.rounds)] += np.repeat(left, 2, axis=1)
+
+
+def _put_centred(claim: Claim, acts: Acts, found: Elements, least: Array) -> None:
+    """Write the figures of power-law walls that stick: in any direction, about their centres.
+
+    Parameters
+    ----------
+    claim : Claim
+    acts : ndarray of int8, shape (S, radials)
+    found : Elements
+    least : ndarray, shape (S, 1)
+        Force up to which they are nowhere stiffer than assumed [N].
+    """
+    power, stiffness = claim.situations.round_power, claim.situations.round_stiffness
+    rounds, at = claim.columns.claims.rounds, claim.columns.all_of(claim.columns.claims.rounds)
+    there = (acts[:, rounds] == Act.STICK) & (power != 1.0)
+    if not there.any():
+        return
+    first = found.size.shape[1] - acts.shape[1]
+    pairs = slice(first + rounds.start, first + rounds.stop)
+    size = found.size[:, pairs]
+
+    def stretch(force: Array) -> Array:
+        return np.asarray((force / stiffness) ** (1.0 / power))
+
+    rounding = EPS * least / BOUND.light
+    most = 2.0 * stretch(rounding) / rounding
+    secant = stretch(size) / np.where(size > 0.0, size, 1.0)
+    found.centred[:, pairs] = np.where(there, most, 0.0)
+    length = claim.lengths[0].value[:, at]
+    figures = (
+        (found.soft, stretch(least) / (power * least)),
+        (found.width, most * rounding + found.width[:, at][:, ::2]),
+        (found.room, np.sqrt(0.5) * (least - size)),
+    )
+    for target, values in figures:
+        target[:, at] = np.where(np.repeat(there, 2, 1), np.repeat(values, 2, 1), target[:, at])
+    misfit = length - np.repeat(secant, 2, axis=1) * claim.forces[:, at]
+    found.misfit[:, at] = np.where(np.repeat(there, 2, axis=1), misfit, found.misfit[:, at])
 
 
 def _put_aside(claim: Claim, acts: Acts) -> tuple[Array, Array]:

@@ -196,6 +196,10 @@ class _Group:
         self.over[:, flanks] = over[:, self.scalar[flanks]]
         light = found.size[self.pick][:, self.lined] < BOUND.light * scale[:, None]
         self.over[:, self.line][light & claim.rolling[self.lined]] = BOUND.endless
+        at = np.flatnonzero(self.scalar >= first)
+        centred = np.repeat(found.centred[self.pick], 2, axis=1)[:, self.scalar[at] - first]
+        soft = found.soft[self.pick][:, self.scalar[at]]
+        self.over[:, at] = np.where(centred > 0.0, centred / soft, self.over[:, at])
         self.is_endless = (self.over > 1.0 / BOUND.secant).any(axis=0)
         self.may_open = (self._at_ends(self._pushed()) < BOUND.light * scale[:, None]).any(axis=0)
         self._set_particular()
@@ -215,6 +219,8 @@ class _Group:
         size = found.size[pick].copy()
         size[:, arcs:][claim.graphs[pick][:, :, 2] > 0.0] = np.inf
         first = columns.first_pair
+        # A spring about a centre cannot open.
+        size[found.act[pick][:, len(columns.contacts) :] == Act.STICK] = np.inf
         pushed[:, first::2] = pushed[:, first + 1 :: 2] = size
         # Of two contacts without clearance between them, one takes what the other cannot.
         for rows, _, twin in self._twins():
@@ -443,17 +449,18 @@ class _Group:
             found.force[pick][:, columns.contacts],
             found.size[pick][:, : claim.arcs[1].shape[1]],
         ]
-        pushed = np.concatenate(sizes, axis=1)
-        closed = found.act[pick][:, : pushed.shape[1]] != Act.OPEN
-        part = doubtful[:, : pushed.shape[1]]
-        part[closed] = pushed[closed] < 0.0
+        carried = np.concatenate(sizes, axis=1)
+        closed = found.act[pick][:, : carried.shape[1]] != Act.OPEN
+        part = doubtful[:, : carried.shape[1]]
+        part[closed] = carried[closed] < 0.0
         # A ring, or a spline without friction, that is touched may as well be open too.
         loose = claim.graphs[pick][:, :, 2] == 0.0
-        radials = found.act[pick][:, pushed.shape[1] :]
-        doubtful[:, pushed.shape[1] :] &= ~(loose & (radials == Act.STOP))
+        radials = found.act[pick][:, carried.shape[1] :]
+        doubtful[:, carried.shape[1] :] &= ~(loose & (radials == Act.STOP))
         proved &= ~(doubtful & ~self.doubled[pick]).any(axis=1)
         error = self._at_ends(errors)
-        opening = (self._at_ends(self._pushed()) <= error) & (error > 0.0)
+        pushed = self._at_ends(self._pushed())
+        opening = (pushed < np.inf) & (pushed <= error) & (error > 0.0)
         proved &= ~(opening & self.particular.any(axis=1)).any(axis=1)
         one_sided = columns.is_contact.copy()
         one_sided[columns.arcs] = True

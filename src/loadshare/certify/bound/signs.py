@@ -97,7 +97,12 @@ def _room(
     }
     is_high = {
         Act.OPEN: distance + moved < reach,
-        Act.STICK: np.isinf(stick) | (reach == 0.0) | (size + error < end - level_error),
+        Act.STICK: (
+            np.isinf(stick)
+            | (reach == 0.0)
+            | (size + error < end - level_error)
+            | (found.centred[rows][:, part] > 0.0)
+        ),
         Act.PINNED: (level == 0.0) | (size + error < level - level_error),
         Act.STEP: size + error < level - level_error,
         Act.SLIP: distance + moved < reach,
