@@ -122,3 +122,29 @@ def test_a_body_squeezed_a_million_times_as_hard_as_it_is_loaded() -> None:
     assert np.linalg.norm(matrix @ place - rim.centre) == pytest.approx(1.0, rel=1e-12)
     assert found.force["pad"] == pytest.approx((rows[1].vector @ place - 3.0) / 1e-12, rel=1e-9)
     assert np.abs(pushed).max() < 1e-9 * found.force["pad"]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_pin_holds_in_any_direction_though_its_centre_rounds(seed: int) -> None:
+    """A pin without play carries any force; its offset is what rounding leaves, without direction.
+
+    The place and the forces follow from the two balances and the pin: 6 equations by elimination.
+    The displacements are far larger than the play of the drum, by which lengths are measured.
+    """
+    rng = np.random.default_rng(seed)
+    pins, leans = rng.normal(size=(2, 4)), rng.normal(size=(2, 4))
+    load = 10.0 * rng.normal(size=4)
+    pin = Radial("pin", pins, np.zeros(2), RadialLaw((Piece(0.0, 0.0, 0.0, "inside"),)))
+    wall = RadialLaw((Piece(0.0, 0.0, 0.5, "inside"), Piece(0.0, 2.0, math.inf, "wall")))
+    drum = Radial("drum", leans, np.zeros(2), wall)
+    held = ContactProblem(tuple("abcd"), np.zeros((4, 4)), load, radials=(pin, drum))
+    found = solve_contact(held)
+    pushed = np.linalg.solve(np.vstack([pins, leans]).T, load)
+    assert np.concatenate([found.pull["pin"], found.pull["drum"]]) == pytest.approx(pushed)
+    offset = (0.5 + np.linalg.norm(pushed[2:]) / 2.0) / np.linalg.norm(pushed[2:]) * pushed[2:]
+    place = np.linalg.solve(np.vstack([pins, leans]), np.concatenate([np.zeros(2), offset]))
+    assert np.array(list(found.place.values())) == pytest.approx(place)
+    turned = dict(found.pull) | {"drum": found.pull["drum"][::-1]}
+    assert residuals(held, place, {}, turned).worst > 1e-3
+    aside = place + np.linalg.pinv(pins) @ np.array([1e-6, 0.0])
+    assert residuals(held, aside, {}, found.pull).worst > 1e-7

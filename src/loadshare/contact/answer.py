@@ -190,7 +190,7 @@ def _residuals(
     pushed += [r.matrix.T @ pulls[r.name] for r in problem.radials]
     left = problem.stiffness @ x - problem.load + sum(pushed, np.zeros(problem.size))
     laws = {r.name: r.law(r.torque(force), x) for r in problem.radials}
-    unit = _force_scale(problem, x, force, laws)
+    unit = float(_force_scale(problem, x, force, laws))
     length = problem.length_unit()
     approach = [float(row.vector @ x) - row.gap for row in rows]
     off = [
@@ -202,7 +202,7 @@ def _residuals(
     ]
     return Residuals(
         balance=float(np.abs(left).max(initial=0.0)) / unit,
-        law=max([float(np.abs(off).max(initial=0.0)) / length, *graphs]),
+        law=float(max([np.abs(off).max(initial=0.0) / length, *graphs])),
         sign=float(-forces.min(initial=0.0)) / unit,
     )
 
@@ -236,15 +236,12 @@ def _shown(row: Row, force: float, x: Array, yields: float) -> float:
 def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: float) -> float:
     """Return a radial element's distance from its graph, in forces and lengths of the problem.
 
-    It is at least the part of its force that does not point along the offset; without an offset the
-    force may have any direction.
+    Its force points along the offset; at the centre it may have any direction.
     """
     radius, size = float(np.linalg.norm(offset)), float(np.linalg.norm(pull))
-    across = 0.0
-    if size > 0.0 and radius > CONTACT.directed * length:
-        across = float(np.linalg.norm(pull - size * offset / radius))
-    apart = (part.off(radius, size) for part in law.parts())
-    return max(min(max(abs(r) / length, abs(f) / unit) for r, f in apart), across / unit)
+    across = float(np.linalg.norm(pull - size * offset / radius)) if radius > 0.0 else 0.0
+    apart = ((*part.off(radius, size), across if part.end > 0.0 else 0.0) for part in law.parts())
+    return min(max(abs(r) / length, abs(f) / unit, a / unit) for r, f, a in apart)
 
 
 def _nowhere(problem: ContactProblem, place: Mapping[str, float]) -> list[str]:

@@ -36,8 +36,6 @@ class Contact(NamedTuple):
     """Passes of a linear solve: the first solves, the others refine."""
     equilibrated: int = 4
     """Passes that bring the largest entry of every row near 1."""
-    directed: float = 1e-12
-    """Offset, in lengths of the problem, up to which it has no direction."""
     yields: float = 1e-6
     """Compression, in lengths of the problem, below which a contact counts as rigid when a claim is
     measured: its force does not show in its place."""
