@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -16,13 +17,22 @@ States: TypeAlias = NDArray[np.int8]
 
 
 def floats(given: Any) -> Any:
-    """Return numbers as an array of floats, and anything else unchanged, for a check to reject."""
+    """Return numbers as an array of floats, and anything else as no array, for a check to reject.
+
+    None counts as NaN. Complex numbers, times and masked values, which conversion would strip of
+    what makes them so, are no numbers; nor is a text that looks like one.
+    """
     try:
-        # A text that looks like a number would be converted.
-        texts = np.asarray(given).dtype.kind in "SU"
-        return given if texts else np.asarray(given, dtype=np.float64)
+        array = np.asarray(given)
+        kind = array.dtype.kind
+        numbers = kind in "biuf" or (
+            kind == "O" and all(isinstance(value, Real | None) for value in array.flat)
+        )
+        if numbers and not np.ma.is_masked(given):
+            return np.asarray(array, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
-        return given
+        pass
+    return given.tolist() if isinstance(given, np.ndarray) else given
 
 
 def shaped(what: str, given: Any, shape: tuple[int, ...]) -> Array:

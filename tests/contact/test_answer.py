@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from decimal import Decimal
 
 import numpy as np
 import pytest
@@ -23,6 +24,7 @@ from loadshare.contact import (
     solve_contact,
 )
 from loadshare.contact.problem import of_unit_norm
+from loadshare.contact.radial import RollingLaw
 from loadshare.errors import Refused
 
 METHODS = ("newton", "picard")
@@ -234,11 +236,56 @@ def test_a_load_that_is_refused_without_running_away_is_not_said_to() -> None:
             (Radial("drum", [[1], [0]], [0, 0], RadialLaw((Piece(0, 1, 1, "a"),)), [1.0]),),
             r"levers of drum: \[1.0\] is no mapping",
         ),
+        ("load", np.array([1.0 + 1.0j]), "load: contains something other than numbers"),
+        ("load", np.array([5], "m8[s]"), "load: contains something other than numbers"),
+        ("load", np.array(["5"]), "load: contains something other than numbers"),
+        ("load", np.array(["5"], object), "load: contains something other than numbers"),
+        ("load", np.ma.array([5], mask=[True]), "load: contains something other than numbers"),
+        (
+            "rows",
+            (Row("stop", "stop", [1.0], np.datetime64("2026"), RIGID),),
+            "gap of stop: contain",
+        ),
+        ("rows", (Row("stop", "stop", [1.0], Decimal(1), RIGID),), "gap of stop: contains somethi"),
+        (
+            "rows",
+            (Row("stop", "stop", [1.0], 0.0, PowerLaw(Decimal(1))),),
+            r"law of stop: b = Decimal\('1'\) is not a finite number",
+        ),
     ],
 )
 def test_arrays_that_do_not_belong_together_are_named(part, value, message) -> None:
     with pytest.raises(ValueError, match=message):
         solve_contact(dataclasses.replace(block(1.0), **{part: value}))
+
+
+@pytest.mark.parametrize("lever", ["1", 1j, math.nan, math.inf, None])
+def test_a_lever_that_is_no_number_is_named(lever) -> None:
+    law = RadialLaw((Piece(0, 1, 1, "a"),))
+    drum = Radial("drum", [[1], [0]], [0, 0], law, {"left stop": lever})
+    with pytest.raises(ValueError, match="lever of left stop over drum: contains"):
+        solve_contact(dataclasses.replace(block(1.0), radials=(drum,)))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"),
+    [
+        ("clearance", -1e-3, "of at least 0"),
+        ("clearance", "a", "of at least 0"),
+        ("stiffness", 0.0, "above 0"),
+        ("stiffness", math.inf, "above 0"),
+        ("power", 0.5, "above 1"),
+        ("faint", 0.0, "above 0"),
+    ],
+)
+def test_a_bearing_that_is_no_law_is_named(name: str, value: object, allowed: str) -> None:
+    law = dataclasses.replace(RollingLaw(1e-3, 1e6, 1.5, 1e-9), **{name: value})
+    with pytest.raises(ValueError, match=f"{name} = {value!r} is not a finite number {allowed}"):
+        solve_contact(disc((3.0, 4.0), law))
+
+
+def test_a_force_that_is_none_counts_as_infinitely_wrong() -> None:
+    assert residuals(block(1.0), [0.0], {"left stop": None}, {}).worst == math.inf
 
 
 def test_claims_that_do_not_fit_the_problem_are_named() -> None:

@@ -159,7 +159,9 @@ def residuals(
     """
     check_problem(problem)
     _check_claim(problem, x, force, pull)
-    return _residuals(problem, np.asarray(x, dtype=np.float64), force, pull)
+    forces = {name: float(floats(value)) for name, value in force.items()}
+    pulls = {name: floats(value) for name, value in pull.items()}
+    return _residuals(problem, floats(x), forces, pulls)
 
 
 def _check_claim(problem: ContactProblem, x: Any, force: Any, pull: Any) -> None:

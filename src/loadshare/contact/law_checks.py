@@ -11,7 +11,7 @@ import numpy as np
 
 from loadshare.array_types import floats
 from loadshare.contact.law import PowerLaw, TableLaw
-from loadshare.contact.radial import Piece, RadialLaw
+from loadshare.contact.radial import Piece, RadialLaw, RollingLaw
 from loadshare.settings import LAWS
 
 
@@ -30,6 +30,8 @@ def law_faults(law: object) -> Iterator[str]:
             yield from _points(forces, compressions)
         case RadialLaw(pieces):
             yield from _pieces(pieces)
+        case RollingLaw():
+            yield from _rolling(law)
 
 
 def _number(value: object) -> Any:
@@ -42,6 +44,18 @@ def _powers(b: object, c: object) -> Iterator[str]:
     for name, value in (("b", b), ("c", c)):
         if not 0.0 <= _number(value) < math.inf:
             yield f"{name} = {value!r} is not a finite number of at least 0"
+
+
+def _rolling(law: RollingLaw) -> Iterator[str]:
+    if not 0.0 <= _number(law.clearance) < math.inf:
+        yield f"clearance = {law.clearance!r} is not a finite number of at least 0"
+    for name, value, least in (
+        ("stiffness", law.stiffness, 0),
+        ("power", law.power, 1),
+        ("faint", law.faint, 0),
+    ):
+        if not least < _number(value) < math.inf:
+            yield f"{name} = {value!r} is not a finite number above {least}"
 
 
 def _points(forces: Any, compressions: Any) -> Iterator[str]:

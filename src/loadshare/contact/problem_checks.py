@@ -91,6 +91,8 @@ def _arrays(problem: ContactProblem) -> Iterator[tuple[str, Any, tuple[int, ...]
     for radial in problem.radials:
         yield f"matrix of {radial.name}", radial.matrix, (2, n)
         yield f"centre of {radial.name}", radial.centre, (2,)
+        for name, lever in radial.levers.items():
+            yield f"lever of {name} over {radial.name}", floats(lever), ()
 
 
 def _lawless(problem: ContactProblem) -> Iterator[str]:
