@@ -36,15 +36,17 @@ def floats(given: Any) -> Any:
 
 
 def shaped(what: str, given: Any, shape: tuple[int, ...]) -> Array:
-    """Return numbers as an array of floats of a shape.
+    """Return finite numbers as an array of floats of a shape.
 
     Raises
     ------
     ValueError
-        If they are no numbers or have another shape.
+        If they are no finite numbers or have another shape.
     """
     array = floats(given)
     if not isinstance(array, np.ndarray) or array.shape != shape:
         has = f"shape {np.shape(array)}" if isinstance(given, np.ndarray) else repr(given)
         raise ValueError(f"{what}: an array of numbers of shape {shape} is needed, not {has}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{what}: contains a number that is not finite, so it is no answer")
     return array

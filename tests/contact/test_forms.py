@@ -134,6 +134,11 @@ def test_answers_that_do_not_belong_to_the_programme_are_named() -> None:
         formulation.read(5)
     with pytest.raises(ValueError, match=r"x: an array .* of shape \(5,\) .*, not shape \(4,\)"):
         formulation.read(Point(np.zeros(4), np.zeros(5), np.zeros((0, 2))))
+    for wrong in (np.nan, np.inf):
+        with pytest.raises(ValueError, match="forces: contains a number that is not finite"):
+            formulation.read(Point(np.zeros(5), np.full(5, wrong), np.zeros((0, 2))))
+        with pytest.raises(ValueError, match="z: contains a number that is not finite"):
+            formulation.lcp().point(np.full(len(formulation.lcp().vector), wrong))
     with pytest.raises(ValueError, match=r"z: an array of numbers .* is needed, not None"):
         formulation.qp().point(None, None)
     with pytest.raises(ValueError, match=r"z: an array of numbers .* is needed, not 'a'"):
