@@ -153,10 +153,13 @@ def test_units_that_engineers_write(kind, text, si):
             "2e5 3 mm",
             'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
         ),
-        (
-            q.Length,
-            "5 3 mm",
-            'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
+        *(
+            (
+                q.Length,
+                text,
+                'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
+            )
+            for text in ("5 3 mm", "1+1 mm", "5 +mm", "1 -3 mm")
         ),
     ],
 )

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 
 NUMBER = r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?"
-UNIT = r"(?:1\s*/|[^\s\d.,])"
+UNIT = r"(?:1\s*/|[^\s\d.,+\-−])"
 """Pattern of the beginning of a unit; the only number before it is the 1 of a reciprocal."""
 # A number is matched as a whole, so that no unit begins at the exponent of 1e-6.
 _QUANTITY = re.compile(rf"\s*(?>({NUMBER}|[+\-−]?(?:inf|nan)))\s*(|{UNIT}.*?)\s*", re.DOTALL)
