@@ -114,3 +114,39 @@ def test_what_no_point_of_a_sweep_is(case, kind, point):
     found = ls.sweep(case, {FLOAT: ["8 um"]}, positions=[1])
     with pytest.raises(ValueError, match=r"allowed: (omega, pair_omega|a whole number from 0 on)"):
         found.largest(kind, point)
+
+
+@pytest.mark.parametrize("given", [None, 5, b"result.json", ["result.json"]])
+def test_what_no_path_of_a_result_is(given):
+    with pytest.raises(TypeError, match="the path of a result file is needed, not"):
+        ls.load_result(given)
+
+
+def test_an_empty_path_of_a_result_is_no_folder():
+    with pytest.raises(ls.ResultError, match='"": no such file'):
+        ls.load_result("")
+
+
+@pytest.mark.parametrize("given", [None, 5, b"gearbox", ["gearbox"]])
+def test_what_no_name_of_a_case_is(case, given):
+    """A file of its result could not be loaded."""
+    with pytest.raises(TypeError, match="the name of a case is a text, not"):
+        ls.Case(case.to_dict(), name=given)
+
+
+@pytest.mark.parametrize("mark", ["\0", "\ud800", "\x1b"])
+def test_a_result_is_saved_whatever_characters_the_name_of_its_case_has(case, mark, tmp_path):
+    found = ls.solve(ls.Case(case.to_dict(), name=f"gear{mark}box"), positions=[1])
+    found.to_json(tmp_path / "found.json")
+    found.to_netcdf(tmp_path / "found.nc")
+    for name in ("found.json", "found.nc"):
+        assert ls.load_result(tmp_path / name) == found
+
+
+def test_samples_of_a_long_float_are_numbers(case):
+    samples = np.array([2.0, 4.0])
+    plain, long = (
+        ls.solve_many(case, {UM: samples.astype(kind)}, positions=[1], workers=1)
+        for kind in (np.float64, np.longdouble)
+    )
+    assert np.array_equal(plain["torque"], long["torque"])

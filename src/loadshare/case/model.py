@@ -23,6 +23,7 @@ from loadshare.case.revise import differing, revise
 from loadshare.case.table import fixed
 from loadshare.errors import CaseError
 from loadshare.output import write_whole
+from loadshare.readable import readable
 from loadshare.table import text_table
 from loadshare.view import View
 
@@ -66,6 +67,10 @@ class Case(Content):
         **sections: Any,
     ) -> None:
         check_mapping("sections by name", "{'gears': {}}", content or {})
+        if not isinstance(name, str):
+            raise TypeError(f"the name of a case is a text, not {type(name).__name__}")
+        # A file could not hold a control character, nor its digest a lone surrogate.
+        name = readable(name)
         origin = origin or Origin(name or "case", outside=True)
         self._take(as_data({**(content or {}), **sections}, origin.file), origin, name, None)
 
@@ -188,6 +193,10 @@ class Case(Content):
                 "cases cannot be changed; Case.replace makes a new one with other values"
             )
         return super().model_copy(deep=deep)
+
+    def copy(self, **arguments: Any) -> Self:
+        """Return a copy as `model_copy` does: pydantic's older method would check no update."""
+        return self.model_copy(**arguments)
 
     def differences(self, before: Case) -> Iterator[tuple[Path, Any, Any]]:
         """Yield each key in which the case differs from an earlier one, with its value in both.

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from io import BytesIO
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from loadshare.case.reader import NO_FILE
 from loadshare.errors import Problem, ResultError
 from loadshare.input import Unreadable, read_file
 from loadshare.libraries import xr
@@ -41,7 +43,14 @@ def load_result(path: str | Path) -> Result:
     ResultError
         If the file is missing, holds no result of loadshare, or one that does not pass; all
         problems are listed.
+    TypeError
+        If `path` is not a path.
     """
+    if not isinstance(path, str | PathLike):
+        raise TypeError(f"the path of a result file is needed, not {type(path).__name__}")
+    if path == "":
+        # As a path it would be the folder in which the process is.
+        raise ResultError([Problem('""', "", "", NO_FILE)])
     path = Path(path)
     try:
         content = read_file(path, ALLOWED.result_bytes)

@@ -155,7 +155,7 @@ def _values(given: object) -> NDArray[np.generic]:
     except ValueError:
         # Lists of different lengths.
         return np.array([[]], dtype=object)
-    return values
+    return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 
 def _fault(column: Column, before: list[Column]) -> str:
