@@ -317,3 +317,13 @@ def test_gears_that_stand_side_by_side_along_the_axis():
     wheels("40 mm")  # the face widths of both wheels are 40 mm
     assert "gears.c.centre: is too close to gear b" in refusal(wheels, "39 mm")
     assert "At most 3 such gears fit" in refusal(wheels, "0 mm")
+
+
+@pytest.mark.parametrize("teeth", [80, 84, 240])
+def test_a_planet_no_smaller_than_its_ring_is_named(teeth):
+    """No tip would fit, nor any centre distance: nothing is said of these."""
+    star = load_case(CASES / "planetary/star.toml")
+    with pytest.raises(CaseError, match=r"gear ring, .*, has no room for gear planet1") as e:
+        star.replace({"gears.planet1.teeth": teeth})
+    told = [problem for problem in e.value.problems if problem.key.startswith("meshes")]
+    assert len(told) == 1

@@ -135,7 +135,7 @@ def check_twisted_shafts(draft: Draft) -> Iterator[Problem]:
         return
     fixed = {name for name, gear in draft.gears.items() if gear.held} | {draft.operating.output}
     for name, shaft in draft.shafts.items():
-        if shaft.stiffness == "rigid":
+        if shaft.stiffness == "rigid" or not draft.gears.keys() >= set(shaft.ends):
             continue
         first, second = (_on_rigid_shafts(draft, end) for end in shaft.ends)
         joined, still = first == second, (sorted(first & fixed), sorted(second & fixed))

@@ -40,12 +40,28 @@ OVERLAP = 1e-3
 
 def check_tooth_kinds(draft: Draft) -> Iterator[Problem]:
     """Yield pairs of gears whose kinds of teeth cannot mesh."""
-    for name, _, driver, driven in _pairs(draft):
+    for name, mesh, driver, driven in _pairs(draft):
         kinds = {driver.type, driven.type}
         if kinds == {"internal"}:
             yield draft.problem(("meshes", name), "two internal gears cannot mesh")
         elif "face" in kinds and "external" not in kinds:
             yield draft.problem(("meshes", name), "a face gear meshes with an external pinion only")
+        elif _overgrown(driver, driven):
+            ring, pinion = mesh.ends if driver.type == "internal" else mesh.ends[::-1]
+            radii = [mm(draft.gears[end].acting_radius) for end in (ring, pinion)]
+            what = (
+                f"the internal gear {ring}, with a base radius of {radii[0]}, has no room for gear "
+                f"{pinion}, with {radii[1]}"
+            )
+            allowed = "more teeth, and the larger base radius, for the internal gear"
+            yield draft.problem(("meshes", name), what, allowed)
+
+
+def _overgrown(driver: Gear, driven: Gear) -> bool:
+    """Return whether an internal gear is no larger than its pinion, so that it has no room."""
+    pinion, ring = sorted((driver, driven), key=lambda gear: gear.type == "internal")
+    inside = (pinion.type, ring.type) == ("external", "internal")
+    return inside and ring.acting_radius <= pinion.acting_radius
 
 
 def check_racks(draft: Draft) -> Iterator[Problem]:
@@ -61,7 +77,8 @@ def check_fit(draft: Draft) -> Iterator[Problem]:
     centres = draft.centres()
     for name, mesh, driver, driven in _pairs(draft):
         kinds = {driver.type, driven.type}
-        if mesh.driver in centres and mesh.driven in centres and "external" in kinds:
+        placed = {mesh.driver, mesh.driven} <= centres.keys()
+        if placed and "external" in kinds and not _overgrown(driver, driven):
             offset = minus(centres[mesh.driven], centres[mesh.driver])
             fit = _face_fit if "face" in kinds else _parallel_fit
             yield from fit(draft, name, mesh, offset)
@@ -187,7 +204,9 @@ def toothed_pairs(
         one, two = driver.tooth, driven.tooth
         if one is None or two is None or not {mesh.driver, mesh.driven} <= centres.keys():
             continue
-        if (one.internal and two.internal) or _unlike(driver, driven) is not None:
+        if (one.internal and two.internal) or _overgrown(driver, driven):
+            continue
+        if _unlike(driver, driven) is not None:
             continue
         if parallel(driver, driven):
             yield name, mesh.ends, (one, two), mesh_distance(mesh, draft.gears, centres)
