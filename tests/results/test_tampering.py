@@ -214,6 +214,15 @@ def test_a_claim_whose_square_overflows_is_refused(small, field, value):
     assert re.search(rf"positions\[0\]\.claim\.{field}\..* = .*: is too large", found)
 
 
+@pytest.mark.parametrize("value", [10**400, -(10**400)], ids=["above", "below"])
+def test_a_whole_number_beyond_all_doubles_does_not_follow(small, value):
+    document = json.loads(small.to_json())
+    path = ("positions", 0, "loads", "gears", "4")
+    assert isinstance(at(document, path), float)
+    with pytest.raises(ls.ResultError, match="does not follow from the case and the claims"):
+        read_document(json.dumps(changed(document, path, value)), "file.json")
+
+
 def test_a_position_left_out_is_missed(small):
     assert "position 2 is missing" in refusal_of(
         without(json.loads(small.to_json()), ("positions", 1))
